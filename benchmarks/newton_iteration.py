@@ -13,7 +13,7 @@ from rich.table import Table
 from beltdyn.arrays import FloatArray
 from beltdyn.kernel import kernel
 from beltdyn.model import Drive
-from beltdyn.solve.rest.installation import bring_to_rest
+from beltdyn.state.installation import bring_to_rest
 from beltdyn.system.arrays import Equations, Motion, System, TangentFactors
 from beltdyn.system.assembly import assemble
 from beltdyn.system.build import drive_system

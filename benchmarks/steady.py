@@ -14,7 +14,7 @@ from rich.table import Table
 
 from beltdyn import load, operating_map, simulate, steady_state
 from beltdyn.model import Drive
-from beltdyn.solve.steady_running.changed_drive import held_at, with_load
+from beltdyn.points.changed_drive import held_at, with_load
 from validation.published.cases import better, loaded_two_pulley
 
 ROUNDS = 5

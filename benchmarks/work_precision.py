@@ -26,8 +26,8 @@ from rich.table import Table
 from beltdyn import simulate
 from beltdyn.arrays import FloatArray
 from beltdyn.model import Drive
-from beltdyn.plot.style import color, new_figure, styled
 from beltdyn.results import Run
+from beltdyn.show.plot.style import color, new_figure, styled
 from validation.published.cases import better, loaded_two_pulley, two_pulley
 
 Frame = Literal["travelling", "staying"]

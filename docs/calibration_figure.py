@@ -21,13 +21,13 @@ from scipy import stats
 
 import beltdyn as bd
 from beltdyn.arrays import FloatArray
-from beltdyn.cli.result import show_result
+from beltdyn.cli.output import show_result
+from beltdyn.designs.calibrate import fit
+from beltdyn.designs.designs import free_number
+from beltdyn.designs.residuals import Residuals
 from beltdyn.model.study import CalibrationStudy
 from beltdyn.model.toml_reader import read_study
-from beltdyn.plot.style import INK, new_figure, styled
-from beltdyn.solve.studies.designs import free_number
-from beltdyn.solve.studies.fitting import fit
-from beltdyn.solve.studies.residuals import Residuals
+from beltdyn.show.plot.style import INK, new_figure, styled
 
 HERE = Path(__file__).parent
 RIG, STUDY = (HERE / "verification" / name for name in ("belt_rig.toml", "belt_rig_study.toml"))

@@ -6,7 +6,7 @@ from pathlib import Path
 from matplotlib.axes import Axes
 
 import beltdyn as bd
-from beltdyn.plot.style import new_figure, styled
+from beltdyn.show.plot.style import new_figure, styled
 
 PICTURE = Path(__file__).parent / "_static" / "diameters.png"
 Points = list[tuple[float, float]]

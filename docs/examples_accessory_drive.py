@@ -12,8 +12,8 @@ from scipy.optimize import curve_fit
 import beltdyn as bd
 from beltdyn.arrays import FloatArray
 from beltdyn.model import install
-from beltdyn.plot.style import new_figure, styled
-from beltdyn.plot.sweep import orders
+from beltdyn.show.plot.style import new_figure, styled
+from beltdyn.show.plot.sweep import orders
 
 TURN = 0.075
 """A turn of the crank at idle, s."""

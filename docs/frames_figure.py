@@ -12,8 +12,8 @@ from typing import Literal, get_args
 import numpy as np
 
 import beltdyn as bd
-from beltdyn.plot.style import INK, new_figure, styled
 from beltdyn.results.derived import element_order, waterfall
+from beltdyn.show.plot.style import INK, new_figure, styled
 
 FILE = Path(__file__).parent / "_static" / "verification" / "waterfall.png"
 ELEMENTS = 90

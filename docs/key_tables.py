@@ -11,30 +11,24 @@ from typing import Any, Literal
 from annotated_types import Ge, Gt, Le, Lt
 from pydantic.fields import FieldInfo
 
-from beltdyn.machines.links import kinds as links
-from beltdyn.machines.loads import kinds as loads
+from beltdyn.machines import links, loads, profiles, tensioners
 from beltdyn.machines.loads.load import Load
-from beltdyn.machines.profiles import kinds as profiles
-from beltdyn.machines.profiles.crank import CrankSpeed
-from beltdyn.machines.tensioners import kinds as tensioners
-from beltdyn.model import (
-    Belt,
-    Contact,
-    FixedEnd,
-    Harmonic,
-    Limits,
-    PulledEnd,
-    Pulley,
-    Simulation,
-    Steady,
-    WeightEnd,
-)
+from beltdyn.machines.profiles.harmonic import CrankSpeed
+from beltdyn.model import Belt, Contact, FixedEnd, Harmonic, Limits, PulledEnd, Pulley, Simulation, Steady, WeightEnd
 from beltdyn.model.belt_form import Nominal, Sold, Stiffnesses
-from beltdyn.model.parameter_study import ParameterStudy, VariedNumber
-from beltdyn.model.pulley import Diameter
+from beltdyn.model.pulley import SURFACES, Diameter
 from beltdyn.model.stretch_curve import StretchCurve
-from beltdyn.model.study import FreeNumber, Goal, Measurement, Obstacle, Order, Points, Requirement
-from beltdyn.model.surface import SURFACES
+from beltdyn.model.study import (
+    FreeNumber,
+    Goal,
+    Measurement,
+    Obstacle,
+    Order,
+    ParameterStudy,
+    Points,
+    Requirement,
+    VariedNumber,
+)
 from beltdyn.parts.part import Part
 
 CHOSEN = {

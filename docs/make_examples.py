@@ -19,7 +19,7 @@ import examples_accessory_drive as accessory
 from PIL import Image
 
 import beltdyn as bd
-from beltdyn.cli.result import show_result
+from beltdyn.cli.output import show_result
 
 PICTURES = Path(__file__).parent / "_static" / "examples"
 

@@ -7,7 +7,7 @@ from pathlib import Path
 from matplotlib.axes import Axes
 
 import beltdyn as bd
-from beltdyn.plot.style import new_figure, styled
+from beltdyn.show.plot.style import new_figure, styled
 from validation.published import demo_text
 
 PICTURES = Path(__file__).parent / "_static"

@@ -17,13 +17,13 @@ from random_drives import SEEDS, Judged, judge
 import beltdyn as bd
 from beltdyn.arrays import FloatArray
 from beltdyn.model import ERROR_LIMITS, layer_lengths
-from beltdyn.solve import find_equilibrium
-from beltdyn.solve.integrators.trajectory import Chunk, Statistics, drive_task
-from beltdyn.solve.rest.installation import drawn_in
-from beltdyn.solve.simulate import choose_integrator
+from beltdyn.solvers.trajectory import Chunk, Statistics, drive_task
+from beltdyn.state.installation import drawn_in
+from beltdyn.state.static import find_equilibrium
 from beltdyn.system.build import drive_system
 from beltdyn.system.observe import observe
 from beltdyn.system.state import at_rest
+from beltdyn.transient.simulate import choose_integrator
 from validation.paper.distribution import distribution, find_peak, fit_line
 from validation.published import RISE, better, loaded_two_pulley, two_pulley
 

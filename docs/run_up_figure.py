@@ -17,8 +17,8 @@ from scipy.integrate import solve_ivp
 
 import beltdyn as bd
 from beltdyn.arrays import ComplexArray, FloatArray
-from beltdyn.plot.style import new_figure, styled
 from beltdyn.results.derived import orders
+from beltdyn.show.plot.style import new_figure, styled
 
 FILE = Path(__file__).parent / "_static" / "verification" / "run_up_orders.png"
 RPM = np.pi / 30.0

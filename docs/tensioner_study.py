@@ -7,7 +7,7 @@ from importlib.resources import files
 from pathlib import Path
 
 import beltdyn as bd
-from beltdyn.cli.result import show_result
+from beltdyn.cli.output import show_result
 
 HERE = Path(__file__).parent
 LENGTH = 1.514

@@ -16,7 +16,7 @@ from typing import Any, NamedTuple
 import matplotlib as mpl
 from matplotlib.axes import Axes
 
-from beltdyn.plot.style import COLORS, dash, new_figure, styled
+from beltdyn.show.plot.style import COLORS, dash, new_figure, styled
 
 ROOT = Path(__file__).parents[1]
 FOLDER = ROOT / "docs" / "_static" / "verification"

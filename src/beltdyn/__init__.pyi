@@ -1,5 +1,11 @@
-from . import errors, model, plot, results, theory
+from . import errors, model, results, theory
 from .cosimulation import fmu
+from .designs.batch import simulate_all
+from .designs.calibrate import calibrate
+from .designs.optimize import optimize
+from .designs.sensitivity import sensitivity
+from .designs.study import study
+from .designs.worker import Ending
 from .errors import (
     BeltdynError,
     ConvergenceError,
@@ -64,7 +70,10 @@ from .model import (
     read_catalogue,
     tensioner_balances,
 )
-from .report import InteractiveFigures, interactive, write_report
+from .points.duty import duty
+from .points.operating_map import operating_map
+from .points.tensioner_sheet import tensioner_sheet
+from .points.traction import traction
 from .results import (
     VARIABLES,
     Balance,
@@ -89,38 +98,21 @@ from .results import (
     summarize,
     write_csv,
 )
-from .solve import (
-    BatchProgress,
-    Ending,
-    Equilibrium,
-    ErrorControl,
-    FixedSteps,
-    GeneralizedAlpha,
-    Progress,
-    Rest,
-    Simulator,
-    StandardIntegrator,
-    StepError,
-    Stepwise,
-    bring_to_rest,
-    calibrate,
-    campbell,
-    duty,
-    equilibrium,
-    find_equilibrium,
-    modes,
-    operating_map,
-    optimize,
-    response,
-    sensitivity,
-    simulate,
-    simulate_all,
-    steady_state,
-    study,
-    sweep,
-    tensioner_sheet,
-    traction,
-)
+from .show import plot
+from .show.report import InteractiveFigures, interactive, write_report
+from .solvers.generalized_alpha import GeneralizedAlpha
+from .solvers.progress import BatchProgress, Progress
+from .solvers.standard import ErrorControl, FixedSteps, StandardIntegrator, StepError, Stepwise
+from .state.equilibrium import equilibrium
+from .state.installation import Rest, bring_to_rest
+from .state.static import Equilibrium, find_equilibrium
+from .state.steady import steady_state
+from .transient.simulate import simulate
+from .transient.simulator import Simulator
+from .transient.sweep import sweep
+from .vibration.campbell import campbell
+from .vibration.modes import modes
+from .vibration.response import response
 
 __version__: str
 

@@ -101,30 +101,34 @@ class Analysis(NamedTuple):
 
 
 _ALL = (
-    Analysis(RUN, "beltdyn.solve.simulate:simulate", "Simulate drives over time."),
-    Analysis("sweep", "beltdyn.solve.sweep:sweep", "Simulate a run-up through a range of speeds."),
-    Analysis(STATIC, "beltdyn.solve.equilibrium:equilibrium", "Find the static equilibrium of a drive."),
-    Analysis("steady", "beltdyn.solve.steady:steady_state", "Compute the steady running of a drive."),
-    Analysis("map", "beltdyn.solve.operating_map:operating_map", "Compute operating points over speed and load."),
+    Analysis(RUN, "beltdyn.transient.simulate:simulate", "Simulate drives over time."),
+    Analysis("sweep", "beltdyn.transient.sweep:sweep", "Simulate a run-up through a range of speeds."),
+    Analysis(STATIC, "beltdyn.state.equilibrium:equilibrium", "Find the static equilibrium of a drive."),
+    Analysis("steady", "beltdyn.state.steady:steady_state", "Compute the steady running of a drive."),
+    Analysis("map", "beltdyn.points.operating_map:operating_map", "Compute operating points over speed and load."),
     Analysis(
-        "traction", "beltdyn.solve.traction:traction", "Compute the traction curve of a pulley (slip over torque)."
+        "traction", "beltdyn.points.traction:traction", "Compute the traction curve of a pulley (slip over torque)."
     ),
-    Analysis("duty", "beltdyn.solve.duty:duty", "Compute the operating points of a duty cycle, and their means."),
+    Analysis("duty", "beltdyn.points.duty:duty", "Compute the operating points of a duty cycle, and their means."),
     Analysis(
         "tensioner",
-        "beltdyn.solve.tensioner_sheet:tensioner_sheet",
+        "beltdyn.points.tensioner_sheet:tensioner_sheet",
         "Compute tensioner positions and tensions over the range of belt lengths.",
     ),
     Analysis(
         "sensitivity",
-        "beltdyn.solve.sensitivity:sensitivity",
+        "beltdyn.designs.sensitivity:sensitivity",
         "Compute the sensitivity of results to each input.",
     ),
-    Analysis("modes", "beltdyn.solve.modes:modes", "Compute natural modes: frequencies, damping, shapes."),
-    Analysis("optimize", "beltdyn.solve.optimize:optimize", "Optimize parameters of a drive for a goal."),
-    Analysis("calibrate", "beltdyn.solve.calibrate:calibrate", "Fit parameters of a drive to measured results."),
-    Analysis("campbell", "beltdyn.solve.campbell:campbell", "Compute natural modes over speed, and critical speeds."),
-    Analysis("response", "beltdyn.solve.response:response", "Compute forced vibrations under harmonics, over speed."),
+    Analysis("modes", "beltdyn.vibration.modes:modes", "Compute natural modes: frequencies, damping, shapes."),
+    Analysis("optimize", "beltdyn.designs.optimize:optimize", "Optimize parameters of a drive for a goal."),
+    Analysis("calibrate", "beltdyn.designs.calibrate:calibrate", "Fit parameters of a drive to measured results."),
+    Analysis(
+        "campbell", "beltdyn.vibration.campbell:campbell", "Compute natural modes over speed, and critical speeds."
+    ),
+    Analysis(
+        "response", "beltdyn.vibration.response:response", "Compute forced vibrations under harmonics, over speed."
+    ),
     # one line each
 )
 

@@ -13,8 +13,8 @@ from beltdyn.errors import ModelError
 from beltdyn.model import advise, install, load, loads, tensioner_balances
 from beltdyn.results import open_result, open_run
 from beltdyn.results.dataset import is_result
-from beltdyn.solve import simulate
-from beltdyn.solve.checkpoint import is_checkpoint, read_checkpoint
+from beltdyn.transient.checkpoint import is_checkpoint, read_checkpoint
+from beltdyn.transient.simulate import simulate
 from validation.published import demo_text
 
 LENGTH, WIDTH = "length = 1.2727", "width = 0.01"

@@ -18,19 +18,19 @@ import tomli_w
 
 from beltdyn.analyses import ANALYSES, RUN, STATIC
 from beltdyn.cli import main
-from beltdyn.machines.profiles import kinds as profiles
+from beltdyn.designs.designs import free_number
+from beltdyn.designs.residuals import read_measured
+from beltdyn.machines import profiles
 from beltdyn.model import Belt, Contact, Limits, Pulley, Simulation, Steady, dumps, loads
 from beltdyn.model.belt_form import Nominal, Sold
 from beltdyn.model.catalogue import Entry, read_catalogue
-from beltdyn.model.examples import example
 from beltdyn.model.pulley import Diameter
 from beltdyn.model.study import CalibrationStudy, OptimizationStudy
+from beltdyn.model.toml_reader import example
 from beltdyn.parts.part import Part
-from beltdyn.plot import FIGURES
-from beltdyn.plot.registry import on_request
-from beltdyn.solve import simulate
-from beltdyn.solve.studies.designs import free_number
-from beltdyn.solve.studies.measured_table import read_measured
+from beltdyn.show.plot import FIGURES
+from beltdyn.show.plot.registry import on_request
+from beltdyn.transient.simulate import simulate
 
 ROOT = Path(__file__).parents[2]
 TUTORIAL = ROOT / "docs" / "tutorial.md"

@@ -15,8 +15,7 @@ from make_examples import simulated
 from beltdyn import Run
 from beltdyn.model import Resistance, RotaryTensioner
 from beltdyn.results import derived
-from beltdyn.results.curve import centerline
-from beltdyn.results.mechanics import cells, element_lengths, recorded_kind
+from beltdyn.results.mechanics import cells, centerline, element_lengths, recorded_kind
 
 pytestmark = pytest.mark.slow
 

@@ -15,9 +15,8 @@ from beltdyn import steady_state
 from beltdyn.model import Belt, Drive
 from beltdyn.results import summarize
 from beltdyn.results.summary import Summary
-from beltdyn.solve.vibration.flutter import flutter_shift
-from beltdyn.solve.vibration.small_motions import about_steady
-from beltdyn.solve.vibration.vibrations import Vibrations
+from beltdyn.solvers.flutter import Vibrations, flutter_shift
+from beltdyn.vibration.small_motions import about_steady
 
 LOADS = (0.5, 0.2)
 """Over the load of gross slip, about."""

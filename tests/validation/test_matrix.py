@@ -17,12 +17,11 @@ import numpy as np
 import pytest
 
 from beltdyn import Drive, Pulley
+from beltdyn.designs.batch import simulate_all
 from beltdyn.model import CosineRamp, CosineRampPublished, Ramp
-from beltdyn.results.checks.energy import CLOSURE_LIMIT
-from beltdyn.results.checks.flutter import GROWTH_LIMIT
-from beltdyn.results.closure import largest_closure
-from beltdyn.results.recorded import attribute
-from beltdyn.solve import simulate_all
+from beltdyn.results.balance import largest_closure
+from beltdyn.results.checks.power import CLOSURE_LIMIT, GROWTH_LIMIT
+from beltdyn.results.schema import attribute
 from validation.published import CASES as PUBLISHED
 from validation.published import better, loaded_two_pulley, two_pulley
 

@@ -6,9 +6,9 @@ from tensioner_study import found
 
 from beltdyn import Result, summarize
 from beltdyn.parts.quantity import RPM
-from beltdyn.solve.operating_map import at_point
-from beltdyn.solve.steady import steady_state
-from beltdyn.solve.sweep import without_schedules
+from beltdyn.points.operating_map import at_point
+from beltdyn.state.steady import steady_state
+from beltdyn.transient.sweep import without_schedules
 
 pytestmark = pytest.mark.slow
 

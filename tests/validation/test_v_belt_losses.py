@@ -14,7 +14,7 @@ import beltdyn as bd
 from beltdyn.model.hysteresis import bending_resistance, compression_losses
 from beltdyn.results.balance import Balance
 from beltdyn.results.summary import summarize
-from beltdyn.solve.steady import steady_state
+from beltdyn.state.steady import steady_state
 
 pytestmark = pytest.mark.slow
 

@@ -14,8 +14,8 @@ from scipy.optimize import brentq
 
 from beltdyn.arrays import FloatArray
 from beltdyn.model import Belt
-from beltdyn.solve.rest.static import find_equilibrium
-from beltdyn.solve.vibration.vibrations import Vibrations
+from beltdyn.solvers.flutter import Vibrations
+from beltdyn.state.static import find_equilibrium
 from beltdyn.stretch import StretchParameters
 from beltdyn.system.arrays import System
 from beltdyn.system.build import belt_system

@@ -14,7 +14,7 @@ from hypothesis import strategies as st
 
 from beltdyn.arrays import FloatArray
 from beltdyn.model import Belt, Constant, Contact, Path, Pulley
-from beltdyn.solve import find_equilibrium
+from beltdyn.state.static import find_equilibrium
 from beltdyn.system.arrays import NO_TANGENT, BodyForces, Motion, System
 from beltdyn.system.assembly import assemble
 from beltdyn.system.build import belt_system

@@ -16,9 +16,8 @@ import pytest
 
 from beltdyn.errors import BeltdynError
 from beltdyn.model import Drive
-from beltdyn.solve import bring_to_rest
-from beltdyn.solve.rest.installation import Rest
-from beltdyn.solve.rest.staying import Standing, bring_to_stand
+from beltdyn.state.installation import Rest, bring_to_rest
+from beltdyn.state.staying import Standing, bring_to_stand
 from tests.lumped.drawn_layouts import layout_at_rest
 from tests.lumped.layout_reasons import is_true
 

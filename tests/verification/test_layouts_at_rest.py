@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from beltdyn.model import Drive, install
-from beltdyn.solve import equilibrium
+from beltdyn.state.equilibrium import equilibrium
 
 CROSSED = (("driver", 0.0, 0.0, 0.12, "inside"), ("driven", 0.6, 0.0, 0.08, "outside"))
 FLAT = (

@@ -13,7 +13,7 @@ from scipy.optimize import brentq
 
 from beltdyn.arrays import FloatArray
 from beltdyn.model import Belt, Drive
-from beltdyn.solve import find_equilibrium
+from beltdyn.state.static import find_equilibrium
 from beltdyn.system.arrays import NO_TANGENT, System
 from beltdyn.system.assembly import assemble
 from beltdyn.system.build import belt_system, drive_system

@@ -15,8 +15,7 @@ from scipy.linalg import eig
 from beltdyn.arrays import FloatArray
 from beltdyn.elements.ancf.elastic_force import element_energy, element_force
 from beltdyn.elements.ancf.element import Ancf
-from beltdyn.elements.ancf.inertia import element_mass
-from beltdyn.elements.ancf.kind import ANCF
+from beltdyn.elements.ancf.kind import ANCF, element_mass
 from beltdyn.elements.ancf.material_damping import damping_force
 from beltdyn.elements.kind import DampingFactors
 from beltdyn.model import Belt

@@ -13,7 +13,7 @@ import pytest
 from scipy.optimize import brentq
 
 from beltdyn.model import Belt, Drive
-from beltdyn.solve.rest.static import find_equilibrium, standing
+from beltdyn.state.static import find_equilibrium, standing
 from beltdyn.system.build import belt_system, drive_system
 from beltdyn.system.observe import observe
 from beltdyn.system.state import laid, straight

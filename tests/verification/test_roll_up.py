@@ -19,7 +19,7 @@ from scipy.optimize import brentq
 
 from beltdyn.arrays import FloatArray
 from beltdyn.model import Belt
-from beltdyn.solve.rest.static import find_equilibrium
+from beltdyn.state.static import find_equilibrium
 from beltdyn.system.arrays import System
 from beltdyn.system.discretization import belt_section
 from beltdyn.system.state import State, straight

@@ -13,13 +13,11 @@ import pytest
 
 from beltdyn.arrays import FloatArray
 from beltdyn.model import Belt, Drive, Path
+from beltdyn.observation.recording import Recording, result_layout
 from beltdyn.results import Run
-from beltdyn.results.derived.wear import wear_by_belt
-from beltdyn.solve.integrators.trajectory import drive_task
-from beltdyn.solve.observation.recording import Recording
-from beltdyn.solve.observation.result_layout import result_layout
-from beltdyn.solve.rest.static import find_equilibrium, standing
-from beltdyn.solve.simulate import choose_integrator
+from beltdyn.results.derived.arc import wear_by_belt
+from beltdyn.solvers.trajectory import drive_task
+from beltdyn.state.static import find_equilibrium, standing
 from beltdyn.system.arrays import NO_TANGENT, Equations, System, TangentFactors
 from beltdyn.system.assembly import assemble
 from beltdyn.system.build import belt_system
@@ -28,6 +26,7 @@ from beltdyn.system.motion import new_equations, no_multipliers
 from beltdyn.system.observe import observe
 from beltdyn.system.ring_matrix import entries, places
 from beltdyn.system.state import State, laid, straight
+from beltdyn.transient.simulate import choose_integrator
 
 Cut = Callable[..., Drive]
 Measured = Callable[..., None]

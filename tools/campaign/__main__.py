@@ -23,7 +23,7 @@ os.environ.setdefault("OMP_NUM_THREADS", "1")
 
 from beltdyn.errors import BeltdynError
 from beltdyn.model import Drive
-from beltdyn.solve import simulate
+from beltdyn.transient.simulate import simulate
 from tools.campaign import damage, hostile, kills
 from tools.campaign.analyses import WORKS
 from tools.campaign.drive_mutations import bases

@@ -35,7 +35,7 @@ def _calibrated(drive: Drive, folder: Path) -> object:
 
 
 def _studied(drive: Drive, folder: Path) -> object:
-    from beltdyn.solve import study
+    from beltdyn.designs.study import study
 
     points = ParameterStudy(
         analysis="steady", number=[{"path": "belt.width", "values": "15, 25 mm"}], results=["efficiency"]

@@ -12,10 +12,12 @@ from typing import Any
 import numpy as np
 
 from beltdyn.analyses import ANALYSES
+from beltdyn.designs.study import study
 from beltdyn.model import Drive, ParameterStudy, load
 from beltdyn.results import open_result
-from beltdyn.solve import Progress, simulate, study
-from beltdyn.solve.checkpoint import checkpoint_file, read_checkpoint
+from beltdyn.solvers.progress import Progress
+from beltdyn.transient.checkpoint import checkpoint_file, read_checkpoint
+from beltdyn.transient.simulate import simulate
 
 _BLOCK = 512
 

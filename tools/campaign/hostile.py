@@ -9,7 +9,7 @@ from pathlib import Path
 
 from beltdyn.cli import main
 from beltdyn.model import dumps
-from beltdyn.solve.checkpoint import checkpoint_file
+from beltdyn.transient.checkpoint import checkpoint_file
 from tools.campaign.damage import two_pulley
 
 MARKER = "executed"
@@ -39,7 +39,7 @@ def payload(marker: Path) -> bytes:
 
 def dotted_payload(marker: Path) -> bytes:
     """A pickle that reaches a class through a module of beltdyn that imports its module."""
-    name = _text("beltdyn.solve.compilation") + _text("subprocess.Popen") + b"\x93"
+    name = _text("beltdyn.observation.compilation") + _text("subprocess.Popen") + b"\x93"
     return b"\x80\x04" + name + b"](" + _text("touch") + _text(str(marker)) + b"e\x85R."
 
 

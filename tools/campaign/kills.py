@@ -10,8 +10,8 @@ import numpy as np
 
 from beltdyn.errors import ModelError
 from beltdyn.results import Run
-from beltdyn.solve import simulate
-from beltdyn.solve.checkpoint import checkpoint_file
+from beltdyn.transient.checkpoint import checkpoint_file
+from beltdyn.transient.simulate import simulate
 from tools.campaign.damage import two_pulley
 
 _OFTEN = 1e-9

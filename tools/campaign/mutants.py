@@ -7,7 +7,7 @@ from collections.abc import Callable, Iterator
 from pathlib import Path
 
 from beltdyn.model import Drive, advise, install, load
-from beltdyn.solve import equilibrium
+from beltdyn.state.equilibrium import equilibrium
 from tools.campaign.drive_mutations import mutated
 from tools.campaign.trial import Outcome, outcome
 

@@ -6,8 +6,8 @@ from functools import lru_cache
 import numpy as np
 
 from beltdyn.arrays import BoolArray, FloatArray
-from beltdyn.plot.wrap import unwrap
 from beltdyn.results import Run
+from beltdyn.show.plot.contact import unwrap
 from validation.paper.kept import sliding
 from validation.paper.measures import rms
 

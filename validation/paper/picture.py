@@ -6,8 +6,8 @@ from typing import Literal, ParamSpec
 
 from matplotlib.figure import Figure
 
-from beltdyn.plot.saving import data_uri
-from beltdyn.plot.style import styled
+from beltdyn.show.plot.figures import data_uri
+from beltdyn.show.plot.style import styled
 from validation.paper.statement import Picture
 
 P = ParamSpec("P")

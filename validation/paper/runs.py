@@ -6,10 +6,12 @@ from pathlib import Path
 import numpy as np
 
 from beltdyn.arrays import FloatArray
+from beltdyn.designs.batch import simulate_all
 from beltdyn.model import Drive
 from beltdyn.results import Run
 from beltdyn.results.atomic import make_folder
-from beltdyn.solve import BatchProgress, simulate, simulate_all
+from beltdyn.solvers.progress import BatchProgress
+from beltdyn.transient.simulate import simulate
 from validation.paper.kept import keep, open_kept
 
 REPEATS = 5

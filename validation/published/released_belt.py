@@ -5,7 +5,7 @@ from typing import Literal
 import numpy as np
 
 from beltdyn.model import Belt
-from beltdyn.solve.rest.static import Equilibrium, find_equilibrium
+from beltdyn.state.static import Equilibrium, find_equilibrium
 from beltdyn.system.arrays import System
 from beltdyn.system.build import belt_system
 from beltdyn.system.state import State, laid

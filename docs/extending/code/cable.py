@@ -7,9 +7,8 @@ import numpy as np
 from beltdyn.arrays import FloatArray
 from beltdyn.elements.ancf.kind import ANCF
 from beltdyn.elements.ancf.shape_functions import bends, slopes
-from beltdyn.elements.kind import ElementKind
+from beltdyn.elements.kind import ElementKind, Section
 from beltdyn.elements.planar_curve import Density, add_density, begin_tangent, combine, curve_scratch, end_tangent
-from beltdyn.elements.section import Section
 from beltdyn.kernel import kernel
 from beltdyn.quadrature import Quadrature
 from beltdyn.stretch import stretching

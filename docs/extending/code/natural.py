@@ -5,9 +5,9 @@ import numpy as np
 from beltdyn.errors import ConvergenceError
 from beltdyn.model import Drive
 from beltdyn.results import Result, Variable, build_result
-from beltdyn.solve.rest.installation import bring_to_rest
-from beltdyn.solve.rest.static import standing
-from beltdyn.solve.vibration.vibrations import Vibrations
+from beltdyn.solvers.flutter import Vibrations
+from beltdyn.state.installation import bring_to_rest
+from beltdyn.state.static import standing
 
 _SLOWEST = 1.0
 """Angular frequency below which a mode is none, rad/s: what creeps, and what turns freely."""

@@ -2,9 +2,9 @@
 
 from matplotlib.axes import Axes
 
-from beltdyn.plot.registry import figure
-from beltdyn.plot.style import axes_or_new, color, dash, label, name_lines
 from beltdyn.results import Run
+from beltdyn.show.plot.registry import figure
+from beltdyn.show.plot.style import axes_or_new, color, dash, label, name_lines
 
 
 @figure()

@@ -1,25 +1,65 @@
 """Computation of the numbers below the canvas in a separate process: rest, steady running and modes."""
 
+import asyncio
 import multiprocessing
 import os
 import signal
 import threading
 import time
 import warnings
+from collections.abc import Callable
+from concurrent.futures import Future, ProcessPoolExecutor
+from concurrent.futures.process import BrokenProcessPool
+from multiprocessing.context import SpawnProcess
+from multiprocessing.process import BaseProcess
 from multiprocessing.synchronize import Event as SharedEvent
 from pathlib import Path
 from typing import TYPE_CHECKING, NamedTuple
 
-from beltdyn.app.preparing import tell_of_compilation
 from beltdyn.errors import BeltdynError
 from beltdyn.model import Drive, advise, install, loads, unstable_balance
 from beltdyn.results import Run
-from beltdyn.results.rest_sheet import rest_sheet
-from beltdyn.results.sheet import sheet
-from beltdyn.results.sheet_parts import Facts, Table
+from beltdyn.show.rest_sheet import rest_sheet
+from beltdyn.show.sheet import Facts, Table, sheet
 
 if TYPE_CHECKING:
-    from beltdyn.solve.progress import Progress
+    from beltdyn.solvers.progress import Progress
+
+
+# Tell the page when Numba compiles kernels
+
+PREPARING = "compiling kernels (once per machine, up to a minute)"
+"""The state shown meanwhile."""
+
+
+def tell_of_compilation(tell: Callable[[bool], None]) -> None:
+    """Report compilation of this process from now on.
+
+    Parameters
+    ----------
+    tell : callable
+        Is called with True when compilation begins, and with False when it ends. Kernels that come from the disk are
+        not told of.
+    """
+    from numba.core.event import Event, Listener, register
+
+    class Teller(Listener):  # type: ignore[misc]
+        """Counts functions being compiled, with nested calls."""
+
+        depth = 0
+
+        def on_start(self, event: Event) -> None:
+            self.depth += 1
+            if self.depth == 1:
+                tell(True)
+
+        def on_end(self, event: Event) -> None:
+            self.depth -= 1
+            if self.depth == 0:
+                tell(False)
+
+    register("numba:compile", Teller())
+
 
 _MODES = 6
 _MOST_TABS = 8
@@ -153,7 +193,7 @@ Shown = tuple[tuple[Table | Facts, ...], tuple[str, ...]]
 
 def _rest(asked: Asked) -> Shown:
     """The drive at rest, as `beltdyn check` finds it."""
-    from beltdyn.solve import bring_to_rest
+    from beltdyn.state.installation import bring_to_rest
 
     given = loads(asked.text, asked.folder)
     rest = bring_to_rest(given, _hear)
@@ -174,7 +214,7 @@ def _running(asked: Asked) -> Shown:
 
 
 def _modes(asked: Asked) -> Shown:
-    from beltdyn.solve import modes
+    from beltdyn.vibration.modes import modes
 
     found = modes(_steady(asked).drive, about=_steady(asked), count=_MODES)
     return sheet(found).parts, tuple(found.warnings)
@@ -182,8 +222,8 @@ def _modes(asked: Asked) -> Shown:
 
 def _steady(asked: Asked) -> Run:
     """Steady running under a speed and loads: from that before where there is one, which is quick."""
-    from beltdyn.solve import steady_state
-    from beltdyn.solve.steady_running.changed_drive import at_speed, driver_of, held_at, with_load
+    from beltdyn.points.changed_drive import at_speed, driver_of, held_at, with_load
+    from beltdyn.state.steady import steady_state
 
     known = _known.get(asked.tab)
     if known is None or known.text != asked.text:
@@ -212,3 +252,85 @@ def given_speed(drive: Drive, number: int) -> float:
     if pulley.speed is not None:
         return float(pulley.speed.at([drive.simulation.end])[0])
     return pulley.driven_speed()
+
+
+# The process that computes numbers for the tabs, so that the page does not block
+
+
+class Calculator:
+    """A process that answers requests one after another, started with the first."""
+
+    def __init__(self) -> None:
+        self._spawning = multiprocessing.get_context("spawn")
+        self._compiles, self._compiles_ahead = self._spawning.Event(), self._spawning.Event()
+        self._pool: ProcessPoolExecutor | None = None
+        self._ahead: SpawnProcess | None = None
+        self._starting = threading.Lock()
+
+    @property
+    def preparing(self) -> bool:
+        """Whether kernels are being compiled."""
+        return self._compiles.is_set() or self._compiles_ahead.is_set()
+
+    def look_ahead(self, asked: Asked) -> None:
+        """Load or compile kernels in advance.
+
+        What a drive at rest needs is loaded by the process that answers; running and modes are left to one of their
+        own, which begins when the drive is at rest.
+
+        Parameters
+        ----------
+        asked : Asked
+            A question about a drive at rest.
+        """
+        pool = self._process()
+
+        def go_on(found: Future[Answer]) -> None:
+            with self._starting:
+                if self._pool is pool and not found.cancelled() and found.exception() is None:
+                    self._ahead = self._spawning.Process(
+                        target=compile_ahead, args=(asked, self._compiles_ahead), daemon=True
+                    )
+                    self._ahead.start()
+
+        pool.submit(answer, asked).add_done_callback(go_on)
+
+    def _process(self) -> ProcessPoolExecutor:
+        if self._pool is None:
+            self._pool = ProcessPoolExecutor(1, self._spawning, begin, (self._compiles,))
+        return self._pool
+
+    async def ask(self, asked: Asked) -> Answer:
+        """Compute the numbers of a tab.
+
+        Parameters
+        ----------
+        asked : Asked
+            The question.
+
+        Returns
+        -------
+        Answer
+            Of a process that ended before it was done, as for want of memory, it says so; the next one is asked anew.
+        """
+        try:
+            return await asyncio.get_running_loop().run_in_executor(self._process(), answer, asked)
+        except BrokenProcessPool:
+            self.close()
+            return Answer((), (), "the computing process ended unexpectedly. Any change of the drive restarts it.", 0.0)
+
+    def close(self) -> None:
+        """End the processes at once, before resources shared with them are released."""
+        with self._starting:
+            pool, self._pool = self._pool, None
+            ahead, self._ahead = self._ahead, None
+        processes: list[BaseProcess] = [] if ahead is None else [ahead]
+        if pool is not None:
+            processes += (pool._processes or {}).values()
+            pool.shutdown(wait=False, cancel_futures=True)
+        for process in processes:
+            process.kill()
+        for process in processes:
+            process.join()
+        self._compiles.clear()
+        self._compiles_ahead.clear()

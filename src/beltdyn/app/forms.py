@@ -7,7 +7,7 @@ from typing import Any, Literal, NamedTuple
 
 from beltdyn.app.scene import groups
 from beltdyn.model import Drive, read_catalogue
-from beltdyn.parts.error_location import ErrorLocation, option_names
+from beltdyn.parts.text_file import ErrorLocation, option_names
 from beltdyn.parts.toml_edits import Location
 
 Form = Literal["text", "number", "choice", "flag", "point", "numbers", "group", "groups"]

@@ -13,11 +13,10 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 from beltdyn.analyses import ANALYSES
-from beltdyn.app.computing import prepare
-from beltdyn.app.preparing import PREPARING, tell_of_compilation
+from beltdyn.app.computing import PREPARING, prepare, tell_of_compilation
 from beltdyn.errors import BeltdynError
 from beltdyn.model import loads
-from beltdyn.results.sheet_parts import Facts, Table
+from beltdyn.show.sheet import Facts, Table
 
 if TYPE_CHECKING:
     from beltdyn.app.watching import Glimpse
@@ -201,7 +200,7 @@ class _Teller:
 
     def _remaining(self, progress: Any, part: float, now: float) -> float:
         """Time that is left, s, by the pace that the analysis tells, or else by that of this phase until now."""
-        from beltdyn.solve.progress import FORECAST
+        from beltdyn.solvers.progress import FORECAST
 
         begun, first = self._begun.setdefault(progress.phase, (now, part))
         if not math.isnan(progress.remaining):
@@ -218,9 +217,9 @@ class _Teller:
 
 def _outcome(found: Any, result: Path) -> Outcome:
     """What is shown of a result, with its report."""
-    from beltdyn.report import write_report
     from beltdyn.results import Run
-    from beltdyn.results.sheet import sheet
+    from beltdyn.show.report import write_report
+    from beltdyn.show.sheet import sheet
 
     if isinstance(found, Run) and not found.outputs:
         return Outcome(found.status)

@@ -1,18 +1,42 @@
 """Numbers below the canvas, updated with each change: rest, steady running and modes."""
 
 import time
+from collections.abc import Iterable, Sequence
+from html import escape
 from uuid import uuid4
 
 from nicegui import background_tasks, ui
 
-from beltdyn.app.calculator import Calculator
-from beltdyn.app.computing import Answer, Asked
-from beltdyn.app.preparing import PREPARING
+from beltdyn.app.computing import PREPARING, Answer, Asked, Calculator
 from beltdyn.app.session import Session
-from beltdyn.app.sheet_view import show_parts
 from beltdyn.errors import BeltdynError
 from beltdyn.model import install
-from beltdyn.results.rest_sheet import rest_sheet
+from beltdyn.show.rest_sheet import rest_sheet
+from beltdyn.show.sheet import Facts, Table
+
+# Tables and facts of a sheet on the page
+
+
+def show_parts(parts: Iterable[Table | Facts]) -> None:
+    """Show the parts of a sheet one below the other."""
+    for part in parts:
+        if part.title:
+            ui.label(part.title).classes("text-weight-medium q-mt-sm")
+        ui.html(table_html(part), sanitize=False).classes("bd-tables")
+
+
+def table_html(part: Table | Facts) -> str:
+    """A table or facts as HTML; all text is escaped."""
+    if isinstance(part, Table):
+        head, rows, kind = f"<thead>{_row('th', part.headings)}</thead>", part.rows, "bd-table"
+    else:
+        head, rows, kind = "", part.facts, "bd-table bd-facts"
+    return f'<table class="{kind}">{head}<tbody>{"".join(_row("td", row) for row in rows)}</tbody></table>'
+
+
+def _row(tag: str, cells: Sequence[str]) -> str:
+    return f"<tr>{''.join(f'<{tag}>{escape(cell)}</{tag}>' for cell in cells)}</tr>"
+
 
 _TITLES = {"rest": "At rest", "running": "Running", "modes": "Modes"}
 _PERCENT, _MINUTE = 0.01, 60.0

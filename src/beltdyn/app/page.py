@@ -1,22 +1,192 @@
 """The page: canvas, forms, messages and numbers of one tab."""
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterator, Mapping
+from contextlib import contextmanager
 from importlib.resources import files
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from nicegui import app, ui
-from nicegui.events import KeyEventArguments
+from nicegui.element import Element
+from nicegui.events import GenericEventArguments, KeyEventArguments
 
 from beltdyn.app.analysis_view import AnalysisView
-from beltdyn.app.canvas import Canvas
-from beltdyn.app.file_menu import FileMenu
 from beltdyn.app.form_view import FormView
 from beltdyn.app.numbers_view import NumbersView
 from beltdyn.app.scene import groups, scene
 from beltdyn.app.session import Session
-from beltdyn.app.workspace import Workspace
+from beltdyn.app.workspace import EMPTY, Example, Workspace, examples
 from beltdyn.errors import BeltdynError
 from beltdyn.parts.toml_edits import Edit
+
+if TYPE_CHECKING:
+    from beltdyn.app.watching import Glimpse
+
+
+# The canvas in the browser: shows a scene and reports actions on it
+
+
+class Canvas(Element, component="canvas.js"):
+    """An SVG on which pulleys are placed, dragged and sized.
+
+    Parameters
+    ----------
+    on_act : callable
+        Is given what is done: an action, the number of a pulley or tensioner, numbers in m, and whether it is done or
+        still going on.
+    on_choose : callable
+        Is given the number of the pulley that is chosen, or None.
+    """
+
+    def __init__(self, on_act: Callable[[Mapping[str, Any]], None], on_choose: Callable[[object], None]) -> None:
+        super().__init__()
+        self._props["scene"] = {}
+        self._props["selected"] = -1
+        self._props["live"] = None
+        self.on("act", lambda event: on_act(_told(event)))
+        self.on("choose", lambda event: on_choose(_told(event).get("number")))
+
+    def keep(self, text: str, name: str) -> None:
+        """Pass the drive file to the browser, which offers it for download if the server ends."""
+        self._props["text"], self._props["name"] = text, name
+
+    def show(self, scene: Mapping[str, Any], selected: int | None) -> None:
+        """Show a scene with a highlighted pulley."""
+        self._props["scene"] = dict(scene)
+        self._props["selected"] = -1 if selected is None else selected
+        self.update()
+        self.run_method("follow", None)
+
+    def follow(self, scene: Mapping[str, Any]) -> None:
+        """Show a scene during dragging, until the next call of `show`."""
+        self.run_method("follow", scene)
+
+    def watch(self, seen: "Glimpse | None") -> None:
+        """Show a snapshot of a run instead of the belt at rest, or the drive again with None."""
+        self._props["live"] = None if seen is None else seen.drawn
+        self.update()
+
+    def fit(self) -> None:
+        """Show the whole drive."""
+        self.run_method("fit")
+
+
+def _told(event: GenericEventArguments) -> Mapping[str, Any]:
+    """What the browser sent, if it is a mapping."""
+    return event.args if isinstance(event.args, Mapping) else {}
+
+
+# Open, save and download the drive file, and start from an example
+
+
+class FileMenu:
+    """The menu of the drive file.
+
+    Parameters
+    ----------
+    session : Session
+        The drive.
+    update : callable
+        Called after another drive is loaded.
+    """
+
+    def __init__(self, session: Session, update: Callable[[], None]) -> None:
+        self._session, self._update = session, update
+        for text, icon, action in (
+            ("New", "note_add", self.show_gallery),
+            ("Open", "folder_open", self.show_files),
+            ("Save", "save", self.save),
+            ("Download", "download", self.download),
+        ):
+            button = ui.button(text, icon=icon, on_click=action).props("flat dense no-caps color=white")
+            button.props(f'aria-label="{text}"').mark(text)
+
+    def show_gallery(self) -> None:
+        """Offer an empty drive file and the examples."""
+        with self._dialog("New drive") as dialog:
+            self._offer(dialog, Example("empty_canvas", "A belt without pulleys, to start from scratch.", EMPTY))
+            for one in examples():
+                self._offer(dialog, one)
+
+    def _offer(self, dialog: ui.dialog, one: Example) -> None:
+        def begin() -> None:
+            dialog.close()
+            self._begin(lambda: self._session.start(one.text))
+
+        with ui.item(on_click=begin).props("clickable").mark(f"example:{one.name}"), ui.item_section():
+            ui.item_label(one.name.replace("_", " "))
+            ui.item_label(one.about).props("caption")
+
+    def show_files(self) -> None:
+        """Offer the drive files of the folder."""
+        with self._dialog(f"Open a drive file in {self._session.workspace.folder.root}") as dialog:
+            names = self._session.workspace.folder.files()
+            if not names:
+                ui.label("This folder has no drive files.")
+            for name in names:
+                self._offer_file(dialog, name)
+
+    def _offer_file(self, dialog: ui.dialog, name: str) -> None:
+        def begin() -> None:
+            dialog.close()
+            self._begin(lambda: self._session.open(name))
+
+        with ui.item(on_click=begin).props("clickable").mark(f"file:{name}"), ui.item_section():
+            ui.item_label(name)
+
+    @contextmanager
+    def _dialog(self, title: str) -> Iterator[ui.dialog]:
+        """A dialog with a list, deleted when it is closed."""
+        with ui.dialog(value=True) as dialog, ui.card().classes("w-full"):
+            ui.label(title).classes("text-subtitle1")
+            if self._session.document.changed:
+                ui.label("Unsaved changes will be lost.").classes("bd-message bd-warning")
+            with ui.list().classes("w-full").props("dense separator"):
+                yield dialog
+        dialog.on("hide", dialog.delete)
+
+    def _begin(self, start: Callable[[], None]) -> None:
+        if self._tried(start):
+            self._update()
+
+    def save(self) -> None:
+        """Save under the name of the file, or ask for one."""
+        if self._session.name is None or not self._tried(self._save):
+            self.ask_name()
+
+    def _save(self, name: str | None = None) -> None:
+        ui.notify(f"Saved: {self._session.save(name)}", type="positive")
+        self._update()
+
+    def ask_name(self) -> None:
+        """Ask for a name, and save."""
+        with ui.dialog(value=True) as dialog, ui.card():
+            ui.label(f"Save in {self._session.workspace.folder.root}")
+            name = ui.input("file name", value=self._session.name or "drive.toml").props("autofocus").mark("file name")
+
+            def save() -> None:
+                if self._tried(lambda: self._save(name.value or "")):
+                    dialog.close()
+
+            name.on("keydown.enter", save)
+            with ui.row():
+                ui.button("Save", on_click=save).props("no-caps").mark("save under name")
+                ui.button("Cancel", on_click=dialog.close).props("flat no-caps")
+        dialog.on("hide", dialog.delete)
+
+    def download(self) -> None:
+        """Download the drive file in the browser."""
+        ui.download.content(
+            self._session.document.text.encode(), (self._session.name or "drive.toml").rpartition("/")[2], "text/plain"
+        )
+
+    def _tried(self, action: Callable[[], None]) -> bool:
+        try:
+            action()
+        except BeltdynError as error:
+            ui.notify(str(error), type="negative", multi_line=True, timeout=10_000, close_button="Close")
+            return False
+        return True
+
 
 _TABS = ("drive", "belt", "pulley", "tensioner", "contact", "simulation", "limits")
 _LISTS = ("pulley", "tensioner")

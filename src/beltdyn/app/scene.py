@@ -10,8 +10,8 @@ from beltdyn.app.draft import Draft
 from beltdyn.model import Drive, Path
 from beltdyn.model.belt import read_side
 from beltdyn.model.carrier import moved
-from beltdyn.model.picture import outline
 from beltdyn.parts.quantity import to_si
+from beltdyn.show.notebook import outline
 
 MILLIMETRES = 1e3
 _EMPTY = (-250.0, -150.0, 250.0, 150.0)

@@ -11,10 +11,10 @@ from matplotlib.colors import to_hex
 
 from beltdyn.app.scene import MILLIMETRES
 from beltdyn.parts.quantity import RPM
-from beltdyn.plot.style import tension_colors
-from beltdyn.report.motion import along_belt
 from beltdyn.results import Run, open_run
-from beltdyn.results.sheet_parts import Table
+from beltdyn.show.plot.style import tension_colors
+from beltdyn.show.report.motion import along_belt
+from beltdyn.show.sheet import Table
 
 _OFTEN = 0.4
 """Least interval of snapshots, s."""

@@ -11,8 +11,7 @@ from cyclopts import Parameter as Option
 from cyclopts.validators import Number
 
 from beltdyn.analyses import Analysis
-from beltdyn.cli.batch import analyse_several
-from beltdyn.cli.given import read_given, takes_runs
+from beltdyn.cli.batch import analyse_several, read_given, takes_runs
 from beltdyn.cli.output import Extras, analyse_to, doubt, ended, require_output
 from beltdyn.errors import ModelError
 

@@ -14,14 +14,10 @@ from beltdyn.cli.analysis import analysis_command
 from beltdyn.cli.catalogue import catalogue
 from beltdyn.cli.check import check
 from beltdyn.cli.console import show_error, take_any_terminal
-from beltdyn.cli.demo import demo
-from beltdyn.cli.export import export
 from beltdyn.cli.fmu import fmu
-from beltdyn.cli.new import new
+from beltdyn.cli.new import new, schema
 from beltdyn.cli.page import app as page
-from beltdyn.cli.plot import plot
-from beltdyn.cli.report import report
-from beltdyn.cli.schema import schema
+from beltdyn.cli.show import demo, export, plot, report
 from beltdyn.cli.study import study
 from beltdyn.errors import BeltdynError
 from beltdyn.signals import ending_in_order, exit_code

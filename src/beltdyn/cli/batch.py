@@ -2,21 +2,62 @@
 
 from collections import Counter
 from collections.abc import Mapping, Sequence
+from inspect import signature
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, get_args
 
 from beltdyn.analyses import Analysis
 from beltdyn.cli.console import lines_of_file, show, show_error, show_table, show_warnings
-from beltdyn.cli.given import read_given
 from beltdyn.cli.output import Extras, doubt, require_output, write_extras
 from beltdyn.cli.progress import runs_bar
 from beltdyn.errors import ModelError, SimulationError
 from beltdyn.signals import exit_code
 
 if TYPE_CHECKING:
+    from beltdyn.designs.worker import Ending
     from beltdyn.model import Drive
     from beltdyn.results import Run
-    from beltdyn.solve import Ending
+
+
+# The input file of a command: a drive, or a run whose drive is used
+
+
+def takes_runs(analysis: Analysis) -> bool:
+    """Whether a run can replace the drive: the first parameter of the function may be one."""
+    from beltdyn.results import Run
+
+    first = next(iter(signature(analysis.function, eval_str=True).parameters.values()))
+    return Run in get_args(first.annotation)
+
+
+def read_given(analysis: Analysis, file: Path) -> "Drive | Run":
+    """Read a drive file, or a result file if the analysis accepts runs.
+
+    Parameters
+    ----------
+    analysis
+        What is asked for.
+    file
+        The file.
+
+    Raises
+    ------
+    ModelError
+        If it is neither, or the drive cannot be used, or the results are those of another analysis.
+    """
+    from beltdyn.model import load
+    from beltdyn.results import Run, open_result
+    from beltdyn.results.dataset import is_result
+
+    if not (takes_runs(analysis) and is_result(file)):
+        return load(file)
+    found = open_result(file)
+    if not isinstance(found, Run):
+        raise ModelError(
+            f"{file} holds results of {found.kind}, not of a run. Give the result file of `beltdyn run` or "
+            "`beltdyn steady`, or a drive file."
+        )
+    return found
 
 
 def analyse_several(
@@ -70,7 +111,7 @@ def analyse_several(
         from beltdyn.results.atomic import make_folder
 
         make_folder(folder)
-    from beltdyn.solve.batch import analyse_all
+    from beltdyn.designs.batch import analyse_all
 
     with runs_bar() as report:
         wanted = {results[file]: given[file] for file in files}

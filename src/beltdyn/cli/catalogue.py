@@ -55,7 +55,7 @@ def catalogue(
         return
     _show(profile, entry)
     if figure is not None:
-        from beltdyn import plot
+        from beltdyn.show import plot
 
         drawn = plot.save_stretch(entry, figure, f"{profile}, {_size(entry)}", overwrite=force)
         show(f"\nTension over strain: {drawn}")

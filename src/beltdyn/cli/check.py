@@ -6,8 +6,8 @@ from typing import Annotated
 from cyclopts import Parameter
 
 from beltdyn.cli.console import lines_of_file, show, show_error, show_warnings
+from beltdyn.cli.output import show_parts
 from beltdyn.cli.progress import progress_bar
-from beltdyn.cli.result import show_parts
 from beltdyn.errors import BeltdynError, ConvergenceError, ModelError
 
 
@@ -55,8 +55,8 @@ def check(
 def _check(file: Path, figure: Path | None, force: bool) -> None:
     """Check one drive file."""
     from beltdyn.model import advise, install, load, unstable_balance
-    from beltdyn.results.rest_sheet import rest_sheet
-    from beltdyn.solve import bring_to_rest
+    from beltdyn.show.rest_sheet import rest_sheet
+    from beltdyn.state.installation import bring_to_rest
 
     drive = given = load(file)
     if figure is not None:
@@ -79,7 +79,7 @@ def _check(file: Path, figure: Path | None, force: bool) -> None:
     if figure is None:
         show(f"Plot the layout: beltdyn check {file} --figure layout.png")
     else:
-        from beltdyn import plot
+        from beltdyn.show import plot
 
         show(f"Layout: {plot.save_layout(drive, figure, installation, force)}")
     if failure:

@@ -1,5 +1,6 @@
 """`beltdyn new`."""
 
+import json
 from importlib.resources import files
 from pathlib import Path
 from typing import Annotated
@@ -27,7 +28,7 @@ def new(
     if example is None:
         name, text = "drive", files("beltdyn.cli").joinpath("new_drive.toml").read_text(encoding="utf-8")
     else:
-        from beltdyn.model.examples import example_text
+        from beltdyn.model.toml_reader import example_text
 
         name, text = example.removesuffix(".toml").replace("-", "_"), example_text(example)
     target = file or Path(f"{name}.toml")
@@ -61,3 +62,13 @@ def write_text(file: Path, text: str) -> None:
     make_folder(file.parent)
     with atomic_path(file, lambda _: False) as temporary:
         temporary.write_text(text, encoding="utf-8")
+
+
+# `beltdyn schema`
+
+
+def schema() -> None:
+    """Print the JSON schema of drive files, for checks and completion in editors."""
+    from beltdyn.model import json_schema
+
+    show(json.dumps(json_schema(), indent=2, ensure_ascii=False))

@@ -5,15 +5,55 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 from beltdyn.analyses import Analysis
-from beltdyn.cli.console import show, show_error
+from beltdyn.cli.console import show, show_error, show_facts, show_table, show_warnings
 from beltdyn.cli.progress import progress_bar
-from beltdyn.cli.result import show_result
 from beltdyn.errors import LostOutputError, ModelError, SimulationError
 from beltdyn.signals import exit_code
 
 if TYPE_CHECKING:
     from beltdyn.model import Drive
     from beltdyn.results import Result, Run
+    from beltdyn.show.sheet import Facts, Table
+
+
+# A result on the screen: its sheet, and its warnings
+
+
+def show_result(result: "Result") -> None:
+    """Write tables and facts of a result: 100 columns, and as few lines as a drive of seven pulleys needs to fit.
+
+    Parameters
+    ----------
+    result
+        The result.
+    """
+    from beltdyn.show.sheet import Table, sheet
+
+    title, parts = sheet(result)
+    if title:
+        show(f"\n{title}")
+    if parts:
+        show()
+    show_parts(parts)
+    if result.warnings and not (parts and not isinstance(parts[-1], Table)):
+        show()
+    show_warnings(result.warnings)
+
+
+def show_parts(parts: "Sequence[Table | Facts]") -> None:
+    """Write the parts of a sheet, with a line between."""
+    from beltdyn.show.sheet import Table
+
+    for number, part in enumerate(parts):
+        if number:
+            show()
+        if isinstance(part, Table):
+            show_table(*part)
+        else:
+            if part.title:
+                show(part.title)
+            show_facts(part.facts)
+
 
 DOUBTFUL = 4
 
@@ -54,7 +94,7 @@ def require_output(path: Path, files: Iterable[Path], extras: Extras, force: boo
     if extras.csv:
         require_tables(tables_folder(path), force)
     if extras.report:
-        from beltdyn.report import report_file, require_report
+        from beltdyn.show.report import report_file, require_report
 
         require_report(report_file([path]), force)
 
@@ -67,7 +107,7 @@ def write_extras(result: "Result", path: Path, extras: Extras, force: bool) -> N
     if extras.csv:
         show(f"Tables: {', '.join(str(table) for table in write_csv(result, tables_folder(path), force))}")
     if extras.report:
-        from beltdyn.report import report_file, write_report
+        from beltdyn.show.report import report_file, write_report
 
         show(f"Report: {write_report(open_result(path), report_file([path]), force)}")
 
@@ -104,7 +144,7 @@ def analyse_to(
         show(f"\n{nothing_kept(path)}")
         return result
     if result.status == "interrupted":
-        from beltdyn.solve.checkpoint import checkpoint_file
+        from beltdyn.transient.checkpoint import checkpoint_file
 
         goes_on = f" Resume with: beltdyn {analysis.name} --resume {path}" if checkpoint_file(path).exists() else ""
         show(f"\nInterrupted. The results computed so far are kept.{goes_on}")

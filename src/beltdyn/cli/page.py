@@ -40,10 +40,8 @@ def app(
         raise ModelError(
             f"the page needs {error.name}, which is not installed. Install beltdyn with its extra beltdyn[app]."
         ) from None
-    from beltdyn.app.calculator import Calculator
-    from beltdyn.app.computing import Asked
-    from beltdyn.app.folder import Folder
-    from beltdyn.app.workspace import Workspace
+    from beltdyn.app.computing import Asked, Calculator
+    from beltdyn.app.workspace import Folder, Workspace
 
     folder = Folder(Path() if file is None else file.parent)
     if file is not None:

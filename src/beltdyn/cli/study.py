@@ -7,8 +7,8 @@ from cyclopts import Parameter as Option
 from cyclopts.validators import Number
 
 from beltdyn.cli.console import show, show_error
+from beltdyn.cli.output import show_result
 from beltdyn.cli.progress import progress_bar
-from beltdyn.cli.result import show_result
 from beltdyn.errors import ModelError, SimulationError
 from beltdyn.signals import exit_code
 
@@ -48,8 +48,8 @@ def study(
         Recompute all points, and also replace files that beltdyn did not write.
     """
     from beltdyn.cli.output import Extras, nothing_kept, write_extras
+    from beltdyn.designs.study import study as compute
     from beltdyn.results.atomic import stamp, target_of
-    from beltdyn.solve.study import study as compute
 
     path = output or file.with_suffix(".nc")
     if target_of(file) in (target_of(path), target_of(path.with_suffix(".csv"))):

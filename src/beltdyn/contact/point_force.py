@@ -17,15 +17,87 @@ goes by the velocity v_t against the shaft, which changes by dv_t - v_n db.  On 
 p_t = 0.
 """
 
-from typing import NamedTuple
+from math import sqrt
+from typing import Final, NamedTuple
 
 from beltdyn.contact.friction import friction_force
 from beltdyn.contact.law import ContactLaw, PulleyState
 from beltdyn.contact.normal import NormalForce, normal_force
 from beltdyn.contact.penetration import Approach, slip_velocity
-from beltdyn.contact.pulley_moment import moment_arm, pulley_moment
-from beltdyn.contact.rolling_resistance import RollingResistance, rolling_resistance
 from beltdyn.kernel import kernel
+
+# Moment of the contact forces on the pulley (Eq. 23)
+
+
+@kernel
+def moment_arm(point: Approach, law: ContactLaw) -> tuple[float, float]:
+    """Arm of friction about the pulley's shaft, m, and its change with the distance of the point.
+
+    On a smooth circle the arm is R - d as published (Eq. 23), the distance of the point; or R, with which slip is taken
+    (Eq. 22), so that friction can only lose energy: f_t v_t in place of f_t (v_t + omega d).
+    """
+    return (point.rim, 0.0) if law.arm_to_rim else (point.lever, 1.0)
+
+
+@kernel
+def pulley_moment(normal: float, friction: float, offset: float, arm: float) -> float:
+    """Moment per length about the pulley's shaft, f_n (p . t) - arm f_t (Eq. 23).
+
+    Parameters
+    ----------
+    normal
+        Normal force f_n on the belt along n, N/m.
+    friction
+        Friction force f_t on the belt along t, N/m.
+    offset
+        Arm p . t of the normal force, m; zero on a smooth circle.
+    arm
+        Arm of friction, m.
+
+    Returns
+    -------
+    float
+        N m per m of reference length, counter-clockwise positive.
+    """
+    return normal * offset - arm * friction
+
+
+# Rolling resistance: the compression loss of the belt on a pulley, distributed over the arc
+
+CREEPING: Final = 0.01
+"""v_0: belt speed below which rolling resistance vanishes smoothly, m/s."""
+
+
+class RollingResistance(NamedTuple):
+    """Rolling resistance at a point and its derivatives."""
+
+    force: float
+    """f_r on the belt along t, N/m."""
+    by_normal: float
+    """df_r / df_n."""
+    by_velocity: float
+    """df_r / dv_t, N s/m^2."""
+
+
+@kernel
+def rolling_resistance(coefficient: float, normal: float, velocity: float) -> RollingResistance:
+    """Rolling resistance at a point of the belt.
+
+    Parameters
+    ----------
+    coefficient
+        rho, of the pulley; 0 for none.
+    normal
+        Normal force f_n, N/m; where it pulls there is none.
+    velocity
+        v_t, circumferential velocity of the point against the shaft, m/s.
+    """
+    if coefficient == 0.0 or normal <= 0.0:
+        return RollingResistance(0.0, 0.0, 0.0)
+    root = sqrt(velocity * velocity + CREEPING * CREEPING)
+    share = -coefficient * velocity / root
+    fading = CREEPING / root
+    return RollingResistance(share * normal, share, -coefficient * normal / root * fading * fading)
 
 
 class PointForce(NamedTuple):

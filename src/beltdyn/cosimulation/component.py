@@ -8,11 +8,9 @@ from typing import NamedTuple
 from beltdyn.cosimulation.interface import TOLERANCE, Interface
 from beltdyn.errors import ModelError
 from beltdyn.model import Drive, load
-from beltdyn.solve import Simulator
-from beltdyn.solve.checkpoint import STATE
-from beltdyn.solve.packing import Packing
-from beltdyn.solve.progress import Report
-from beltdyn.solve.simulator import SimulatorState
+from beltdyn.solvers.progress import Report
+from beltdyn.transient.checkpoint import STATE, Packing
+from beltdyn.transient.simulator import Simulator, SimulatorState
 
 DRIVE_FILE = "drive.toml"
 

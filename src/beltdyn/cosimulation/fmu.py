@@ -15,9 +15,9 @@ from beltdyn.cosimulation.component import DRIVE_FILE, Component
 from beltdyn.cosimulation.interface import Interface, choose_inputs, choose_outputs
 from beltdyn.errors import ModelError
 from beltdyn.model import Drive, dumps
-from beltdyn.model.earlier_run import EarlierRun
+from beltdyn.model.simulation import EarlierRun
 from beltdyn.results.atomic import atomic_path, is_marked, require_replaceable
-from beltdyn.solve.progress import Report
+from beltdyn.solvers.progress import Report
 
 _MAKERS = MappingProxyType({"2.0": ("pythonfmu", "beltdyn_fmi2"), "3.0": ("pythonfmu3", "beltdyn_fmi3")})
 """Package that makes units, and the module that a unit begins with, by the version of FMI."""

@@ -10,7 +10,7 @@ from beltdyn.errors import ModelError
 from beltdyn.model import Drive, Pulley, RotaryTensioner
 from beltdyn.parts.messages import suggest
 from beltdyn.results import RECORDED
-from beltdyn.solve.simulator import output_names
+from beltdyn.transient.simulator import output_names
 
 _FILE = "interface.json"
 

@@ -8,7 +8,7 @@ from beltdyn.elements.ancf.kind import ANCF as ANCF
 from beltdyn.elements.kind import ELEMENTS as ELEMENTS
 from beltdyn.elements.kind import Element as Element
 from beltdyn.elements.kind import ElementKind as ElementKind
+from beltdyn.elements.kind import Section as Section
 from beltdyn.elements.quintic import QUINTIC as QUINTIC
-from beltdyn.elements.section import Section as Section
 from beltdyn.elements.three_node_beam import THREE_NODE_BEAM as THREE_NODE_BEAM
 from beltdyn.elements.truss import TRUSS as TRUSS

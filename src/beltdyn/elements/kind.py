@@ -2,16 +2,95 @@
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
+from math import sqrt
 from typing import Any, NamedTuple, Protocol
 
 import numpy as np
 
 from beltdyn.arrays import FloatArray
-from beltdyn.elements.section import Section
-from beltdyn.elements.tension import axial_tension
 from beltdyn.kernel import kernel
 from beltdyn.quadrature import Quadrature
 from beltdyn.records import record
+from beltdyn.stretch import StretchParameters, stretching
+
+# Stiffness, damping and inertia of the belt's section, integrated over the thickness (Eqs. 8, 14 and 15)
+
+
+class Section(NamedTuple):
+    """The factors of Eqs. 14 and 15 after integration over the section, and the section's inertia and damping."""
+
+    stretch: StretchParameters
+    """Parameters of the law of stretch, E A alpha1 among them; their type says which law it is."""
+    bending: float
+    """E I alpha2, N m^2."""
+    quartic: float
+    """E I4 alpha2 with I4 = b h^5 / 80, N m^4."""
+    shear: float
+    """k_s G A alpha2, N."""
+    shear_gradient: float
+    """k_s G I alpha2, N m^2."""
+    thickness: float
+    """E A of the thickness stretch, N; no alpha touches it."""
+    mass: float
+    """rho A, kg/m."""
+    rotary_inertia: float
+    """rho I, kg m."""
+    axial_damping: float = 0.0
+    """E A alpha1 times the damping time of stretch, N s."""
+    bending_damping: float = 0.0
+    """E I alpha2 times the damping time of bending, N m^2 s."""
+    bending_hysteresis: float = 0.0
+    """Modulus of the hysteresis of bending that elements themselves take point by point, N m^2."""
+    passing_length: float = 1.0
+    """Length over which slow rates of bending are smoothed in it, m."""
+
+    @property
+    def axial(self) -> float:
+        """E A alpha1 without strain, N."""
+        return self.stretch.stiffness
+
+
+@kernel(inline=True)
+def is_damped(section: Section) -> bool:
+    """Whether the material of a section has damping, or hysteresis of its own."""
+    return section.axial_damping > 0.0 or section.bending_damping > 0.0 or section.bending_hysteresis > 0.0
+
+
+# Tension by the stretch of the centreline, 2 g dW/dG, and by its rate
+
+
+@kernel
+def axial_force(law: StretchParameters, metric: float) -> float:
+    """Tension carried by the stretch of the centreline, 2 sqrt(G) dW/dG, N.
+
+    Parameters
+    ----------
+    law
+        Parameters of the law of stretch.
+    metric
+        G = q . q with q = dr/dx, dimensionless.
+    """
+    return 2.0 * stretching(law, metric).slope * metric**0.5
+
+
+@kernel
+def damping_tension(metric: float, metric_rate: float, section: Section) -> float:
+    """Tension by the rate of stretch, EA alpha1 tau_s dg/dt with g = |q|, N: to be added to `axial_force`.
+
+    Parameters
+    ----------
+    metric, metric_rate
+        q . q and its rate, 1/s.
+    section
+        With its factors of damping.
+    """
+    return 0.5 * section.axial_damping * metric_rate / sqrt(metric)
+
+
+@kernel
+def axial_tension(element: "Element", metric: float, metric_rate: float) -> float:
+    """Tension of an element by the stretch law of its section, N: both parts."""
+    return axial_force(element.section.stretch, metric) + damping_tension(metric, metric_rate, element.section)
 
 
 class Element(Protocol):
@@ -100,7 +179,7 @@ class ElementKind:
         ``work.by_flow``, with a tangent.
     tension : kernel
         Tension that results report, N, from (element, metric, rate): q . q with q = dr/dx, and its rate. By default
-        `beltdyn.elements.tension.axial_tension`.
+        `beltdyn.elements.kind.axial_tension`.
     scratch : mapping of str to str or dtype
         Further fields of ``work``, for `beltdyn.records.record`.
     points : int

@@ -16,15 +16,19 @@ import numpy as np
 
 from beltdyn.arrays import FloatArray
 from beltdyn.elements.ancf.kind import ANCF
-from beltdyn.elements.kind import DampingFactors, ElementKind
-from beltdyn.elements.planar_curve import Density, add_density, begin_tangent, combine, curve_scratch, end_tangent
-from beltdyn.elements.planar_curve_damping import (
+from beltdyn.elements.kind import DampingFactors, ElementKind, Section
+from beltdyn.elements.planar_curve import (
     CurveMotion,
+    Density,
     PointDamping,
     add_curve_damping,
+    add_density,
+    begin_tangent,
+    combine,
     curve_damping_scratch,
+    curve_scratch,
+    end_tangent,
 )
-from beltdyn.elements.section import Section
 from beltdyn.kernel import kernel
 from beltdyn.quadrature import Quadrature, gauss_points
 from beltdyn.stretch import stretching

@@ -5,8 +5,7 @@ from typing import NamedTuple
 import numpy as np
 
 from beltdyn.arrays import FloatArray
-from beltdyn.elements.kind import ElementKind
-from beltdyn.elements.section import Section
+from beltdyn.elements.kind import ElementKind, Section
 from beltdyn.kernel import kernel
 from beltdyn.quadrature import Quadrature
 from beltdyn.stretch import StretchParameters, stretching

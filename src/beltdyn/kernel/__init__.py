@@ -1,10 +1,17 @@
 """Compiled code: the decorator of kernels and the cache of their machine code."""
 
 from beltdyn.kernel.by_type import by_type
-from beltdyn.kernel.cache import CACHE_VARIABLE, PACKAGE, KernelCacheWarning, holds_kernels, kernel_cache, source_hash
-from beltdyn.kernel.choice import choice
-from beltdyn.kernel.decorator import Kernel, interpreted, kernel
-from beltdyn.kernel.version import PLAIN_VARIABLE, compiles_quickly
+from beltdyn.kernel.cache import (
+    CACHE_VARIABLE,
+    PACKAGE,
+    PLAIN_VARIABLE,
+    KernelCacheWarning,
+    compiles_quickly,
+    holds_kernels,
+    kernel_cache,
+    source_hash,
+)
+from beltdyn.kernel.decorator import Kernel, choice, interpreted, kernel
 
 __all__ = [
     "CACHE_VARIABLE",

@@ -4,7 +4,7 @@ from collections.abc import Callable, Mapping
 from functools import cached_property
 from typing import Any, ClassVar
 
-from beltdyn.kernel.version import compiles_quickly
+from beltdyn.kernel.cache import compiles_quickly
 
 
 class ByType:

@@ -10,10 +10,8 @@ import numba
 from numba.extending import overload
 
 from beltdyn.kernel.by_type import ByType
-from beltdyn.kernel.cache import holds_kernels, kernel_cache
-from beltdyn.kernel.seal import SealedFolder
-from beltdyn.kernel.setting import setting
-from beltdyn.kernel.version import compiles_quickly
+from beltdyn.kernel.cache import compiles_quickly, holds_kernels, kernel_cache
+from beltdyn.kernel.seal import SealedFolder, setting
 
 OPTIONS = {"nogil": True, "error_model": "numpy", "fastmath": {"contract", "nsz"}}
 """Options of every kernel."""

@@ -27,8 +27,7 @@ from numba.core.serialize import dumps
 from numba.core.types.misc import unliteral
 
 from beltdyn.kernel.cache import ENTRY
-from beltdyn.kernel.seal import read_sealed, warn_of_damage, write_sealed
-from beltdyn.kernel.setting import setting
+from beltdyn.kernel.seal import read_sealed, setting, warn_of_damage, write_sealed
 
 _NO_EXTRAS = {"no_cfunc_wrapper": True, "no_rewrites": True, "_nrt": False}
 """Left away: functions for C, rewriting passes, Numba's memory management; kernels need none of them."""

@@ -8,11 +8,37 @@ import hashlib
 import secrets
 import shutil
 import warnings
-from contextlib import suppress
+from collections.abc import Iterator
+from contextlib import contextmanager, suppress
 from functools import cache
 from pathlib import Path
+from typing import Any
+
+import numba
 
 from beltdyn.kernel.cache import NUMBA_FILES, KernelCacheWarning
+
+# Temporary settings of Numba
+
+
+@contextmanager
+def setting(name: str, value: Any) -> Iterator[None]:
+    """Change a setting of Numba temporarily; other packages keep theirs.
+
+    Parameters
+    ----------
+    name
+        Its name in `numba.config`.
+    value
+        What it is meanwhile.
+    """
+    before = getattr(numba.config, name)
+    setattr(numba.config, name, value)
+    try:
+        yield
+    finally:
+        setattr(numba.config, name, before)
+
 
 _HEADER = b"beltdyn kernel 1\n"
 _SEAL = ".sha256"

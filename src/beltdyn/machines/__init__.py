@@ -5,9 +5,9 @@ force with exact derivatives.  Each family has a module `kinds`, which imports i
 knows the kinds is made from it.
 """
 
-from beltdyn.machines.links.kinds import FrictionClutch, Isolator, OneWayClutch
+from beltdyn.machines.links import FrictionClutch, Isolator, OneWayClutch
 from beltdyn.machines.links.link import HubLink
-from beltdyn.machines.loads.kinds import (
+from beltdyn.machines.loads import (
     AngleSpeedTable,
     AngleTable,
     BandBrake,
@@ -23,10 +23,10 @@ from beltdyn.machines.loads.kinds import (
     ServoMotor,
 )
 from beltdyn.machines.loads.load import Load
+from beltdyn.machines.profiles import Constant, CosineRamp, CosineRampPublished, Ramp, Step, Table
 from beltdyn.machines.profiles.harmonic import Harmonic
-from beltdyn.machines.profiles.kinds import Constant, CosineRamp, CosineRampPublished, Ramp, Step, Table
 from beltdyn.machines.profiles.profile import Profile
-from beltdyn.machines.tensioners.kinds import FixedTensioner, RotaryTensioner, SlidingTensioner
+from beltdyn.machines.tensioners import FixedTensioner, RotaryTensioner, SlidingTensioner
 from beltdyn.machines.tensioners.tensioner import MovingTensioner, Tensioner
 
 __all__ = [

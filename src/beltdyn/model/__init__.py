@@ -36,18 +36,14 @@ from beltdyn.model.catalogue import Entry, read_catalogue
 from beltdyn.model.contact import Contact
 from beltdyn.model.drive import Drive
 from beltdyn.model.end import FixedEnd, PulledEnd, WeightEnd
-from beltdyn.model.examples import example
 from beltdyn.model.installation import Installation, describe, install, tensioner_balances
-from beltdyn.model.limits import Limits
-from beltdyn.model.parameter_study import ParameterStudy
 from beltdyn.model.path import Path
 from beltdyn.model.pulley import Pulley
 from beltdyn.model.resolution import ERROR_LIMITS, Running, elements_needed, layer_lengths, mesh_errors, unresolved
-from beltdyn.model.simulation import Simulation
-from beltdyn.model.steady import Steady
-from beltdyn.model.study import CalibrationStudy, OptimizationStudy
+from beltdyn.model.simulation import Limits, Simulation, Steady
+from beltdyn.model.study import CalibrationStudy, OptimizationStudy, ParameterStudy
 from beltdyn.model.tensioner_balance import TensionerBalance
-from beltdyn.model.toml_reader import json_schema, load, loads
+from beltdyn.model.toml_reader import example, json_schema, load, loads
 from beltdyn.model.toml_writer import dumps
 
 __all__ = [

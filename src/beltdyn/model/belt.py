@@ -23,16 +23,19 @@ from pydantic.fields import FieldInfo
 from beltdyn.arrays import FloatArray
 from beltdyn.elements import ANCF, ELEMENTS, ElementKind
 from beltdyn.errors import ModelError
-from beltdyn.model.belt_as_sold import as_sold, changes_as_sold, section_with, without_section
 from beltdyn.model.belt_form import (
     DAMPING_TIMES,
     FORMS,
     LOSS_FACTORS,
     OWN,
     Nominal,
+    as_sold,
+    changes_as_sold,
     describe_forms,
     in_new_form,
+    section_with,
     to_material,
+    without_section,
 )
 from beltdyn.model.stretch_curve import StretchCurve
 from beltdyn.parts.part import Part

@@ -11,7 +11,6 @@ from typing import Any, Literal
 from pydantic import Field, ValidationError, ValidationInfo, model_validator
 
 from beltdyn.model.stretch_curve import StretchCurve, with_initial_slope
-from beltdyn.parts.error_location import shorten
 from beltdyn.parts.messages import explain, reason
 from beltdyn.parts.part import Part
 from beltdyn.parts.quantity import (
@@ -25,7 +24,7 @@ from beltdyn.parts.quantity import (
     Ratio,
     Time,
 )
-from beltdyn.parts.text_file import LONGEST_TOML, parse_toml, read_text
+from beltdyn.parts.text_file import LONGEST_TOML, parse_toml, read_text, shorten
 from beltdyn.stretch import LAWS
 
 

@@ -12,10 +12,18 @@ import numpy as np
 
 from beltdyn.arrays import FloatArray
 from beltdyn.model.belt import Belt
-from beltdyn.model.graded_mesh import Laid, graded_mesh, layer_length
 from beltdyn.model.path import Path
 from beltdyn.model.pulley import Pulley
-from beltdyn.model.resolution import PRESSURES, Running, elements_needed, fewest, layer_lengths
+from beltdyn.model.resolution import (
+    PRESSURES,
+    Laid,
+    Running,
+    elements_needed,
+    fewest,
+    graded_mesh,
+    layer_length,
+    layer_lengths,
+)
 
 TENSION_LOST = 0.005
 """Share of the tension lost by penetration."""

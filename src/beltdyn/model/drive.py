@@ -21,15 +21,12 @@ from beltdyn.model.completion import Completed, complete, take_up
 from beltdyn.model.contact import Contact
 from beltdyn.model.defaults import critical_damping
 from beltdyn.model.end import AnyEnd, PathEnd, ends_on_path
-from beltdyn.model.frame import Frame, choose_frame, element_of
 from beltdyn.model.layout import Given, Layout, lay_out, loaded
-from beltdyn.model.limits import Limits
 from beltdyn.model.path import Path
 from beltdyn.model.pulley import Pulley, friction_on
 from beltdyn.model.routing import radii, span_names
-from beltdyn.model.simulation import Simulation
+from beltdyn.model.simulation import Frame, Limits, Simulation, Steady, choose_frame, element_of
 from beltdyn.model.static_estimate import StaticEstimate
-from beltdyn.model.steady import Steady
 from beltdyn.model.tensioner_balance import balance_tensioners
 from beltdyn.parts.change import changed_arguments
 from beltdyn.parts.part import Part
@@ -278,7 +275,7 @@ class Drive(Part):
 
     def _repr_html_(self) -> str:
         """Show the drive in a notebook: presentation lies above, and is found by its name."""
-        html: str = import_module("beltdyn.results.notebook").drive_html(self)
+        html: str = import_module("beltdyn.show.notebook").drive_html(self)
         return html
 
     @property

@@ -6,7 +6,7 @@ import numpy as np
 from pydantic import Field
 
 from beltdyn.arrays import FloatArray
-from beltdyn.machines.tensioners.direction import Direction
+from beltdyn.machines.tensioners.tensioner import Direction
 from beltdyn.parts.part import Part
 from beltdyn.parts.quantity import Coordinate, Flag, Force, Mass, Name
 

@@ -59,7 +59,7 @@ def install(drive: Drive) -> Installation:
     """Estimate tension, penetration and tensioner positions for the belt at rest.
 
     `beltdyn.model.static_estimate` and `beltdyn.model.tensioner_balance` have the equations, which leave out bending
-    stiffness and weight; `beltdyn.solve.bring_to_rest` finds static equilibrium.
+    stiffness and weight; `beltdyn.bring_to_rest` finds static equilibrium.
 
     Parameters
     ----------

@@ -11,7 +11,7 @@ from beltdyn.machines.loads.load import Load
 from beltdyn.model.drive import Drive
 from beltdyn.model.installation import Installation, install
 from beltdyn.model.pulley import Pulley
-from beltdyn.parts.finding import Finding, listing
+from beltdyn.parts.messages import Finding, listing
 from beltdyn.parts.quantity import RPM
 
 _DIAMETER_POWER = 5.6

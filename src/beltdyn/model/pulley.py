@@ -3,23 +3,71 @@
 import math
 from collections.abc import Mapping, Sequence
 from types import MappingProxyType
-from typing import Any, Self
+from typing import TYPE_CHECKING, Annotated, Any, Literal, Self, Union
 
 import numpy as np
-from pydantic import ConfigDict, Field, field_validator, model_validator
+from pydantic import ConfigDict, Field, create_model, field_validator, model_validator
 from pydantic.fields import FieldInfo
 
 from beltdyn.arrays import FloatArray
+from beltdyn.contact.parameter import Parameter
+from beltdyn.contact.surface import KINDS, SurfaceKind
 from beltdyn.machines.links.registry import AnyHubLink
 from beltdyn.machines.loads.registry import AnyLoad
-from beltdyn.machines.profiles.crank import SpeedHarmonics
+from beltdyn.machines.profiles.harmonic import SpeedHarmonics
 from beltdyn.machines.profiles.profile import Profile
 from beltdyn.machines.profiles.registry import SpeedProfile, TorqueProfile
 from beltdyn.model.belt import Belt, Side
 from beltdyn.model.contact import Contact
-from beltdyn.model.surface import AnySurface
 from beltdyn.parts.part import Part
-from beltdyn.parts.quantity import Coordinate, Inertia, Length, Mass, Name, Ratio
+from beltdyn.parts.quantity import Coordinate, Inertia, Length, Mass, Name, Ratio, quantity
+
+# Surfaces of pulleys other than smooth circles, a part for each kind
+
+
+class Surface(Part):
+    """A surface other than a smooth circle, which turns with its pulley."""
+
+    if TYPE_CHECKING:  # the field that tells the kinds apart
+        kind: str
+
+        def __init__(self, **keys: Any) -> None: ...
+
+    @property
+    def parameters(self) -> dict[str, float]:
+        """Parameters of its kind, by name."""
+        return {parameter.name: getattr(self, parameter.name) for parameter in KINDS[self.kind].parameters}
+
+    @property
+    def reach(self) -> float:
+        """Largest deviation beyond the effective radius, m."""
+        return KINDS[self.kind].reach(self.parameters)
+
+
+def _field(parameter: Parameter) -> Any:
+    """Field of a parameter."""
+    meaning = f"{parameter.meaning}, in {parameter.unit}" if parameter.unit else parameter.meaning
+    default: dict[str, Any] = {} if parameter.default is None else {"default": parameter.default}
+    return Annotated[float, quantity(parameter.unit)], Field(gt=parameter.above, description=meaning, **default)
+
+
+def _part(kind: SurfaceKind) -> type[Surface]:
+    """Part of a kind of surface."""
+    fields = {parameter.name: _field(parameter) for parameter in kind.parameters}
+    title = "".join(word.capitalize() for word in kind.name.split("_"))
+    named: Any = (Literal[kind.name], Field(kind.name, description="the kind of surface"))
+    part: type[Surface] = create_model(f"{title}Surface", __base__=Surface, kind=named, **fields)
+    return part
+
+
+SURFACES = {kind.name: _part(kind) for kind in KINDS.values()}
+"""Parts of surfaces by the names of their kinds."""
+
+if TYPE_CHECKING:
+    AnySurface = Surface
+else:
+    AnySurface = Annotated[Union[tuple(SURFACES.values())], Field(discriminator="kind")]  # noqa: UP007
+
 
 _SPATIAL = 3
 """Coordinates of a point in space."""

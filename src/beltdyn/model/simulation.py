@@ -1,15 +1,186 @@
 """Settings of a run: duration, outputs, start and integrator."""
 
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
 from math import floor, inf
-from typing import Literal, Self
+from pathlib import Path
+from typing import Annotated, Any, Literal, NamedTuple, Self
 
-from pydantic import Field, model_validator
+import numpy as np
+from pydantic import Discriminator, Field, Tag, ValidationInfo, field_validator, model_validator
 
-from beltdyn.model.earlier_run import EarlierRun, Start
-from beltdyn.model.instants import Instants
+from beltdyn.arrays import BoolArray, FloatArray, IntArray
+from beltdyn.elements import ANCF, QUINTIC
+from beltdyn.model.belt import Belt
+from beltdyn.model.contact import Contact
 from beltdyn.parts.messages import apart
 from beltdyn.parts.part import Part
-from beltdyn.parts.quantity import Ratio, Time
+from beltdyn.parts.quantity import Force, Ratio, Time
+
+# The state of an earlier run as initial state: its result file, and an instant
+
+
+class EarlierRun(Part):
+    """The state of an earlier run as initial state: positions and velocities of belt and bodies."""
+
+    file: str = Field(description="the result file of the earlier run, relative to the folder of the drive file")
+    time: Time | None = Field(
+        None,
+        ge=0,
+        description="the instant of a field output of the earlier run, in s; by default the last one",
+    )
+
+    def __str__(self) -> str:
+        return self.file if self.time is None else f"{self.file} at {self.time:g} s"
+
+    @field_validator("file", mode="before")
+    @classmethod
+    def _starts_at_the_drive_file(cls, file: Any, info: ValidationInfo) -> Any:
+        """The whole path, with which the drive means the same wherever its text goes."""
+        if isinstance(file, Path):
+            file = str(file)
+        if not isinstance(file, str) or not file.strip() or "\0" in file:
+            raise ValueError("must be the path of a result file, as text")
+        base = (info.context or {}).get("base")
+        return str((base or Path()).absolute() / file)
+
+
+def _which(given: Any) -> str:
+    """What is given, by the name of the part, or the type in JSON."""
+    return EarlierRun.__name__ if isinstance(given, Mapping | EarlierRun) else "string"
+
+
+Start = Annotated[
+    Annotated[Literal["equilibrium", "laid", "steady"], Tag("string")] | Annotated[EarlierRun, Tag("EarlierRun")],
+    Discriminator(_which),
+]
+"""The initial state of a run: a name, or an earlier run."""
+
+
+# Output instants, counted but never listed as a whole
+
+SAME = 1e-11
+"""Instants closer than this coincide, s."""
+
+
+@dataclass(frozen=True)
+class Instants:
+    """Multiples of an interval from the start, and the end; fields along the belt are kept at some of them.
+
+    Attributes
+    ----------
+    interval : float
+        s.
+    end : float
+        s; a multiple that is nearer to it than a billionth of it is left out.
+    stride : int
+        Number of instants from one at which fields are recorded to the next; the end is one too.
+    begin : float
+        The first of them, s.
+    """
+
+    interval: float
+    end: float
+    stride: int = 1
+    begin: float = 0.0
+
+    @property
+    def count(self) -> int:
+        """The number of instants."""
+        length = self.end - self.begin
+        multiples = int(np.floor(length / self.interval * (1.0 + 1e-12)))
+        return multiples + 1 + (length - multiples * self.interval > 1e-9 * self.end)
+
+    @property
+    def fields(self) -> int:
+        """The number of field outputs."""
+        return (self.count - 1) // self.stride + 1 + ((self.count - 1) % self.stride > 0)
+
+    def has_fields(self, numbers: IntArray) -> BoolArray:
+        """Whether fields are recorded at instants, by their numbers."""
+        return np.asarray((numbers % self.stride == 0) | (numbers == self.count - 1))
+
+    def __getitem__(self, numbers: IntArray) -> FloatArray:
+        """Some of them, s, by their numbers."""
+        return np.where(numbers < self.count - 1, self.begin + self.interval * numbers, self.end)
+
+    def until(self, time: float) -> int:
+        """The number of instants up to a time (s)."""
+        return int(self.counts_until(np.array([time]))[0])
+
+    def counts_until(self, times: FloatArray) -> IntArray:
+        """The number of instants up to each of several times (s)."""
+        multiples = np.floor((times - self.begin + SAME) / self.interval) + 1.0
+        before_end = np.clip(multiples, 0.0, self.count - 1.0).astype(np.int64)
+        return np.where(times >= self.end - SAME, self.count, before_end)
+
+
+# The mesh of steady running
+
+
+class Steady(Part):
+    """The mesh of steady running, of maps and of all other analyses based on it.
+
+    Examples
+    --------
+    >>> bd.Steady(force_tolerance=0.02).force_tolerance
+    0.02
+    """
+
+    mesh: Literal["auto", "uniform"] = Field(
+        "auto",
+        description="the mesh: graded towards the ends of arcs and refined by the solution, or `belt.elements` equal "
+        "elements, as published",
+    )
+    force_tolerance: Ratio | None = Field(
+        None,
+        gt=0,
+        lt=1,
+        description="the error of contact forces, over the largest force on a pulley, to which the mesh is refined, "
+        "below 1; 0.01 by default",
+    )
+
+    @model_validator(mode="after")
+    def _is_refined_or_not(self) -> Self:
+        if self.mesh == "uniform" and self.force_tolerance is not None:
+            raise ValueError(
+                f'force_tolerance = {self.force_tolerance:g} is incompatible with mesh = "uniform", which is not '
+                'refined. Remove it, or set mesh = "auto"'
+            )
+        return self
+
+
+# Limits of the results of a drive
+
+
+class Limits(Part):
+    """Limits of results, checked by reports. They do not affect computed results.
+
+    Examples
+    --------
+    >>> bd.Limits(largest_hub_load="0.8 kN", largest_slip=0.01).largest_hub_load
+    800.0
+    """
+
+    largest_slip: Ratio | None = Field(
+        None, gt=0, lt=1, description="the largest slip of a pulley against the first one, over its speed"
+    )
+    largest_hub_load: Force | None = Field(None, gt=0, description="the largest hub load at any time, in N")
+    largest_tension: Force | None = Field(None, gt=0, description="the largest span tension at any time, in N")
+    least_tension: Force | None = Field(None, ge=0, description="the least span tension at any time, in N")
+    least_margin: Ratio | None = Field(
+        None, gt=0, description="the least capstan margin: the factor on all loads at which gross slip begins"
+    )
+
+    @model_validator(mode="after")
+    def _leave_room(self) -> Self:
+        least, largest = self.least_tension, self.largest_tension
+        if least is not None and largest is not None and not least < largest:
+            raise ValueError(
+                f"least_tension = {least:g} N must be below largest_tension = {largest:g} N. Change one of them"
+            )
+        return self
+
 
 _MOST_OUTPUTS = 1_000_000
 _MOST_STEPS = 1_000_000_000
@@ -180,3 +351,76 @@ class Simulation(Part):
                 f"limit is {_MOST_STEPS:,}. Increase it, or omit it: rtol controls the step size"
             )
         return self
+
+
+# The mesh of runs over time: staying in place, or travelling with the belt
+
+FrameName = Literal["staying", "travelling"]
+"""The kind of mesh: staying or travelling."""
+
+
+class Frame(NamedTuple):
+    """The mesh of a run over time."""
+
+    name: FrameName
+    reason: str
+    """The reason; empty for the default."""
+
+    @property
+    def stays(self) -> bool:
+        """Whether the belt flows through the mesh."""
+        return self.name == "staying"
+
+    @property
+    def words(self) -> str:
+        """The name and the reason."""
+        return f"{self.name}, {self.reason}" if self.reason else self.name
+
+
+def choose_frame(simulation: Simulation, belt: Belt, contact: Contact, is_open: bool) -> Frame:
+    """Choose the mesh of a run: staying, unless the drive needs features of the travelling mesh.
+
+    Parameters
+    ----------
+    simulation, belt, contact
+        Parts of the drive.
+    is_open
+        Whether the belt has ends.
+    """
+    if simulation.frame is not None:
+        return Frame(simulation.frame, "as given")
+    misfits = [("simulation", *one[:2]) for one in simulation.misfits_staying]
+    reasons = [
+        *["the belt is open"] * is_open,
+        *(_written(*one) for one in (*misfits, *element_settings(belt, contact))),
+    ]
+    return Frame("travelling", f"since {reasons[0]}") if reasons else Frame("staying", "")
+
+
+def element_settings(belt: Belt, contact: Contact) -> Iterator[tuple[str, str, Any]]:
+    """Settings of elements and quadrature without effect on a staying mesh: group, key and value."""
+    if belt.discretization not in (None, QUINTIC.name):
+        yield "belt", "discretization", belt.discretization
+    for group, part, keys in (
+        ("belt", belt, ("integration", "quadrature_points")),
+        ("contact", contact, ("sampling", "integration", "quadrature_points")),
+    ):
+        for key in keys:
+            value = getattr(part, key)
+            if value != type(part).model_fields[key].default:
+                yield group, key, value
+
+
+def unused_settings(belt: Belt, contact: Contact) -> list[str]:
+    """Settings of elements that a staying mesh does not use, such as 'belt.discretization = "truss"'."""
+    return [_written(*one) for one in element_settings(belt, contact)]
+
+
+def element_of(belt: Belt, frame: Frame) -> str:
+    """Name of the elements of a belt on a mesh."""
+    return QUINTIC.name if frame.stays else belt.discretization or ANCF.name
+
+
+def _written(group: str, key: str, value: Any) -> str:
+    """A key and its value, as in a drive file."""
+    return f'{group}.{key} = "{value}"' if isinstance(value, str) else f"{group}.{key} = {value}"

@@ -5,10 +5,10 @@ from collections.abc import Mapping, Sequence
 from typing import Any, NoReturn
 
 from beltdyn.errors import ModelError
-from beltdyn.parts.error_location import entry_name, shorten
 from beltdyn.parts.messages import suggest
 from beltdyn.parts.part import Part
 from beltdyn.parts.quantity import unit_of
+from beltdyn.parts.text_file import entry_name, shorten
 
 _STEP = re.compile(r"\.?([^.\[\]]+)|\[([^\[\]]+)\]")
 

@@ -1,14 +1,216 @@
 """Points of a table, from keys or a CSV file, and their rules."""
 
-from collections.abc import Mapping, Sequence
+import codecs
+import csv
+import re
+from collections import Counter
+from collections.abc import Iterator, Mapping, Sequence
 from itertools import pairwise
 from pathlib import Path
 from typing import Any, NamedTuple
 
+import numpy as np
 from pydantic import ValidationInfo
 
-from beltdyn.parts.csv_rows import NUMERIC, SEPARATORS, CsvRow, read_rows, row_of_units, unit_in_brackets
-from beltdyn.parts.error_location import shorten
+from beltdyn.errors import ModelError
+from beltdyn.parts.messages import reason
+from beltdyn.parts.quantity import is_unit, to_si
+from beltdyn.parts.text_file import LONGEST_TABLE, read_bytes, shorten
+
+# Rows of CSV files from programs, spreadsheets and loggers: encodings, separators, decimal commas, headings
+
+SEPARATORS = {",": "comma", ";": "semicolon", "\t": "tab"}
+"""Separators of cells, and their names."""
+
+NUMERIC = re.compile(r"\s*[-+]?[.,]?\d")
+"""The start of a numeric cell."""
+
+_NUMBER = re.compile(r"[+-]?(?:\d+[.,]?\d*|[.,]\d+)(?:[eE][+-]?\d+)?")
+
+_COMMA = re.compile(r"\s*[+-]?\d*,\d+(?:[eE][+-]?\d+)?\s*")
+_POINT = re.compile(r"\s*[+-]?\d*\.\d+(?:[eE][+-]?\d+)?\s*")
+_BINARY = re.compile(r"[\x00-\x08\x0e-\x1f]")
+_IN_BRACKETS = re.compile(r".*\[(?P<unit>[^\]]*)\]\s*")
+
+
+class CsvRow(NamedTuple):
+    """A line of a file."""
+
+    line: int
+    """Its number, counted from 1."""
+    cells: list[str]
+    """The cells; numbers with decimal points."""
+
+
+class CsvRows(NamedTuple):
+    """The lines of a file without empty lines and comments."""
+
+    separator: str
+    rows: list[CsvRow]
+
+
+def read_rows(path: Path, hint: str = "") -> CsvRows:
+    """Read the lines of a CSV file that are neither empty nor comments.
+
+    Text is UTF-8, with or without a byte-order mark, UTF-16 with one, or else Windows-1252, of which Latin-1 is a part.
+    Cells are separated by tabs or semicolons if these are in more than half of the lines, and else by commas. Where no
+    comma separates and no number has a decimal point, numbers may have decimal commas.
+
+    Parameters
+    ----------
+    path : Path
+        The file.
+    hint : str
+        What a message adds where there is no such file.
+
+    Raises
+    ------
+    ValueError
+        If it cannot be read as CSV: what goes behind the name of the file.
+    """
+    try:
+        lines = _decoded(read_bytes(path, LONGEST_TABLE)).splitlines()
+    except UnicodeDecodeError as error:
+        raise ValueError("is not a text file. Save it as CSV in UTF-8") from error
+    except (OSError, ValueError) as error:
+        raise ValueError(f"cannot be read: {reason(error)}{hint}") from error
+    separator = _separator(lines)
+    reader = csv.reader(lines, delimiter=separator)
+    try:
+        found = [CsvRow(reader.line_num, row) for row in reader if any(map(str.strip, row)) and row[0][:1] != "#"]
+    except csv.Error as error:
+        raise ValueError(f"is not valid CSV in line {reader.line_num}: {error}. Correct this line") from error
+    cells = [cell for row in found for cell in row.cells]
+    if separator != "," and not any(map(_POINT.fullmatch, cells)):
+        found = [CsvRow(line, [_with_point(cell) for cell in row]) for line, row in found]
+    return CsvRows(separator, found)
+
+
+def without_preamble(rows: list[CsvRow]) -> list[CsvRow]:
+    """Drop the preamble of loggers above the headings: first lines with fewer cells than most lines."""
+    width = max(Counter(len(row.cells) for row in rows).items(), key=lambda item: (item[1], item[0]), default=(0, 0))[0]
+    first = next((place for place, row in enumerate(rows) if len(row.cells) >= width), 0)
+    return rows[first:]
+
+
+def row_of_units(cells: list[str]) -> list[str] | None:
+    """The units of a row such as ``s; [rpm]; (N m)``, empty for "-"; None if it is not a row of units.
+
+    One unit that is known makes it one, where no cell is a number but 1: others are refused when they are used.
+    """
+    units = [cell.strip().strip("[]()").strip() for cell in cells]
+    units = ["" if unit in ("-", "1") else unit for unit in units]
+    known = any(unit == "%" or is_unit(unit) for unit in units)
+    return units if known and not any(map(_NUMBER.fullmatch, units)) else None
+
+
+def unit_in_brackets(heading: str) -> str:
+    """The unit that ends a heading such as ``speed [rpm]``; empty without one."""
+    match = _IN_BRACKETS.fullmatch(heading)
+    return match["unit"] if match and is_unit(match["unit"]) else ""
+
+
+def _decoded(data: bytes) -> str:
+    """A text, whatever it is encoded in."""
+    if data.startswith((codecs.BOM_UTF16_LE, codecs.BOM_UTF16_BE)):
+        text = data.decode("utf-16")
+    else:
+        try:
+            text = data.decode("utf-8-sig")
+        except UnicodeDecodeError:
+            text = data.decode("cp1252")
+    if control := _BINARY.search(text):
+        raise UnicodeDecodeError("utf-8", data, control.start(), control.end(), "no text")
+    return text
+
+
+def _separator(lines: list[str]) -> str:
+    """What separates the cells of a file."""
+    filled = [line for line in lines if line.strip() and not line.startswith("#")]
+    most = (mark for mark in ("\t", ";") if 2 * sum(mark in line for line in filled) > len(filled))
+    return next(most, ",")
+
+
+def _with_point(cell: str) -> str:
+    return cell.replace(",", ".") if _COMMA.fullmatch(cell) else cell
+
+
+# Tables that a user gives to an analysis: CSV files with headings, such as "driver speed [rpm]"
+
+_HEADING = re.compile(r"\s*(?P<what>.*?)\s*(?:\[(?P<unit>[^\]]*)\])?\s*")
+
+
+class HeadedColumn(NamedTuple):
+    """A column of a table."""
+
+    what: str
+    """What its heading says, without the unit."""
+    unit: str
+    """The unit in brackets; empty without."""
+    path: Path
+    cells: list[tuple[int, str]]
+    """Numbers of lines, and what stands there."""
+
+    def values(self, unit: str) -> list[float]:
+        """Numbers in an SI unit, or as they are where either has none; those in % as parts of one.
+
+        Raises
+        ------
+        ModelError
+            If a cell is no number, or the unit is another one.
+        """
+        return [self._number(line, cell, unit) for line, cell in self.cells]
+
+    def _number(self, line: int, cell: str, unit: str) -> float:
+        try:
+            number = to_si(f"{float(cell)!r} {self.unit}", unit) if self.unit and unit else float(cell)
+            if self.unit == "%" and not unit:
+                number *= 0.01
+            if not np.isfinite(number):
+                raise ValueError("must be a finite number")
+        except ValueError as error:
+            where = f'{self.path}, line {line}: "{cell.strip()}" below "{self.what}"'
+            raise ModelError(f"{where} {error}. Correct this line.") from error
+        return number
+
+
+def read_headed(option: str, path: Path) -> list[HeadedColumn]:
+    """Read a table.
+
+    Parameters
+    ----------
+    option
+        Name of the option that names it, for messages.
+    path
+        The CSV file.
+
+    Raises
+    ------
+    ModelError
+        If it cannot be read, has no rows, or lines of other lengths than its headings.
+    """
+    try:
+        rows = without_preamble(read_rows(path).rows)
+    except ValueError as error:
+        raise ModelError(f'{option} = "{path}" {error}.') from error
+    if len(rows) < 2:
+        raise ModelError(f'{option} = "{path}" has no rows. Give a line of headings, and lines of numbers below.')
+    headings, body = rows[0].cells, rows[1:]
+    for number, line in body:
+        if len(line) != len(headings):
+            raise ModelError(f"{path}, line {number}: {len(line)} cells but {len(headings)} headings.")
+    if body[1:] and (units := row_of_units(body[0].cells)):
+        pairs = zip(headings, units, strict=True)
+        headings, body = [f"{name} [{unit}]" if unit and " [" not in name else name for name, unit in pairs], body[1:]
+    return list(_columns(path, headings, body))
+
+
+def _columns(path: Path, headings: list[str], rows: list[CsvRow]) -> Iterator[HeadedColumn]:
+    for place, heading in enumerate(headings):
+        match = _HEADING.fullmatch(heading)
+        what, unit = (match["what"], match["unit"] or "") if match else (heading.strip(), "")
+        yield HeadedColumn(what, unit, path, [(number, line[place]) for number, line in rows])
+
 
 _MOST_ROWS = 250_000
 """Lines of the longest table of a drive, which takes some seconds to read."""

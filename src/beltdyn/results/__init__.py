@@ -6,19 +6,15 @@ from typing import TYPE_CHECKING, Any
 from beltdyn.results.balance import Balance, power_balance
 from beltdyn.results.checks import Finding
 from beltdyn.results.export import export
-from beltdyn.results.layout import Layout
+from beltdyn.results.layout import Layout, describe_size, expected_bytes, require_room
 from beltdyn.results.limits import KeyNumber, key_numbers
 from beltdyn.results.means import PulleySummary, SpanSummary, TensionerSummary
-from beltdyn.results.provenance import provenance
+from beltdyn.results.provenance import Resolution, mesh_error_attribute, provenance
 from beltdyn.results.recorder import FileRecorder, MemoryRecorder, Recorder, Status
-from beltdyn.results.resolution import Resolution, mesh_error_attribute
 from beltdyn.results.result import Result, build_result
-from beltdyn.results.run import Run, open_result, open_run
+from beltdyn.results.run import Run, StaticResult, open_result, open_run, static_result
 from beltdyn.results.schema import COORDINATES, RECORDED, VARIABLES, Variable
-from beltdyn.results.size import describe_size, expected_bytes, require_room
-from beltdyn.results.static import StaticResult, static_result
-from beltdyn.results.steady_comparison import Compared, steady_comparison
-from beltdyn.results.summary import Summary, summarize
+from beltdyn.results.summary import Compared, Summary, steady_comparison, summarize
 from beltdyn.results.tables import write_csv
 
 if TYPE_CHECKING:

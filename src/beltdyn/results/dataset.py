@@ -2,23 +2,68 @@
 
 from collections.abc import Mapping
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import h5py
 import numpy as np
+import xarray as xr
 from numpy.typing import NDArray
+from xarray.backends.h5netcdf_ import H5NetCDFArrayWrapper, H5NetCDFStore
+from xarray.core.indexing import LazilyIndexedArray
 
 from beltdyn.analyses import RUN
 from beltdyn.errors import ModelError
-from beltdyn.results.atomic import target_of
+from beltdyn.results.atomic import lock_file, target_of
 from beltdyn.results.checksums import DamageError, verify
 from beltdyn.results.layout import Layout
-from beltdyn.results.lock import lock_file
 from beltdyn.results.schema import AXIS_NAMES, COORDINATES, DERIVED, FORMAT, OPTIONAL, TIMES, VARIABLES, Variable
 from beltdyn.results.staged_file import is_marked
 
-if TYPE_CHECKING:
-    import xarray as xr
+# Values in a result file, read where they are used; what keeps them from being read is told of the file
+
+
+def open_values(path: Path) -> xr.Dataset:
+    """Open a file of HDF5; values that cannot be read later raise a `ModelError`.
+
+    Parameters
+    ----------
+    path : Path
+        The file.
+
+    Returns
+    -------
+    xarray.Dataset
+        What it holds.
+    """
+    store = _Store.open(path)
+    try:
+        return xr.open_dataset(store, decode_times=False)
+    except BaseException:
+        store.close()
+        raise
+
+
+class _Values(H5NetCDFArrayWrapper):
+    """The values of a variable."""
+
+    __slots__ = ()
+
+    def _getitem(self, key: Any) -> Any:
+        try:
+            return super()._getitem(key)  # type: ignore[no-untyped-call]
+        except Exception as error:  # readers of HDF5 raise many unrelated types where bytes are wrong
+            raise ModelError(unreadable(Path(self.datastore.ds.filename), error)) from error
+
+
+class _Store(H5NetCDFStore):
+    """A file whose values are `_Values`."""
+
+    __slots__ = ()
+
+    def open_store_variable(self, name: str, var: Any) -> xr.Variable:
+        variable: xr.Variable = super().open_store_variable(name, var)  # type: ignore[no-untyped-call]
+        return variable.copy(data=LazilyIndexedArray(_Values(name, self)))  # type: ignore[no-untyped-call,arg-type]
+
 
 _OURS = ("drive", "status")
 """Global attributes that every result has."""
@@ -128,8 +173,6 @@ def read_dataset(path: Path) -> "xr.Dataset":
         If the file cannot be read, is not a result of beltdyn, or has a format that is not known yet; later, where
         values are read, if they are damaged.
     """
-    from beltdyn.results.stored_values import open_values
-
     try:
         require_intact(path)
         dataset = open_values(path)

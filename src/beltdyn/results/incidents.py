@@ -8,7 +8,7 @@ import numpy as np
 from beltdyn.arrays import BoolArray
 from beltdyn.model import Drive
 from beltdyn.results.mechanics import rim_speeds
-from beltdyn.results.recorded import Recorded, names
+from beltdyn.results.schema import Recorded, names
 
 SLIDING_LIMIT = 1e-3
 """Sliding speed of a whole arc, over the belt speed, above which it is gross slip."""

@@ -9,10 +9,9 @@ import numpy as np
 from beltdyn.analyses import RUN, STATIC
 from beltdyn.arrays import FloatArray
 from beltdyn.results.means import pulley_means
-from beltdyn.results.recorded import names, runs_steadily
 from beltdyn.results.result import Result
 from beltdyn.results.run import Run
-from beltdyn.results.shown import in_words
+from beltdyn.results.schema import in_words, names, runs_steadily
 
 if TYPE_CHECKING:
     import xarray as xr

@@ -5,12 +5,11 @@ from dataclasses import dataclass
 import numpy as np
 
 from beltdyn.model import Drive
-from beltdyn.results.cycles import mean_window
+from beltdyn.results.cycles import Window, mean_window
 from beltdyn.results.mechanics import rim_speeds
-from beltdyn.results.recorded import Recorded, names
+from beltdyn.results.schema import Recorded, names
 from beltdyn.results.slip_margin import capstan_margin
 from beltdyn.results.slipping import slip_parts
-from beltdyn.results.window import Window
 
 
 @dataclass(frozen=True, slots=True)

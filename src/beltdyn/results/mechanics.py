@@ -4,16 +4,60 @@ Along the last axis lie pulleys, spans or contact points. Span i leaves pulley i
 last one reaches pulley 0.
 """
 
-from typing import TYPE_CHECKING
-
 import numpy as np
+import xarray as xr
+from numpy.typing import ArrayLike
 
 from beltdyn.arrays import BoolArray, FloatArray, IntArray
+from beltdyn.contact.bezier import BINOMIALS
 from beltdyn.elements import ELEMENTS, ElementKind
 from beltdyn.model import Drive
+from beltdyn.model.path import span_directions, span_points, wrap_angles
 
-if TYPE_CHECKING:
-    import xarray as xr
+# Places on the arcs of pulleys, from circles alone
+
+
+def arc_ends(drive: Drive, centers: FloatArray) -> tuple[FloatArray, FloatArray]:
+    """Give the angles at which the belt's path reaches pulleys and the wrap angles.
+
+    Parameters
+    ----------
+    drive : Drive
+        Effective radii and sides.
+    centers : ndarray, shape (..., pulleys, 2)
+        Where the pulleys are, m.
+
+    Returns
+    -------
+    inlet, wrap : ndarray, shape (..., pulleys)
+        Angle of the tangent point where the span before each pulley ends, from the x axis; wrap angle; rad.
+    """
+    radii, ends = drive.path.radii, drive.path.ends
+    reached = np.roll(span_points(centers, radii, ends)[..., 1, :], 1, axis=-2)[..., : len(radii), :] - centers
+    return np.arctan2(reached[..., 1], reached[..., 0]), wrap_angles(span_directions(centers, radii, ends), radii)
+
+
+def angle_from_inlet(place: FloatArray, inlet: ArrayLike, wrap: ArrayLike, turning: ArrayLike) -> FloatArray:
+    """Angle of points around a pulley in the direction of ascending belt coordinate.
+
+    Parameters
+    ----------
+    place : ndarray, shape (k, 2)
+        Points, from the pulley's center, m.
+    inlet, wrap : array_like, shape (k,) or a number
+        See `arc_ends`.
+    turning : array_like, shape (k,) or a number
+        1, or -1 for a pulley at the belt's back.
+
+    Returns
+    -------
+    ndarray, shape (k,)
+        rad, zero at the inlet, negative shortly before it.
+    """
+    free = 0.5 * (2.0 * np.pi - np.asarray(wrap))
+    turned = np.asarray(turning) * (np.arctan2(place[:, 1], place[:, 0]) - np.asarray(inlet))
+    return np.asarray(np.mod(turned + free, 2.0 * np.pi) - free)
+
 
 UNLOADED = 1e-4
 """Difference of the tensions at a pulley, over their sum, up to which it counts as unloaded."""
@@ -197,3 +241,70 @@ def gross_sliding(sliding: FloatArray, pressed: BoolArray, drive: Drive) -> Floa
     turning = np.array([pulley.turning for pulley in drive.pulleys])
     nearest = np.where(lowest > 0.0, lowest, np.minimum(highest, 0.0))
     return np.asarray(turning * np.where(np.any(pressed, axis=-1), nearest, 0.0))
+
+
+# The belt's centreline as smooth curves, from nodal coordinates
+
+POINTS = 17
+"""Points drawn on an element, ends included."""
+
+
+def centerline(kind: ElementKind, coordinates: FloatArray, lengths: FloatArray, points: int = POINTS) -> FloatArray:
+    """Points on the centreline, by the Bezier curves of the elements.
+
+    Parameters
+    ----------
+    kind : ElementKind
+        Of the elements; `mechanics.recorded_kind` of a result.
+    coordinates : ndarray, shape (nodes, k)
+        Nodal coordinates of a result: positions (m) first.
+    lengths : ndarray, shape (elements,)
+        Reference length from each node to the next along the belt, m.
+    points : int
+        Points on a curve, ends included.
+
+    Returns
+    -------
+    ndarray, shape (nodes, points, 2)
+        Points on the curve that begins at each node, m.
+    """
+    xi = np.linspace(0.0, 1.0, points)
+    curves = np.arange(len(lengths))
+    places = curve_points(kind, coordinates, lengths, np.repeat(curves, points), np.tile(xi, len(curves)))
+    return places.reshape(-1, points, 2)
+
+
+def curve_points(
+    kind: ElementKind, coordinates: FloatArray, lengths: FloatArray, curve: IntArray, xi: FloatArray
+) -> FloatArray:
+    """Points anywhere on the centreline, at one instant or at several.
+
+    Parameters
+    ----------
+    kind : ElementKind
+        Of the elements.
+    coordinates : ndarray, shape (..., nodes, k)
+        Nodal coordinates of a result.
+    lengths : ndarray, shape (elements,)
+        Reference length from each node to the next along the belt, m.
+    curve : ndarray of int, shape (points,)
+        The node at which the curve of each point begins.
+    xi : ndarray, shape (points,)
+        Where on its curve each point is, from 0 to 1.
+
+    Returns
+    -------
+    ndarray, shape (..., points, 2)
+        m.
+    """
+    instants = coordinates.shape[:-2]
+    first = coordinates.reshape(*instants, -1, kind.dof)
+    elements = len(lengths) // kind.points
+    element = np.concatenate([first, np.roll(first, -1, axis=-2)], axis=-1)[..., :elements, :]
+    vectors = np.stack([element[..., start : start + 2] for start in kind.vectors], axis=-2)
+    control = kind.control(lengths.reshape(elements, -1).sum(axis=1))
+    points = np.einsum("ncpv,...nva->...ncpa", control, vectors).reshape(*instants, -1, control.shape[2], 2)
+    degree, along = control.shape[2] - 1, xi[:, None]
+    order = np.arange(degree + 1)
+    weights = BINOMIALS[degree, order] * along**order * (1.0 - along) ** (degree - order)
+    return np.asarray(np.einsum("kp,...kpa->...ka", weights, points[..., curve, :, :]))

@@ -17,9 +17,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from beltdyn.results.checksums import Checksums
-from beltdyn.results.layout import Layout
+from beltdyn.results.layout import Layout, chunk_rows
 from beltdyn.results.schema import AUXILIARY_COORDINATES, COORDINATES, RECORDED, TIMES, Variable
-from beltdyn.results.size import chunk_rows
 from beltdyn.results.staged_file import RESERVE, StagedFile, identity, mark
 
 if TYPE_CHECKING:

@@ -1,7 +1,9 @@
 """Provenance of a result: the drive, the mesh, versions and time."""
 
+import math
 import platform
 from collections.abc import Mapping
+from dataclasses import dataclass
 from datetime import UTC, datetime
 from functools import cache
 from importlib.metadata import version
@@ -10,10 +12,128 @@ from typing import Any
 import numpy as np
 
 from beltdyn.analyses import RUN
+from beltdyn.arrays import FloatArray
 from beltdyn.elements import ANCF, QUINTIC
-from beltdyn.model import Drive
-from beltdyn.model.frame import Frame, unused_settings
-from beltdyn.results.schema import FORMAT
+from beltdyn.model import ERROR_LIMITS, Drive, Running, elements_needed, install, layer_lengths, mesh_errors
+from beltdyn.model.simulation import Frame, unused_settings
+from beltdyn.results.schema import FORMAT, Recorded
+
+# Mesh error of a run: `beltdyn.model.resolution` with the tension and speed of the run
+
+_WINDOW = 0.2
+_MOVING = frozenset({"slip", "losses"})
+"""What a belt at rest has none of."""
+
+
+@dataclass(frozen=True, slots=True)
+class Resolution:
+    """Estimated mesh error over the last fifth of a run.
+
+    Attributes
+    ----------
+    errors : dict of str to float
+        Relative error of each quantity, without sign: "tension", "mean pressure" and "peak pressure" of contact,
+        "slip", "losses". NaN if unknown, without tension; at rest there is no slip and no loss.
+    needed : dict of str to int
+        Number of elements for which twice each estimate is within its limit, `beltdyn.model.ERROR_LIMITS`; it depends
+        on the drive and its tension, not on the mesh of the run. Empty without tension.
+    layers : tuple of float
+        Lengths of the boundary layers of the belt at the ends of an arc, sqrt(E I alpha2 / T) and sqrt(T / k_p), m.
+
+    Examples
+    --------
+    >>> sorted(run.resolution.errors)
+    ['losses', 'mean pressure', 'peak pressure', 'slip', 'tension']
+    """
+
+    errors: Mapping[str, float]
+    needed: Mapping[str, int]
+    layers: tuple[float, float]
+
+    def resolves(self, quantity: str) -> bool:
+        """Whether the error of a quantity is within its limit, or unknown."""
+        return not self.errors[quantity] > ERROR_LIMITS[quantity]
+
+
+def estimate_resolution(recorded: Recorded, drive: Drive) -> Resolution:
+    """Estimate the mesh error of a run.
+
+    The errors are estimated from the tension, which a coarse mesh raises; therefore the tension at rest of the drive is
+    used, or that of the run if it is lower.
+
+    Parameters
+    ----------
+    recorded : Recorded
+        Its results, with at least one output.
+    drive : Drive
+        The drive.
+
+    Returns
+    -------
+    Resolution
+        The estimates, validated against converged meshes in the documentation.
+    """
+    found = found_errors(recorded)
+    if found:
+        return Resolution(found, {}, layer_lengths(drive, float(np.mean(_last(recorded, "span_tension", "time")))))
+    speeds = _last(recorded, "belt_speed", "time")
+    square = float(np.mean(speeds[np.isfinite(speeds)] ** 2)) if np.any(np.isfinite(speeds)) else 0.0
+    return mesh_resolution(drive, float(np.mean(_last(recorded, "belt_tension", "field_time"))), square)
+
+
+def mesh_error_attribute(quantity: str) -> str:
+    """Name of the attribute of results that tells the error of a quantity which an analysis has found.
+
+    Parameters
+    ----------
+    quantity : str
+        One of `beltdyn.model.ERROR_LIMITS`.
+    """
+    return f"mesh_error_{quantity.replace(' ', '_')}"
+
+
+def found_errors(recorded: Recorded) -> dict[str, float]:
+    """Errors that an analysis has found by a finer mesh; empty without them."""
+    marked = {name: mesh_error_attribute(name) for name in ERROR_LIMITS}
+    known = {name: np.asarray(recorded.attrs[mark]).item() for name, mark in marked.items() if mark in recorded.attrs}
+    return dict.fromkeys(ERROR_LIMITS, math.nan) | known if known else {}
+
+
+def mesh_resolution(drive: Drive, tension: float, square: float) -> Resolution:
+    """Estimate the mesh error at a tension and speed of the belt.
+
+    Parameters
+    ----------
+    drive : Drive
+        The drive, from which the tension is taken where it is less.
+    tension : float
+        Mean tension of the belt, N.
+    square : float
+        Mean square of the belt's speed, m^2/s^2; zero at rest.
+
+    Returns
+    -------
+    Resolution
+        See `estimate_resolution`.
+    """
+    tension = min(tension, install(drive).tension)
+    running = Running(tension, drive.belt.mass_per_length * square)
+    if not running.tension > running.lifted:
+        return Resolution(dict.fromkeys(ERROR_LIMITS, math.nan), {}, (math.nan, math.nan))
+    still = _MOVING if square == 0.0 else frozenset[str]()
+    errors = {
+        name: math.nan if name in still else error
+        for name, error in mesh_errors(drive, running, drive.elements).items()
+    }
+    return Resolution(errors, elements_needed(drive, running), layer_lengths(drive, tension))
+
+
+def _last(recorded: Recorded, name: str, clock: str) -> FloatArray:
+    """Values of a variable over the last fifth of the run."""
+    time = np.asarray(recorded[clock])
+    first = int(np.searchsorted(time, time[-1] - _WINDOW * (time[-1] - time[0])))
+    return np.asarray(recorded[name][first:])
+
 
 _PACKAGES = ("beltdyn", "numba", "numpy", "scipy")
 MESH = ("mesh_frame", "mesh_frame_reason", "mesh_element", "mesh_elements", "mesh_unused")

@@ -47,7 +47,7 @@ class Result:
 
     def _repr_html_(self) -> str:
         """Show the result in a notebook: presentation lies above, and is found by its name."""
-        html: str = import_module("beltdyn.results.notebook").result_html(self)
+        html: str = import_module("beltdyn.show.notebook").result_html(self)
         return html
 
     @property

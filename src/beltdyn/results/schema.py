@@ -1,7 +1,15 @@
 """The variables of a result: their dimensions, units and meaning, in one table."""
 
+from collections.abc import Mapping
 from dataclasses import dataclass
 from types import MappingProxyType
+from typing import Any, Protocol
+
+import numpy as np
+import xarray as xr
+from numpy.typing import NDArray
+
+from beltdyn.parts.quantity import SHOWN_UNITS
 
 FORMAT = (1, 3)
 """Version of the result file: the major number grows when earlier readers would misread a file, the minor number when a
@@ -198,3 +206,123 @@ AUXILIARY_COORDINATES = MappingProxyType(
     {variable.dims[0]: name for name, variable in COORDINATES.items() if name != variable.dims[0]}
 )
 """Dimension -> its coordinate of another name."""
+
+
+# Display units of results
+
+VARIOUS = "various"
+"""Unit of a variable whose numbers have different ones, which another variable names."""
+_MILLIMETRES = 0.1
+"""Size of lengths, m, below which they are written in mm."""
+_SHOWN = {**SHOWN_UNITS, **dict.fromkeys(("1", VARIOUS), ("", 1.0))}
+
+
+def shown_unit(variable: "xr.DataArray") -> tuple[str, float]:
+    """Give the display unit of a variable and its factor.
+
+    Parameters
+    ----------
+    variable : DataArray
+        A variable of a result.
+
+    Returns
+    -------
+    unit : str
+        rpm for rad/s, degrees for rad, mm for short lengths, nothing for a pure number; others as they are.
+    factor : float
+        What its numbers are multiplied by.
+    """
+    unit = str(variable.attrs.get("units", ""))
+    if unit == "m" and not (abs(variable) >= _MILLIMETRES).any():
+        return "mm", 1e3
+    return _SHOWN.get(unit, (unit, 1.0))
+
+
+def in_words(variable: "xr.DataArray") -> str:
+    """Write a single value with its unit, such as "1500 rpm"; a text as it is."""
+    if variable.dtype.kind != "f":
+        return str(variable.item())
+    unit, factor = shown_unit(variable)
+    return f"{factor * float(variable):z.4g} {unit}".rstrip()
+
+
+# What was recorded, by name: an xarray dataset, or a result file without the time that xarray takes to load
+
+
+class Recorded(Protocol):
+    """Variables by name, each an array with one row for each output, and global attributes."""
+
+    @property
+    def attrs(self) -> Mapping[Any, Any]:
+        """Global attributes."""
+
+    def __contains__(self, name: object, /) -> bool:
+        """Whether a variable was recorded."""
+
+    def __getitem__(self, name: str, /) -> Any:
+        """A variable, which is read where it is indexed."""
+
+
+class InMemory:
+    """Variables of a dataset as plain arrays, which are quicker to look at than labelled ones.
+
+    Parameters
+    ----------
+    dataset : xarray.Dataset
+    """
+
+    def __init__(self, dataset: "xr.Dataset") -> None:
+        self._variables = dataset.variables
+        self.attrs: Mapping[Any, Any] = dataset.attrs
+
+    def __contains__(self, name: object, /) -> bool:
+        """Whether a variable was recorded."""
+        return name in self._variables
+
+    def __getitem__(self, name: str, /) -> NDArray[Any]:
+        """The values of a variable."""
+        return np.asarray(self._variables[name].values)
+
+
+def names(recorded: Recorded, dimension: str) -> list[str]:
+    """Names along a dimension.
+
+    Parameters
+    ----------
+    recorded : Recorded
+        What was recorded.
+    dimension : str
+        "pulley", "span" or "tensioner".
+
+    Returns
+    -------
+    list of str
+        In order.
+    """
+    return [name.decode() if isinstance(name, bytes) else str(name) for name in np.asarray(recorded[dimension])]
+
+
+def runs_steadily(recorded: Recorded) -> bool:
+    """Whether it is steady running, in which nothing changes over time, in place of a run.
+
+    Parameters
+    ----------
+    recorded : Recorded
+        What was recorded.
+    """
+    return "belt_parameter" in recorded.attrs
+
+
+def attribute(recorded: Recorded, name: str, unknown: float) -> float:
+    """Give an attribute that is a number.
+
+    Parameters
+    ----------
+    recorded : Recorded
+        What was recorded.
+    name : str
+        Name of the attribute.
+    unknown : float
+        What to give where it is missing.
+    """
+    return float(np.squeeze(recorded.attrs.get(name, unknown)))  # a file holds arrays of one number

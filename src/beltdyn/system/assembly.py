@@ -17,14 +17,12 @@ from beltdyn.elements.dispatch import elastic_force
 from beltdyn.kernel import by_type, kernel
 from beltdyn.system.arrays import BodyForces, Equations, Motion, RingMatrix, System, TangentFactors
 from beltdyn.system.body_forces import add_contact, add_machines, clear_body_forces, differentiates_forces
-from beltdyn.system.coupling import couple_rim, scatter, take_contact
 from beltdyn.system.element_state import add_material_damping, centreline, gather, gather_motion
-from beltdyn.system.flowing_element import flowing_element, hold_mesh, hold_nothing
+from beltdyn.system.flow_tangent import flowing_element, hold_mesh, hold_nothing
 from beltdyn.system.frame import Flowing, Travelling
-from beltdyn.system.moving_center import couple_center, keep_drift, moving_center
-from beltdyn.system.pulley_state import pulley_state
+from beltdyn.system.moving_center import couple_center, keep_drift, moving_center, pulley_state
 from beltdyn.system.ring_matrix import clear
-from beltdyn.system.supports import add_nodal_loads, hold_fixed
+from beltdyn.system.supports import add_nodal_loads, couple_rim, hold_fixed, scatter, take_contact
 
 
 def border_size(system: System) -> int:

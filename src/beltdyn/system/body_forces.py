@@ -24,7 +24,7 @@ from beltdyn.system.arrays import (
     System,
     TangentFactors,
 )
-from beltdyn.system.pulley_state import tensioner_coordinate
+from beltdyn.system.moving_center import tensioner_coordinate
 
 
 def new_body_forces(system: System) -> BodyForces:

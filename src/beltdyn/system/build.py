@@ -14,17 +14,48 @@ from beltdyn.errors import ModelError
 from beltdyn.machines import Tensioner
 from beltdyn.model import Belt, Contact, Drive, Path, Pulley
 from beltdyn.model.hysteresis import Passing, passing_strains, rolling_resistances
-from beltdyn.model.pulley import friction_on
+from beltdyn.model.pulley import SURFACES, friction_on
 from beltdyn.model.routing import radii as effective_radii
-from beltdyn.model.surface import SURFACES
 from beltdyn.quadrature import Quadrature, gauss_points, lobatto_points
 from beltdyn.records import records
 from beltdyn.system.arrays import Supports, System
 from beltdyn.system.build_machines import body_arrays, machine_arrays, pulley_arrays
-from beltdyn.system.discretization import discretize
+from beltdyn.system.discretization import Discretization, discretize
 from beltdyn.system.frame import Travelling
 from beltdyn.system.hysteresis import hysteresis_rows
-from beltdyn.system.weight import weight_forces
+
+# Weight of the belt as nodal forces (gravity is not in the paper)
+
+
+def weight_forces(mesh: Discretization, nodes: int, gravity: tuple[float, float]) -> FloatArray:
+    """Generalised forces of a uniform gravity, the integral of rho A S^T g over the belt.
+
+    A uniform acceleration moves the material points alone, not the derivatives, so that the integral is the mass
+    matrix of an element times g at its points.
+
+    Parameters
+    ----------
+    mesh
+        The elements of the belt.
+    nodes
+        Number of nodes; the last element of a closed belt ends at the first.
+    gravity
+        Acceleration of gravity g, m/s^2.
+
+    Returns
+    -------
+    ndarray, shape (n * nodes,)
+        N for the rows of places, N m for those of r_x.
+    """
+    dof = len(mesh.scale)
+    node = np.zeros(dof)
+    node[: 2 * mesh.points] = np.tile(gravity, mesh.points)
+    by_element = mesh.mass @ np.tile(node, 2)
+    force, element = np.zeros((nodes, dof)), np.arange(len(by_element))
+    force[element] += by_element[:, :dof]
+    force[(element + 1) % nodes] += by_element[:, dof:]
+    return force.ravel()
+
 
 Closure = Literal["shared_node", "multipliers", "open"]
 """How the ends of a belt meet: at one node (Eq. 27), by Lagrange multipliers (Eq. 25), or not at all."""

@@ -10,11 +10,10 @@ from beltdyn.model import Belt, Drive
 from beltdyn.model.hysteresis import bending_at_points, passing_strains
 from beltdyn.records import records
 from beltdyn.system.arrays import BODY, System
-from beltdyn.system.build import nodal_supports, system_of
+from beltdyn.system.build import nodal_supports, system_of, weight_forces
 from beltdyn.system.discretization import discretize
 from beltdyn.system.frame import flowing, staying
 from beltdyn.system.hysteresis import hysteresis_rows
-from beltdyn.system.weight import weight_forces
 
 _STAYING_ELASTIC, _STAYING_CONTACT = 8, 12
 """Gauss points of an element that stays, for elastic forces and for contact."""

@@ -6,8 +6,7 @@ from beltdyn.arrays import FloatArray
 from beltdyn.contact.bezier import Curve
 from beltdyn.contact.contact_force import contact_record
 from beltdyn.elements.dispatch import damping_force
-from beltdyn.elements.kind import DampingFactors
-from beltdyn.elements.section import is_damped
+from beltdyn.elements.kind import DampingFactors, is_damped
 from beltdyn.kernel import kernel
 from beltdyn.records import blank, record
 from beltdyn.system.arrays import BENDING_LOSS, STRETCH_LOSS, BodyForces, System, TangentFactors

@@ -16,7 +16,7 @@ from math import atan2, comb
 import numpy as np
 
 from beltdyn.arrays import FloatArray
-from beltdyn.elements.hysteretic import Hysteretic, hysteretic
+from beltdyn.elements.planar_curve import Hysteretic, hysteretic
 from beltdyn.kernel import kernel
 from beltdyn.model import Belt
 from beltdyn.model.hysteresis import SMOOTHED, Passing

@@ -8,16 +8,66 @@ vectors, and hub force -sum_a w_a F_a:
     dF_a/dq = -sum_b T_ab w_b c' - D_a,    D_a = sum_b dF_a/dv_b w_b c'' dq/dt.
 """
 
+from math import hypot
 from typing import NamedTuple
 
 import numpy as np
 
 from beltdyn.arrays import FloatArray
-from beltdyn.kernel import kernel
-from beltdyn.machines.tensioners.registry import tensioner_center
-from beltdyn.records import record
-from beltdyn.system.arrays import RingMatrix, System
-from beltdyn.system.pulley_state import tensioner_coordinate
+from beltdyn.contact.law import PulleyState
+from beltdyn.contact.surface import surface_at
+from beltdyn.kernel import interpreted, kernel
+from beltdyn.machines.tensioners.registry import TENSIONER, free_slide, tensioner_center
+from beltdyn.records import record, records
+from beltdyn.system.arrays import BODY, RingMatrix, System
+from beltdyn.system.state import State
+
+# Pulleys as contact meets them at a state: turning, and moving where a tensioner carries them
+
+
+@kernel
+def tensioner_coordinate(system: System, tensioner: int) -> int:
+    """Place of a tensioner's coordinate in the state."""
+    return system.first_body + system.bodies.size - system.tensioners.size + tensioner
+
+
+@kernel
+def pulley_state(system: System, pulley: int, position: FloatArray, velocity: FloatArray) -> PulleyState:
+    """A pulley at a state.
+
+    Parameters
+    ----------
+    system
+        The system.
+    pulley
+        Which one.
+    position, velocity : ndarray, shape (n N + D,)
+        The state.
+    """
+    item, body = system.pulleys[pulley], system.first_body + pulley
+    carrier, speed = item.carrier, velocity[body]
+    surface = surface_at(system.rims, pulley, position[body])
+    if carrier < 0:
+        return PulleyState(item.center[0], item.center[1], surface, speed, item.friction, 0.0, 0.0, item.rolling)
+    at = tensioner_coordinate(system, carrier)
+    center = tensioner_center(system.tensioners[carrier], position[at])
+    vx, vy = velocity[at] * center.dx, velocity[at] * center.dy
+    return PulleyState(center.x, center.y, surface, speed, item.friction, vx, vy, item.rolling)
+
+
+def pulley_center(system: System, pulley: int, position: FloatArray) -> tuple[float, float]:
+    """Where the shaft of a pulley is at a position of shape (n N + D,), m."""
+    item = system.pulleys[pulley]
+    if item.carrier < 0:
+        return float(item.center[0]), float(item.center[1])
+    place = position[interpreted(tensioner_coordinate)(system, item.carrier)]
+    center = interpreted(tensioner_center)(system.tensioners[item.carrier], place)
+    return float(center.x), float(center.y)
+
+
+def pulley_speeds(system: System, velocity: FloatArray) -> FloatArray:
+    """Speeds of all rims, rad/s, shape (..., pulleys), from the rates of states, shape (..., n N + D)."""
+    return velocity[..., system.first_body : system.first_body + len(system.pulleys)]
 
 
 class MovingCenter(NamedTuple):
@@ -136,3 +186,71 @@ def couple_center(
             matrix.corner[rim, own] += weight * (x * contact.moment[a, 0] + y * contact.moment[a, 1])
     if rim >= 0 and drifting != 0.0:
         matrix.corner[rim, own] += drifting * drift.moment
+
+
+# Pulleys whose centers are moved: each slides on a carrier of prescribed speed along a line, without a spring
+
+
+def with_movers(system: System, pulleys: list[int]) -> System:
+    """Put pulleys on carriers whose motion is prescribed, behind the tensioners.
+
+    Parameters
+    ----------
+    system
+        A system.
+    pulleys
+        Numbers of pulleys that nothing carries.
+
+    Returns
+    -------
+    System
+        A coordinate more for each of them, at the end of states.
+    """
+    table, count = system.pulleys.copy(), len(system.tensioners)
+    carriers = np.resize(system.tensioners, count + len(pulleys)) if count else records(TENSIONER, pulley=pulleys)
+    for number, pulley in enumerate(pulleys, count):
+        carriers[number] = free_slide(pulley, tuple(system.pulleys.center[pulley]))
+        table.carrier[pulley] = number
+    own = records(BODY, inertia=np.zeros(len(pulleys)), kinetic=0.0, unknown=-1, reach=1.0)
+    return system._replace(
+        pulleys=table,
+        tensioners=carriers.view(np.recarray),
+        bodies=np.concatenate([system.bodies, own]).view(np.recarray),
+    )
+
+
+def moving_to(
+    system: System, state: State, first: int, centers: dict[int, tuple[float, float]], time: float
+) -> tuple[System, State]:
+    """Let carriers begin to move at constant speed, so that centers are reached after a time; the others stand still.
+
+    Parameters
+    ----------
+    system
+        From `with_movers`.
+    state
+        Where it is.
+    first
+        Number of the first such carrier.
+    centers
+        By the number of a pulley, m.
+    time
+        s.
+
+    Returns
+    -------
+    system, state
+        The same places, and other speeds of centers.
+    """
+    table, position, velocity = system.tensioners.copy(), state.position.copy(), state.velocity.copy()
+    for carrier in range(first, len(table)):
+        pulley, place = int(table.pulley[carrier]), position.size - len(table) + carrier
+        x, y = pulley_center(system, pulley, position)
+        to_x, to_y = centers.get(pulley, (x, y))
+        way = hypot(to_x - x, to_y - y)
+        slide = table["sliding"][carrier]
+        slide["center"] = x, y
+        if way > 0.0:
+            slide["direction"] = (to_x - x) / way, (to_y - y) / way
+        position[place], velocity[place] = 0.0, way / time
+    return system._replace(tensioners=table), State(position, velocity, state.acceleration)

@@ -16,10 +16,18 @@ from beltdyn.machines.tensioners.registry import tensioner_center
 from beltdyn.system.arrays import BodyForces, System
 from beltdyn.system.element_state import centreline, gather_motion
 from beltdyn.system.hysteresis import hysteresis_tension
-from beltdyn.system.observations import Observations, Samples, new_observations, new_samples
-from beltdyn.system.pulley_state import pulley_state, tensioner_coordinate
+from beltdyn.system.moving_center import pulley_state, tensioner_coordinate
+from beltdyn.system.observations import (
+    Observations,
+    Samples,
+    begin_walk,
+    new_observations,
+    new_samples,
+    next_curve,
+    turned_at,
+    turned_at_the_end,
+)
 from beltdyn.system.state_forces import body_forces_at
-from beltdyn.system.wrap_angle import begin_walk, next_curve, turned_at, turned_at_the_end
 
 
 def observe(system: System, time: FloatArray, position: FloatArray, velocity: FloatArray) -> Observations:

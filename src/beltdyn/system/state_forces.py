@@ -8,6 +8,7 @@ from beltdyn.arrays import FloatArray
 from beltdyn.contact.contact_force import NO_CONTACT_TANGENT, contact_force
 from beltdyn.contact.contact_zone import out_of_reach
 from beltdyn.kernel import kernel
+from beltdyn.machines.profiles.functions import prescribed_motion
 from beltdyn.system.arrays import NO_TANGENT, BodyForces, Motion, System
 from beltdyn.system.body_forces import (
     add_contact,
@@ -18,8 +19,21 @@ from beltdyn.system.body_forces import (
     new_body_forces,
 )
 from beltdyn.system.element_state import add_material_damping, centreline, element_workspace, gather_motion
-from beltdyn.system.prescribed import prescribe
-from beltdyn.system.pulley_state import pulley_state
+from beltdyn.system.moving_center import pulley_state
+
+# The motion of shafts whose speed is prescribed
+
+
+@kernel
+def prescribe(system: System, motion: Motion) -> None:
+    """Overwrite the motion of the prescribed bodies by what is prescribed at its time."""
+    for p in range(system.pulleys.size):
+        body = system.pulleys[p].shaft
+        if system.bodies[body].unknown < 0:
+            i = system.first_body + body
+            motion.position[i], motion.velocity[i], motion.acceleration[i] = prescribed_motion(
+                system.profiles, p, motion.time
+            )
 
 
 class BodyForcesScratch(NamedTuple):

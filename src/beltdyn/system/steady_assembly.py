@@ -18,11 +18,10 @@ from beltdyn.elements.dispatch import elastic_force
 from beltdyn.kernel import kernel
 from beltdyn.system.arrays import NO_TANGENT, Equations, Motion, System, TangentFactors
 from beltdyn.system.body_forces import add_machines, clear_body_forces
-from beltdyn.system.coupling import scatter
 from beltdyn.system.element_state import gather_motion
 from beltdyn.system.flow_tangent import NO_FLOW_TANGENT, FlowFactors, add_flow_forces, find_rate, scatter_column
 from beltdyn.system.ring_matrix import clear
-from beltdyn.system.supports import add_nodal_loads
+from beltdyn.system.supports import add_nodal_loads, scatter
 
 
 class Anchor(NamedTuple):

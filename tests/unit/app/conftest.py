@@ -7,10 +7,9 @@ from typing import Any
 
 import pytest
 
-from beltdyn.app.folder import Folder
 from beltdyn.app.jobs import Outcome
 from beltdyn.app.session import Session
-from beltdyn.app.workspace import Workspace
+from beltdyn.app.workspace import Folder, Workspace
 
 
 @pytest.fixture(scope="session")

@@ -6,10 +6,9 @@ from pathlib import Path
 import psutil
 import pytest
 
-from beltdyn.app.calculator import Calculator
-from beltdyn.app.computing import Answer, Asked, answer, given_speed
+from beltdyn.app.computing import Answer, Asked, Calculator, answer, given_speed
 from beltdyn.model import Drive
-from beltdyn.results.sheet_parts import Facts, Table
+from beltdyn.show.sheet import Facts, Table
 
 HERE = Path()
 

@@ -14,15 +14,13 @@ from nicegui.testing import User, user_simulation
 
 from beltdyn.app import numbers_view
 from beltdyn.app.analysis_view import AnalysisView
-from beltdyn.app.calculator import Calculator
-from beltdyn.app.canvas import Canvas
-from beltdyn.app.computing import Answer, Asked
+from beltdyn.app.computing import Answer, Asked, Calculator
 from beltdyn.app.jobs import Outcome
-from beltdyn.app.page import Page
+from beltdyn.app.numbers_view import table_html
+from beltdyn.app.page import Canvas, Page
 from beltdyn.app.session import Session
-from beltdyn.app.sheet_view import table_html
 from beltdyn.app.workspace import Workspace
-from beltdyn.results.sheet_parts import Facts, Table
+from beltdyn.show.sheet import Facts, Table
 
 
 class Told(Calculator):

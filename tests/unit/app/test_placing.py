@@ -6,8 +6,8 @@ from pathlib import Path
 import pytest
 
 from beltdyn.app import placing
-from beltdyn.app.document import Document
 from beltdyn.app.draft import Draft, draft
+from beltdyn.app.session import Document
 from beltdyn.app.workspace import EMPTY
 from beltdyn.parts.toml_edits import Edit
 

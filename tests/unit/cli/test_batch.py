@@ -8,9 +8,9 @@ from typing import Any
 import pytest
 
 from beltdyn.analyses import Analysis
+from beltdyn.designs.worker import Ending
 from beltdyn.model import Drive
 from beltdyn.results import Run, Summary, summarize
-from beltdyn.solve import Ending
 
 RunMain = Callable[[list[str]], tuple[int, str, str]]
 Refuse = Callable[[list[str]], str]
@@ -44,7 +44,7 @@ def simulated(monkeypatch: pytest.MonkeyPatch) -> Callable[..., list[tuple[list[
             asked.append((list(drives), jobs))
             return dict(zip(drives, endings, strict=True))
 
-        monkeypatch.setattr("beltdyn.solve.batch.analyse_all", analyse_all)
+        monkeypatch.setattr("beltdyn.designs.batch.analyse_all", analyse_all)
         return asked
 
     return end

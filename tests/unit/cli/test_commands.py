@@ -15,7 +15,10 @@ from beltdyn import __version__
 from beltdyn.errors import ConvergenceError
 from beltdyn.model import Drive, advise, install, load
 from beltdyn.results import FileRecorder, Layout, Run, open_run
-from beltdyn.solve import Progress, bring_to_rest, equilibrium, simulate
+from beltdyn.solvers.progress import Progress
+from beltdyn.state.equilibrium import equilibrium
+from beltdyn.state.installation import bring_to_rest
+from beltdyn.transient.simulate import simulate
 
 RunMain = Callable[[list[str]], tuple[int, str, str]]
 
@@ -174,7 +177,7 @@ def test_schema_is_json(run_main: RunMain) -> None:
 
 def put_in_place_of_simulate(monkeypatch: pytest.MonkeyPatch, stand_in: Callable[..., Run]) -> None:
     """Let `beltdyn run` call something else; its options, which are made of the signature once, stay as they are."""
-    monkeypatch.setattr(sys.modules["beltdyn.solve.simulate"], "simulate", wraps(simulate)(stand_in))
+    monkeypatch.setattr(sys.modules["beltdyn.transient.simulate"], "simulate", wraps(simulate)(stand_in))
 
 
 @pytest.mark.parametrize("outputs", [None, 0, 3])

@@ -10,11 +10,11 @@ import pytest
 
 from beltdyn.cli.app import app
 from beltdyn.cli.console import show_table
+from beltdyn.cli.output import show_result
 from beltdyn.cli.progress import progress_bar, runs_bar
-from beltdyn.cli.result import show_result
 from beltdyn.model import Drive
 from beltdyn.results import Run, TensionerSummary, summarize
-from beltdyn.solve.progress import BatchProgress, Progress
+from beltdyn.solvers.progress import BatchProgress, Progress
 
 RunMain = Callable[[list[str]], tuple[int, str, str]]
 
@@ -47,7 +47,7 @@ def test_tensioners_stand_in_degrees_or_millimetres(
 ) -> None:
     tensioners = (TensionerSummary("idler", True, 0.2, 0.1, 0.3), TensionerSummary("driven", False, *3 * (2e-3,)))
     summary = replace(summarize(run), tensioners=tensioners)
-    monkeypatch.setattr("beltdyn.results.run_sheet.summarize", lambda _: summary)
+    monkeypatch.setattr("beltdyn.show.sheet.summarize", lambda _: summary)
     show_result(run)
     output = " ".join(capsys.readouterr().out.split())
     assert "tensioner of idler 11.46° (range 5.73° to 17.19°) tensioner of driven 2 mm mesh errors" in output
@@ -78,7 +78,7 @@ def test_a_slip_that_rounds_to_zero_has_no_sign(
     summary = summarize(run)
     driver, driven = summary.pulleys
     still = replace(summary, pulleys=(driver, replace(driven, slip=slip)))
-    monkeypatch.setattr("beltdyn.results.run_sheet.summarize", lambda _: still)
+    monkeypatch.setattr("beltdyn.show.sheet.summarize", lambda _: still)
     show_result(run)
     row = next(line for line in capsys.readouterr().out.splitlines() if line.startswith("driven "))
     assert row.split()[5] == written
@@ -129,7 +129,7 @@ def test_seven_pulleys_fit_one_screen(
     span = replace(summary.spans[0], name="power steering pump-air conditioning", tension=1234.5)
     full = replace(summary, pulleys=(pulley,) * 7, spans=(span,) * 7)
     run.__dict__["warnings"] = ["a warning."] * 7  # where a cached property keeps its value
-    monkeypatch.setattr("beltdyn.results.run_sheet.summarize", lambda _: full)
+    monkeypatch.setattr("beltdyn.show.sheet.summarize", lambda _: full)
     monkeypatch.setenv("COLUMNS", "100")
     show_result(run)
     lines = capsys.readouterr().out.splitlines()
@@ -202,7 +202,7 @@ def end_as(monkeypatch: pytest.MonkeyPatch, run: Run) -> None:
         return run
 
     app["run"].default_command = None  # it is made of the function
-    monkeypatch.setattr(sys.modules["beltdyn.solve.simulate"], "simulate", simulate)
+    monkeypatch.setattr(sys.modules["beltdyn.transient.simulate"], "simulate", simulate)
 
 
 def test_run_with_tables(run_main: RunMain, run: Run, drive_file: Path, monkeypatch: pytest.MonkeyPatch) -> None:

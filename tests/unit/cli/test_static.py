@@ -9,7 +9,7 @@ import pytest
 from beltdyn.errors import ConvergenceError
 from beltdyn.model import load
 from beltdyn.results import Run, open_result
-from beltdyn.solve import equilibrium
+from beltdyn.state.equilibrium import equilibrium
 
 RunMain = Callable[[list[str]], tuple[int, str, str]]
 
@@ -21,7 +21,7 @@ def unbalanced(monkeypatch: pytest.MonkeyPatch) -> None:
     def fail(*_: object) -> None:
         raise ConvergenceError("no equilibrium.")
 
-    monkeypatch.setattr(sys.modules["beltdyn.solve.rest.installation"], "find_equilibrium", fail)
+    monkeypatch.setattr(sys.modules["beltdyn.state.installation"], "find_equilibrium", fail)
 
 
 def test_it_shows_and_writes_the_drive_at_rest(run_main: RunMain, drive_file: Path) -> None:

@@ -27,7 +27,7 @@ def test_a_sweep_takes_quantities_and_names_its_file(
         run.save(output)
         return run
 
-    monkeypatch.setattr(importlib.import_module("beltdyn.solve.sweep"), "record_run", record_run)
+    monkeypatch.setattr(importlib.import_module("beltdyn.transient.sweep"), "record_run", record_run)
     code, output, _ = run_main(["sweep", str(drive_file), *SPEEDS, "--duration", "2 s"])
     assert code == 0
     drive, path, attributes = simulated

@@ -10,7 +10,7 @@ from beltdyn.cosimulation.interface import Interface, choose_inputs, choose_outp
 from beltdyn.errors import ConvergenceError, ModelError
 from beltdyn.model import Drive
 from beltdyn.results.balance import LOSSES, STORED
-from beltdyn.solve import Simulator
+from beltdyn.transient.simulator import Simulator
 
 SPEED, TORQUE = "pulley[driver].speed", "pulley[driven].torque"
 X, Y = "pulley[driven].center[1]", "pulley[driven].center[2]"

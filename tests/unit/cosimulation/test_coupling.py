@@ -10,7 +10,7 @@ from pythonfmu import FmuBuilder
 
 from beltdyn.cosimulation import fmu
 from beltdyn.model import Drive
-from beltdyn.solve import Simulator
+from beltdyn.transient.simulator import Simulator
 
 pytestmark = pytest.mark.skipif(not FmuBuilder.has_binary(), reason="pythonfmu has no binary for this system")
 

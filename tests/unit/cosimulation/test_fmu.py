@@ -20,7 +20,8 @@ from pythonfmu import FmuBuilder
 from beltdyn.cosimulation import fmu
 from beltdyn.errors import ConvergenceError, ModelError
 from beltdyn.model import Drive, load, loads
-from beltdyn.solve import Simulator, simulate
+from beltdyn.transient.simulate import simulate
+from beltdyn.transient.simulator import Simulator
 
 pytestmark = pytest.mark.skipif(not FmuBuilder.has_binary(), reason="pythonfmu has no binary for this system")
 

@@ -8,8 +8,7 @@ import pytest
 from beltdyn.arrays import FloatArray
 from beltdyn.elements import ELEMENTS
 from beltdyn.elements.dispatch import damping_force, elastic_force, strain_energy, tension
-from beltdyn.elements.kind import DampingFactors, ElementKind
-from beltdyn.elements.section import Section
+from beltdyn.elements.kind import DampingFactors, ElementKind, Section
 from beltdyn.model import Drive
 from beltdyn.quadrature import gauss_points
 from beltdyn.records import blank

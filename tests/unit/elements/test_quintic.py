@@ -4,11 +4,10 @@ import numpy as np
 import pytest
 
 from beltdyn.arrays import FloatArray
-from beltdyn.elements.ancf.strain_energy import energy_density
-from beltdyn.elements.hysteretic import hysteretic
-from beltdyn.elements.kind import DampingFactors
+from beltdyn.elements.ancf.elastic_force import energy_density
+from beltdyn.elements.kind import DampingFactors, Section
+from beltdyn.elements.planar_curve import hysteretic
 from beltdyn.elements.quintic import QUINTIC, Quintic, bending_of, bends, slopes, thirds
-from beltdyn.elements.section import Section
 from beltdyn.quadrature import gauss_points
 from beltdyn.records import blank
 from beltdyn.stretch import Green, stretching

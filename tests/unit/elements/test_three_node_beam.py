@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from beltdyn.arrays import FloatArray
-from beltdyn.elements.section import Section
+from beltdyn.elements.kind import Section
 from beltdyn.elements.three_node_beam import LINKS, THREE_NODE_BEAM, ThreeNodeBeam
 from beltdyn.quadrature import gauss_points
 from beltdyn.records import blank

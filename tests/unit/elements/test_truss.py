@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from beltdyn.arrays import FloatArray
-from beltdyn.elements.section import Section
+from beltdyn.elements.kind import Section
 from beltdyn.elements.truss import TRUSS, Truss, add_link, link_energy, lumped_mass
 from beltdyn.quadrature import gauss_points
 from beltdyn.records import blank

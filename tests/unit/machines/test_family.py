@@ -6,13 +6,10 @@ from typing import Any
 import pytest
 
 from beltdyn.errors import ModelError
+from beltdyn.machines import links, loads, profiles, tensioners
 from beltdyn.machines.family import kinds_in
-from beltdyn.machines.links import kinds as links
 from beltdyn.machines.links.registry import LINK
-from beltdyn.machines.loads import kinds as loads
 from beltdyn.machines.loads.registry import SHAFT_LOAD
-from beltdyn.machines.profiles import kinds as profiles
-from beltdyn.machines.tensioners import kinds as tensioners
 from beltdyn.machines.tensioners.registry import TENSIONER
 from beltdyn.model import Pulley
 

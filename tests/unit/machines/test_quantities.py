@@ -9,7 +9,7 @@ import pytest
 from beltdyn.errors import ModelError
 from beltdyn.machines.loads.load import ShaftState
 from beltdyn.machines.loads.resistance import RESISTANCE, resistance
-from beltdyn.machines.tensioners.spring import SPRING, dry_friction
+from beltdyn.machines.tensioners.tensioner import SPRING, dry_friction
 from beltdyn.model import (
     FixedTensioner,
     FrictionClutch,

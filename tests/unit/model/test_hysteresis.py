@@ -3,7 +3,7 @@ from collections.abc import Callable
 import numpy as np
 import pytest
 
-from beltdyn.elements.hysteretic import CREEPING, hysteretic
+from beltdyn.elements.planar_curve import CREEPING, hysteretic
 from beltdyn.model import Drive, install
 from beltdyn.model.hysteresis import (
     SMOOTHED,

@@ -12,8 +12,7 @@ from hypothesis import strategies as st
 
 from beltdyn.errors import ModelError
 from beltdyn.model import Drive, LoadTable, Pulley, Table, advise, dumps, install, json_schema, load, loads
-from beltdyn.model.tolerances import tolerances_of
-from beltdyn.model.toml_editor import edited
+from beltdyn.model.toml_writer import edited, tolerances_of
 from beltdyn.parts.quantity import RPM
 
 

@@ -5,12 +5,10 @@ from importlib.resources import files
 
 import pytest
 
+from beltdyn.designs.sensitivity import numbers_of
 from beltdyn.model import Drive, dumps, loads
-from beltdyn.model.tolerances import tolerances_of
-from beltdyn.model.toml_editor import edited
-from beltdyn.model.toml_writer import spelled_out
+from beltdyn.model.toml_writer import edited, spelled_out, tolerances_of
 from beltdyn.parts.change import unit_at
-from beltdyn.solve.studies.drive_numbers import numbers_of
 
 EXAMPLES = sorted(path.name for path in files("beltdyn").joinpath("examples").iterdir() if path.name.endswith(".toml"))
 

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from beltdyn.results import Run, power_balance
-from beltdyn.results.window import plain_window
+from beltdyn.results.cycles import plain_window
 
 TORQUE = 30.0 * 0.08125
 MakeRun = Callable[..., Run]

@@ -10,9 +10,8 @@ from beltdyn.model import Drive, loads
 from beltdyn.results import Run, summarize
 from beltdyn.results.balance import LOSSES
 from beltdyn.results.checks import CHECKS
-from beltdyn.results.checks.energy import unbalanced_powers
-from beltdyn.results.checks.mesh import unresolved_by_mesh
-from beltdyn.results.checks.steady import COARSE_SETTINGS, STEADY_LOSSES, STEADY_SLIPS
+from beltdyn.results.checks.mesh import COARSE_SETTINGS, STEADY_LOSSES, STEADY_SLIPS, unresolved_by_mesh
+from beltdyn.results.checks.power import unbalanced_powers
 
 MakeRun = Callable[..., Run]
 TURN = 0.3

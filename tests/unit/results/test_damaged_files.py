@@ -13,10 +13,10 @@ import numpy as np
 import pytest
 import xarray as xr
 
-from beltdyn import plot
 from beltdyn.errors import ModelError
 from beltdyn.results import FileRecorder, Run, open_result, summarize
 from beltdyn.results.result import Result
+from beltdyn.show import plot
 from tools.campaign.damage import damaged
 
 OUTPUTS = 5

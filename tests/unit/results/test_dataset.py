@@ -9,10 +9,10 @@ import matplotlib.pyplot as plt
 import numpy as np
 import pytest
 
-from beltdyn import plot
 from beltdyn.errors import ModelError
 from beltdyn.results import COORDINATES, VARIABLES, open_run, summarize, write_csv
 from beltdyn.results.schema import FORMAT
+from beltdyn.show import plot
 
 KEPT = Path(__file__).parent / "kept" / "format_1_0.nc.gz"
 """The paper's drive with 16 elements, 81 outputs in 0.12 s, written by the first version with a format."""

@@ -10,7 +10,7 @@ from beltdyn.errors import ModelError
 from beltdyn.model import Drive
 from beltdyn.results import Run, export, open_run
 from beltdyn.results.result import Result
-from beltdyn.solve import equilibrium
+from beltdyn.state.equilibrium import equilibrium
 
 
 @pytest.fixture

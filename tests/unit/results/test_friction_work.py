@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 
 from beltdyn.model import Drive
-from beltdyn.results.arc import arc_ends
 from beltdyn.results.friction_work import ARC_PARTS, BEYOND, FrictionWork, Touch, arc_shares, part_of_arc
+from beltdyn.results.mechanics import arc_ends
 
 ELEMENTS, POINTS = 4, 8
 CELL = np.full(POINTS, 0.05)

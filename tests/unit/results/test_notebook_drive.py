@@ -7,7 +7,7 @@ from importlib.resources import files
 import pytest
 
 from beltdyn.model import Drive, advise, install, loads
-from beltdyn.model.picture import picture
+from beltdyn.show.notebook import picture
 
 EXAMPLES = sorted(file.name for file in files("beltdyn").joinpath("examples").iterdir() if file.name.endswith(".toml"))
 

@@ -13,8 +13,7 @@ from beltdyn.model import Drive
 from beltdyn.results import build_result, provenance
 from beltdyn.results.provenance import STAYING, mesh_facts, mesh_used
 from beltdyn.results.schema import FORMAT
-from beltdyn.results.sheet import sheet
-from beltdyn.results.sheet_parts import Facts
+from beltdyn.show.sheet import Facts, sheet
 
 
 def test_a_result_names_its_drive_and_what_computed_it() -> None:

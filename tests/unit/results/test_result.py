@@ -7,12 +7,12 @@ import pytest
 import xarray as xr
 from matplotlib.axes import Axes
 
-from beltdyn import plot
 from beltdyn.errors import ModelError
 from beltdyn.model import Drive
-from beltdyn.plot.registry import FIGURES, always, figure
-from beltdyn.plot.style import axes_or_new
 from beltdyn.results import Result, Run, Variable, build_result, open_result, open_run
+from beltdyn.show import plot
+from beltdyn.show.plot.registry import FIGURES, always, figure
+from beltdyn.show.plot.style import axes_or_new
 
 LOADS = np.array([1.0, 2.0, 4.0])
 

@@ -8,8 +8,8 @@ import pytest
 from beltdyn.errors import ModelError
 from beltdyn.model import Drive
 from beltdyn.results import Run, summarize
+from beltdyn.results.cycles import plain_window
 from beltdyn.results.means import tensioner_means
-from beltdyn.results.window import plain_window
 
 
 def test_means_are_taken_over_whole_elements_where_no_turn_fits(make_run: Callable[..., Run], drive: Drive) -> None:

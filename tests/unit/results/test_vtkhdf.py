@@ -14,8 +14,7 @@ from vtkmodules.vtkIOHDF import vtkHDFReader
 from beltdyn.errors import ModelError
 from beltdyn.results import Run
 from beltdyn.results.atomic import MARK
-from beltdyn.results.scene import SECTORS, Ribbon
-from beltdyn.results.vtkhdf import write_vtkhdf
+from beltdyn.results.vtkhdf import SECTORS, Ribbon, write_vtkhdf
 
 BELT, PULLEYS = 0, 1
 SINGLE = 2e-7

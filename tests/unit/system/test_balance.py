@@ -9,8 +9,7 @@ from beltdyn.arrays import FloatArray
 from beltdyn.model import Drive, Path
 from beltdyn.system.arrays import POWERS, System
 from beltdyn.system.build import drive_system
-from beltdyn.system.first_order import FirstOrder
-from beltdyn.system.joint_constraint import mass_matrix
+from beltdyn.system.first_order import FirstOrder, mass_matrix
 from beltdyn.system.observations import OBSERVED, Observations
 from beltdyn.system.observe import observe, observe_motion
 from beltdyn.system.state import State, laid

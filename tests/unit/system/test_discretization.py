@@ -14,7 +14,7 @@ from beltdyn.system.assembly import assemble
 from beltdyn.system.build import Closure, belt_system, drive_system
 from beltdyn.system.discretization import curve_lengths, discretize, nodal_coordinates, point_coordinates
 from beltdyn.system.element_state import fill_control
-from beltdyn.system.joint_constraint import mass_matrix
+from beltdyn.system.first_order import mass_matrix
 from beltdyn.system.motion import new_equations, no_multipliers
 from beltdyn.system.observe import observe
 from beltdyn.system.state import laid

@@ -6,12 +6,11 @@ import numpy as np
 import pytest
 
 from beltdyn.model import Drive
-from beltdyn.solve.integrators.engine import accelerate
+from beltdyn.solvers.engine import accelerate
 from beltdyn.system.arrays import Motion
 from beltdyn.system.build import belt_system, drive_system
 from beltdyn.system.discretization import curve_lengths
-from beltdyn.system.first_order import FirstOrder
-from beltdyn.system.joint_constraint import mass_matrix
+from beltdyn.system.first_order import FirstOrder, mass_matrix
 from beltdyn.system.motion import new_equations, no_multipliers
 from beltdyn.system.observe import observe
 from beltdyn.system.state import laid, straight

@@ -7,7 +7,7 @@ import pytest
 
 from beltdyn.arrays import FloatArray
 from beltdyn.model import Drive, Path, Pulley
-from beltdyn.solve.integrators.engine import accelerate
+from beltdyn.solvers.engine import accelerate
 from beltdyn.system.arrays import POWERS, Motion, System
 from beltdyn.system.build import drive_system
 from beltdyn.system.first_order import FirstOrder

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from beltdyn.model import Belt, Constant, Drive, Pulley
-from beltdyn.solve.integrators.engine import accelerate
+from beltdyn.solvers.engine import accelerate
 from beltdyn.system.arrays import NO_TANGENT, Motion, System
 from beltdyn.system.assembly import assemble
 from beltdyn.system.build import belt_system

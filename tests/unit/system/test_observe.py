@@ -9,7 +9,7 @@ from scipy.interpolate import CubicHermiteSpline
 from beltdyn.arrays import FloatArray
 from beltdyn.model import Drive, Path, install
 from beltdyn.quadrature import gauss_points
-from beltdyn.solve import find_equilibrium
+from beltdyn.state.static import find_equilibrium
 from beltdyn.system.arrays import System
 from beltdyn.system.build import belt_system, drive_system
 from beltdyn.system.observations import Observations

@@ -8,9 +8,9 @@ import pytest
 from beltdyn.arrays import FloatArray
 from beltdyn.kernel import interpreted
 from beltdyn.model import Drive, Path
-from beltdyn.model.graded_mesh import Laid
-from beltdyn.solve.rest.staying import anchor_at, laid_state
-from beltdyn.solve.steady_running.newton import SteadyWork, steady_work
+from beltdyn.model.resolution import Laid
+from beltdyn.state.newton import SteadyWork, steady_work
+from beltdyn.state.staying import anchor_at, laid_state
 from beltdyn.system.arrays import System
 from beltdyn.system.build import belt_system
 from beltdyn.system.build_staying import staying_system

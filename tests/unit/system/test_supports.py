@@ -7,7 +7,7 @@ import pytest
 
 from beltdyn.arrays import FloatArray
 from beltdyn.model import Belt, Drive
-from beltdyn.solve.integrators.engine import linearise
+from beltdyn.solvers.engine import linearise
 from beltdyn.system.arrays import Equations, RingMatrix, System, TangentFactors
 from beltdyn.system.build import belt_system
 from beltdyn.system.motion import new_equations, no_multipliers

@@ -8,12 +8,12 @@ import pytest
 
 from beltdyn.arrays import FloatArray
 from beltdyn.model import Belt, Drive, Pulley
-from beltdyn.model.instants import Instants
-from beltdyn.solve.integrators.alpha_advance import REACHED
-from beltdyn.solve.integrators.engine import advance, restart
-from beltdyn.solve.integrators.generalized_alpha import GeneralizedAlpha
-from beltdyn.solve.integrators.integrator_state import Settings, empty_steps, new_state
-from beltdyn.solve.integrators.trajectory import Chunk, Statistics, Task
+from beltdyn.model.simulation import Instants
+from beltdyn.solvers.alpha_advance import REACHED
+from beltdyn.solvers.engine import advance, restart
+from beltdyn.solvers.generalized_alpha import GeneralizedAlpha
+from beltdyn.solvers.integrator_state import Settings, empty_steps, new_state
+from beltdyn.solvers.trajectory import Chunk, Statistics, Task
 from beltdyn.system.arrays import System
 from beltdyn.system.build import belt_system
 from beltdyn.system.motion import new_equations

@@ -9,7 +9,7 @@ import pytest
 from beltdyn.model import Drive
 from beltdyn.results import Run, summarize
 from beltdyn.results.derived import balance, capstan_margins, pulley_powers, slips
-from beltdyn.solve import simulate
+from beltdyn.transient.simulate import simulate
 
 Measured = Callable[..., None]
 Change = Callable[..., Drive]

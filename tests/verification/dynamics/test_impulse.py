@@ -13,7 +13,7 @@ import xarray as xr
 
 from beltdyn import simulate
 from beltdyn.model import Drive
-from beltdyn.solve.integrators.standard import StandardIntegrator
+from beltdyn.solvers.standard import StandardIntegrator
 from beltdyn.system.arrays import DRIVER_WORK, POWERS
 
 INERTIA, RTOL = 0.4, 1e-3

@@ -14,9 +14,9 @@ import xarray as xr
 from beltdyn import simulate
 from beltdyn.arrays import FloatArray
 from beltdyn.model import Belt, Drive
-from beltdyn.solve.integrators.alpha_advance import REACHED
-from beltdyn.solve.integrators.engine import advance
-from beltdyn.solve.integrators.integrator_state import Settings, empty_steps, new_state
+from beltdyn.solvers.alpha_advance import REACHED
+from beltdyn.solvers.engine import advance
+from beltdyn.solvers.integrator_state import Settings, empty_steps, new_state
 from beltdyn.system.arrays import System
 from beltdyn.system.build import belt_system
 from beltdyn.system.motion import new_equations

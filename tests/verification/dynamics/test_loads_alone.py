@@ -13,8 +13,8 @@ from scipy.integrate import quad, solve_ivp
 
 from beltdyn.machines.loads.shaft import shaft_torque
 from beltdyn.model import Pulley
-from beltdyn.solve.integrators.generalized_alpha import GeneralizedAlpha
-from beltdyn.solve.integrators.standard import StandardIntegrator
+from beltdyn.solvers.generalized_alpha import GeneralizedAlpha
+from beltdyn.solvers.standard import StandardIntegrator
 from beltdyn.system.arrays import POWERS
 from beltdyn.system.build_machines import machine_arrays
 

@@ -11,11 +11,11 @@ from scipy import optimize
 import beltdyn as bd
 from beltdyn.arrays import FloatArray
 from beltdyn.model import Belt, Drive
-from beltdyn.solve.modes import modes
-from beltdyn.solve.vibration.eigenvalues import pencil, swinging
-from beltdyn.solve.vibration.vibrations import Vibrations
+from beltdyn.solvers.eigenvalues import pencil, swinging
+from beltdyn.solvers.flutter import Vibrations
 from beltdyn.system.build import belt_system
 from beltdyn.system.state import straight
+from beltdyn.vibration.modes import modes
 from validation.published.cases import better, loaded_two_pulley
 
 TENSION, MASS, LENGTH, STIFFNESS = 200.0, 0.1, 0.4, 0.01

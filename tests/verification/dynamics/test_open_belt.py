@@ -15,11 +15,12 @@ from scipy.optimize import brentq
 
 from beltdyn.model import Drive, loads
 from beltdyn.results import Run
-from beltdyn.results.closure import largest_closure
-from beltdyn.solve import equilibrium, simulate
-from beltdyn.solve.vibration.vibrations import Vibrations
+from beltdyn.results.balance import largest_closure
+from beltdyn.solvers.flutter import Vibrations
+from beltdyn.state.equilibrium import equilibrium
 from beltdyn.system.build import belt_system
 from beltdyn.system.state import straight
+from beltdyn.transient.simulate import simulate
 
 GRAVITY = 9.81
 PULL = {"name": "pull", "kind": "pulled", "direction": [0.0, -1.0], "tension": 100.0}

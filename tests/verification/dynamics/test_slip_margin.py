@@ -9,10 +9,10 @@ from beltdyn.arrays import FloatArray
 from beltdyn.errors import ConvergenceError
 from beltdyn.model import Drive, Path
 from beltdyn.parts.quantity import RPM
+from beltdyn.points.changed_drive import with_load
 from beltdyn.results import Run, summarize
 from beltdyn.results.incidents import SLIDING_LIMIT
-from beltdyn.solve import steady_state
-from beltdyn.solve.steady_running.changed_drive import with_load
+from beltdyn.state.steady import steady_state
 
 KINDS = (("fixed", ""), ("sliding", "slack"), ("rotary", "slack"), ("sliding", "tight"), ("rotary", "tight"))
 QUICK, ALL = range(5), range(5, 105)

@@ -10,14 +10,13 @@ import beltdyn as bd
 from beltdyn.arrays import ComplexArray, FloatArray
 from beltdyn.model import Drive
 from beltdyn.results import Run
-from beltdyn.solve.modes import modes
-from beltdyn.solve.response import response
-from beltdyn.solve.steady import steady_state
-from beltdyn.solve.vibration.eigenvalues import Pencil, all_eigenvalues, nearest, pencil
-from beltdyn.solve.vibration.flutter import flutter_shift
-from beltdyn.solve.vibration.forced_motion import ForcedMotion
-from beltdyn.solve.vibration.small_motions import SmallMotions, about_steady
-from beltdyn.solve.vibration.vibrations import Vibrations
+from beltdyn.solvers.eigenvalues import Pencil, all_eigenvalues, nearest, pencil
+from beltdyn.solvers.flutter import Vibrations, flutter_shift
+from beltdyn.state.steady import steady_state
+from beltdyn.vibration.modes import modes
+from beltdyn.vibration.response import response
+from beltdyn.vibration.response_answers import ForcedMotion
+from beltdyn.vibration.small_motions import SmallMotions, about_steady
 from validation.published.cases import better, loaded_two_pulley
 
 SPEED, TORQUE = 120.0, -45.0

@@ -10,7 +10,7 @@ import beltdyn as bd
 from beltdyn.errors import ConvergenceError
 from beltdyn.model import Drive
 from beltdyn.results import summarize
-from beltdyn.solve.steady import steady_state
+from beltdyn.state.steady import steady_state
 from beltdyn.theory.hysteresis import bending_loss
 from validation.published.cases import CASES, better, loaded_two_pulley
 

@@ -4,7 +4,7 @@ from collections.abc import Callable
 
 import numpy as np
 
-from beltdyn.solve.traction import traction
+from beltdyn.points.traction import traction
 from validation.published.cases import better, loaded_two_pulley
 
 INDEPENDENT = {0.01: 10.24, 0.02: 20.50, 0.04: 40.86, 0.07: 70.23, 0.10: 95.61, 0.15: 116.10}

@@ -15,7 +15,7 @@ import xarray as xr
 
 from beltdyn.arrays import FloatArray
 from beltdyn.model import Drive, Path, RotaryTensioner, SlidingTensioner
-from beltdyn.solve import equilibrium
+from beltdyn.state.equilibrium import equilibrium
 
 Make = Callable[..., Drive]
 Measured = Callable[..., None]

@@ -23,9 +23,9 @@ from scipy.optimize import brentq, curve_fit
 
 from beltdyn.model import Drive
 from beltdyn.model.carrier import Carrier, carriers_of, moved
-from beltdyn.model.instants import Instants
-from beltdyn.solve.integrators.generalized_alpha import GeneralizedAlpha
-from beltdyn.solve.integrators.trajectory import Chunk, Statistics, Task
+from beltdyn.model.simulation import Instants
+from beltdyn.solvers.generalized_alpha import GeneralizedAlpha
+from beltdyn.solvers.trajectory import Chunk, Statistics, Task
 from beltdyn.system.state import State
 
 Make = Callable[..., Drive]

@@ -11,9 +11,9 @@ import pytest
 
 from beltdyn.arrays import FloatArray
 from beltdyn.model import Belt
-from beltdyn.model.instants import Instants
-from beltdyn.solve.integrators.generalized_alpha import GeneralizedAlpha
-from beltdyn.solve.integrators.trajectory import Chunk, Statistics, Task
+from beltdyn.model.simulation import Instants
+from beltdyn.solvers.generalized_alpha import GeneralizedAlpha
+from beltdyn.solvers.trajectory import Chunk, Statistics, Task
 from beltdyn.system.build import belt_system
 from beltdyn.system.discretization import belt_section
 from beltdyn.system.observations import Observations

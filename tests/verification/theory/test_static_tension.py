@@ -10,8 +10,8 @@ import numpy as np
 import pytest
 
 from beltdyn.model import Drive, install
-from beltdyn.solve import find_equilibrium
-from beltdyn.solve.rest.installation import drawn_in
+from beltdyn.state.installation import drawn_in
+from beltdyn.state.static import find_equilibrium
 from beltdyn.system.build import drive_system
 from beltdyn.system.observe import observe
 from beltdyn.system.state import laid

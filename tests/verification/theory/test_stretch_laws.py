@@ -15,7 +15,7 @@ from beltdyn.elements import ANCF, ELEMENTS, QUINTIC, ElementKind
 from beltdyn.model import Drive
 from beltdyn.quadrature import gauss_points
 from beltdyn.records import blank
-from beltdyn.solve.rest.installation import bring_to_rest
+from beltdyn.state.installation import bring_to_rest
 from beltdyn.system.discretization import belt_section
 from beltdyn.theory.elastic_creep import speed_loss
 

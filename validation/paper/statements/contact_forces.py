@@ -7,8 +7,8 @@ import numpy as np
 from matplotlib.figure import Figure
 
 from beltdyn.model import Drive, layer_lengths
-from beltdyn.plot.style import INK, color, dash, new_figure
 from beltdyn.results import Run
+from beltdyn.show.plot.style import INK, color, dash, new_figure
 from validation.paper.distribution import END, Line, distribution, fit_line
 from validation.paper.hand_formulas import creep_lag
 from validation.paper.measures import DRIVER, settled, settled_mean, speed

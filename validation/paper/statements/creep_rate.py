@@ -6,8 +6,8 @@ import numpy as np
 from matplotlib.figure import Figure
 
 from beltdyn.model import Drive
-from beltdyn.plot.style import INK, color, dash, new_figure
 from beltdyn.results import Run
+from beltdyn.show.plot.style import INK, color, dash, new_figure
 from validation.paper.hand_formulas import creep_lag
 from validation.paper.measures import DRIVER, LAG_START, RAMP_END, RAMP_START, lag, speed, times
 from validation.paper.numbers import power_of_ten

@@ -7,7 +7,7 @@ import numpy as np
 
 from beltdyn.arrays import FloatArray
 from beltdyn.model import Belt, Drive
-from beltdyn.solve.rest.static import find_equilibrium
+from beltdyn.state.static import find_equilibrium
 from beltdyn.system.arrays import System
 from beltdyn.system.build import belt_system
 from beltdyn.system.discretization import belt_section

@@ -8,7 +8,7 @@ from matplotlib.figure import Figure
 from beltdyn.arrays import FloatArray
 from beltdyn.contact.friction import ForceSlope, friction_force
 from beltdyn.model import Drive
-from beltdyn.plot.style import color, dash, new_figure
+from beltdyn.show.plot.style import color, dash, new_figure
 from validation.paper.numbers import power_of_ten
 from validation.paper.picture import picture
 from validation.paper.runs import Runs

@@ -7,7 +7,7 @@ import numpy as np
 from matplotlib.figure import Figure
 
 from beltdyn.model import Drive
-from beltdyn.plot.style import INK, color, dash, new_figure
+from beltdyn.show.plot.style import INK, color, dash, new_figure
 from beltdyn.system.build import drive_system
 from validation.paper.measures import DRIVER, RAMP_END, RAMP_START, largest, rms, settled, speed, times
 from validation.paper.picture import picture

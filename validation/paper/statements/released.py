@@ -10,9 +10,9 @@ from scipy.spatial import cKDTree
 
 from beltdyn.arrays import FloatArray
 from beltdyn.model import Drive, install
-from beltdyn.plot.style import INK, PALE, color, new_figure
-from beltdyn.results.curve import centerline
-from beltdyn.solve.rest.static import Equilibrium
+from beltdyn.results.mechanics import centerline
+from beltdyn.show.plot.style import INK, PALE, color, new_figure
+from beltdyn.state.static import Equilibrium
 from validation.paper.picture import picture
 from validation.paper.runs import Runs
 from validation.paper.statement import Finding, Number, Section, Statement, Verdict, verdict

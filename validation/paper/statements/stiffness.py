@@ -6,7 +6,7 @@ from math import pi
 from matplotlib.figure import Figure
 
 from beltdyn.model import Drive
-from beltdyn.plot.style import INK, color, dash, new_figure
+from beltdyn.show.plot.style import INK, color, dash, new_figure
 from validation.paper.hand_formulas import creeping_torsional_swing, torsional_swing
 from validation.paper.measures import DRIVER, largest, ripple, ripple_frequency, speed, times
 from validation.paper.numbers import power_of_ten

@@ -7,7 +7,7 @@ import numpy as np
 from matplotlib.figure import Figure
 from matplotlib.ticker import LogLocator, NullFormatter, StrMethodFormatter
 
-from beltdyn.plot.style import INK, color, dash, new_figure
+from beltdyn.show.plot.style import INK, color, dash, new_figure
 from validation.paper.averages import BINS
 from validation.paper.measures import DRIVEN, DRIVER
 from validation.paper.picture import picture

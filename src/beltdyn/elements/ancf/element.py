@@ -2,7 +2,7 @@
 
 from typing import NamedTuple
 
-from beltdyn.elements.section import Section
+from beltdyn.elements.kind import Section
 from beltdyn.quadrature import Quadrature
 
 

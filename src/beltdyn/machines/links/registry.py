@@ -6,8 +6,8 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 
 from beltdyn.kernel import choice, kernel
+from beltdyn.machines import links as kinds
 from beltdyn.machines.family import any_of, constants_of, kinds_in
-from beltdyn.machines.links import kinds
 from beltdyn.machines.links.link import HubLink, LinkTorque
 from beltdyn.machines.profiles.functions import Profiles, schedule_value
 from beltdyn.records import Records, fill, record, records

@@ -20,10 +20,9 @@ from beltdyn.arrays import FloatArray
 from beltdyn.kernel import kernel
 from beltdyn.machines.loads.load import Load, LoadTorque, ShaftState, nearer_kink
 from beltdyn.machines.loads.motor import kloss_over_slip
-from beltdyn.machines.profiles.constant import Constant
 from beltdyn.machines.profiles.profile import Profile
+from beltdyn.machines.profiles.ramps import Constant, Step
 from beltdyn.machines.profiles.registry import FrequencyProfile
-from beltdyn.machines.profiles.step import Step
 from beltdyn.parts.messages import apart
 from beltdyn.parts.quantity import AngularSpeed, Frequency, Power, Ratio, Time
 from beltdyn.records import record

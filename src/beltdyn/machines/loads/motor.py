@@ -3,15 +3,18 @@
 Source: M. Kloss, "Drehmoment und Schlüpfung des Drehstrommotors", Archiv für Elektrotechnik 5 (1916).
 """
 
-from typing import Literal, Self
+from collections.abc import Mapping
+from typing import Any, Literal, Self
 
 import numpy as np
 from pydantic import Field, model_validator
 
 from beltdyn.arrays import FloatArray
 from beltdyn.kernel import kernel
-from beltdyn.machines.loads.load import Load, LoadTorque, ShaftState
-from beltdyn.parts.quantity import AngularSpeed, Ratio, Torque
+from beltdyn.machines.loads.load import Load, LoadTorque, ShaftState, StateRate
+from beltdyn.machines.profiles.profile import Profile
+from beltdyn.machines.profiles.registry import SpeedProfile
+from beltdyn.parts.quantity import AngularSpeed, Ratio, Time, Torque, TorsionalDamping
 from beltdyn.records import record
 
 MOTOR = record(
@@ -77,3 +80,111 @@ class Motor(Load):
     def driven_speed(self) -> float:
         """The synchronous speed, rad/s."""
         return self.synchronous_speed
+
+
+# A motor with a speed controller: PI action, torque limit, anti-windup
+
+SERVO_MOTOR = record(
+    proportional_gain="f8",  # K_p, N m s/rad
+    integral_gain="f8",  # K_p / T_i, N m/rad
+    torque_limit="f8",  # of the inverter, N m
+    stall_torque="f8",  # at standstill with full voltage, N m, infinite where the voltage does not limit the torque
+    no_load_speed="f8",  # with full voltage, rad/s
+)
+
+
+@kernel
+def servo_torque(constants: np.record, _numbers: FloatArray, shaft: ShaftState) -> LoadTorque:
+    """Torque of the controller within its limits.
+
+    Parameters
+    ----------
+    constants
+        A row of `SERVO_MOTOR`.
+    shaft
+        Its speed counts, its command, the set speed, rad/s, and its state z, rad.
+    """
+    gain, limit = constants.proportional_gain, constants.torque_limit
+    wanted = gain * (shaft.command - shaft.speed) + constants.integral_gain * shaft.state
+    sense = 1.0 if wanted >= 0.0 else -1.0
+    slope = constants.stall_torque / constants.no_load_speed if constants.stall_torque < np.inf else 0.0
+    by_voltage = constants.stall_torque - sense * slope * shaft.speed
+    if sense * wanted <= min(limit, by_voltage):
+        return LoadTorque(wanted, 0.0, -gain, gain)
+    if limit <= by_voltage:
+        return LoadTorque(sense * limit, 0.0, 0.0, 0.0)
+    return LoadTorque(sense * by_voltage, 0.0, -slope, 0.0)
+
+
+@kernel
+def servo_rate(constants: np.record, numbers: FloatArray, shaft: ShaftState) -> StateRate:
+    """Rate of the state z; arguments as for `servo_torque`."""
+    gain, integral = constants.proportional_gain, constants.integral_gain
+    found = servo_torque(constants, numbers, shaft)
+    by_state = integral if found.by_command != 0.0 else 0.0  # at a limit the torque feels neither
+    rate = (found.torque - integral * shaft.state) / gain
+    return StateRate(rate, found.by_speed / gain, (by_state - integral) / gain, by_state)
+
+
+class ServoMotor(Load):
+    """A servo motor, or any motor with a speed controller, which holds a set speed within its torque limit.
+
+    Examples
+    --------
+    >>> load = bd.ServoMotor(
+    ...     kind="servo_motor", speed={"kind": "constant", "value": 100.0}, proportional_gain=0.5,
+    ...     integral_time="50 ms", torque_limit="10 N m"
+    ... )
+    >>> load.integral_time
+    0.05
+    """
+
+    constants = SERVO_MOTOR
+    torque_at = servo_torque
+    rate_at = servo_rate
+
+    kind: Literal["servo_motor"] = Field(description="the kind of load")
+    speed: SpeedProfile = Field(description="the set speed over time, in rad/s")
+    proportional_gain: TorsionalDamping = Field(gt=0, description="the torque over the speed error, in N m s/rad")
+    integral_time: Time = Field(
+        gt=0, description="the integral time, after which a constant speed error doubles the torque, in s"
+    )
+    torque_limit: Torque = Field(gt=0, description="the largest torque in either sense, in N*m")
+    stall_torque: Torque | None = Field(
+        None, gt=0, description="the stall torque of a DC motor at full voltage, in N*m"
+    )
+    no_load_speed: AngularSpeed | None = Field(
+        None, gt=0, description="the no-load speed of a DC motor at full voltage, in rad/s"
+    )
+    lag: Time = Field(1e-3, gt=0, description="the time constant of the integral part, as of a current loop, in s")
+
+    @model_validator(mode="after")
+    def _has_a_whole_line_of_voltage(self) -> Self:
+        if (self.stall_torque is None) != (self.no_load_speed is None):
+            raise ValueError("stall_torque and no_load_speed define one line together. Give both, or remove both")
+        return self
+
+    def values(self) -> Mapping[str, Any]:
+        """Gains and limits."""
+        return {
+            "proportional_gain": self.proportional_gain,
+            "integral_gain": self.proportional_gain / self.integral_time,
+            "torque_limit": self.torque_limit,
+            "stall_torque": np.inf if self.stall_torque is None else self.stall_torque,
+            "no_load_speed": self.no_load_speed or 0.0,
+        }
+
+    @property
+    def command(self) -> Profile:
+        """The set speed."""
+        return self.speed
+
+    @property
+    def state_lag(self) -> float:
+        """Time constant of its integral part, s."""
+        return self.lag
+
+    @property
+    def driven_speed(self) -> float:
+        """The largest set speed, rad/s."""
+        return self.speed.largest()

@@ -3,8 +3,8 @@
 from typing import TYPE_CHECKING
 
 from beltdyn.kernel import choice
+from beltdyn.machines import loads as kinds
 from beltdyn.machines.family import any_of, constants_of, kinds_in
-from beltdyn.machines.loads import kinds
 from beltdyn.machines.loads.load import Load
 from beltdyn.records import record
 

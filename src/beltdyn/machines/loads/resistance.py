@@ -1,15 +1,19 @@
 """A resistance that opposes the motion: -(c tanh(omega / omega_c) + l omega + q omega |omega|)."""
 
-from math import tanh
-from typing import Literal, Self
+from collections.abc import Mapping
+from math import tanh, tau
+from typing import Annotated, Any, Literal, Self
 
 import numpy as np
 from pydantic import Field, model_validator
 
 from beltdyn.arrays import FloatArray
 from beltdyn.kernel import kernel
+from beltdyn.machines.loads.brake import BRAKE, braking_torque
 from beltdyn.machines.loads.load import Load, LoadTorque, ShaftState
-from beltdyn.parts.quantity import AngularSpeed, QuadraticDamping, Torque, TorsionalDamping
+from beltdyn.machines.profiles.profile import Profile
+from beltdyn.machines.profiles.registry import PressureProfile
+from beltdyn.parts.quantity import AngularSpeed, Power, QuadraticDamping, Ratio, Torque, TorsionalDamping, quantity
 from beltdyn.records import record
 
 RESISTANCE = record(
@@ -63,3 +67,73 @@ class Resistance(Load):
         if self.constant == self.linear == self.quadratic == 0:
             raise ValueError("has no resistance. Give constant, linear or quadratic")
         return self
+
+
+# A fan or centrifugal pump by its catalogue: M = -M_n ((1 - b) (omega / omega_n)^2 + b) against the motion
+
+
+class Fan(Load):
+    """A fan, blower or centrifugal pump, with a torque quadratic in speed plus friction.
+
+    Examples
+    --------
+    >>> bd.Fan(kind="fan", rated_power="2 kW", rated_speed="1500 rpm").rated_power
+    2000.0
+    """
+
+    constants = RESISTANCE
+    torque_at = resistance
+
+    kind: Literal["fan"] = Field(description="the kind of load")
+    rated_power: Power = Field(gt=0, description="the shaft power at the rated speed, in W")
+    rated_speed: AngularSpeed = Field(gt=0, description="the speed at rated power, in rad/s, of either sign")
+    friction_share: Ratio = Field(
+        0.0, ge=0, lt=1, description="the fraction of the rated torque that is friction, independent of speed"
+    )
+    creep_speed: AngularSpeed = Field(0.1, gt=0, description="the speed at which friction reaches 76 %, in rad/s")
+
+    def values(self) -> Mapping[str, Any]:
+        """Constants of a resistance."""
+        rated = self.rated_power / self.rated_speed
+        return {
+            "constant": self.friction_share * rated,
+            "creep_speed": self.creep_speed,
+            "linear": 0.0,
+            "quadratic": (1.0 - self.friction_share) * rated / self.rated_speed**2,
+        }
+
+
+# A displacement pump, as with gears, vanes or pistons: M = -p V / (2 pi eta), against the motion
+
+
+class Pump(Load):
+    """A displacement pump (gear, vane or piston), whose torque follows the pressure at any speed.
+
+    Examples
+    --------
+    >>> load = bd.Pump(
+    ...     kind="pump", displacement="10 cm^3",
+    ...     pressure={"kind": "constant", "value": 1e6}, efficiency=0.9
+    ... )
+    >>> load.efficiency
+    0.9
+    """
+
+    constants = BRAKE
+    torque_at = braking_torque
+
+    kind: Literal["pump"] = Field(description="the kind of load")
+    displacement: Annotated[float, quantity("m^3")] = Field(gt=0, description="the displaced volume per turn, in m^3")
+    pressure: PressureProfile = Field(description="the pressure rise over time, in Pa")
+    efficiency: Ratio = Field(gt=0, le=1, description="the hydraulic-mechanical efficiency, 0 to 1")
+    creep_speed: AngularSpeed = Field(0.1, gt=0, description="the speed at which the torque reaches 76 %, in rad/s")
+
+    def values(self) -> Mapping[str, Any]:
+        """Torques over the pressure, and the creep speed."""
+        arm = self.displacement / (tau * self.efficiency)
+        return {"forward": arm, "backward": arm, "creep_speed": self.creep_speed}
+
+    @property
+    def command(self) -> Profile:
+        """The pressure rise over time."""
+        return self.pressure

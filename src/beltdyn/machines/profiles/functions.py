@@ -6,6 +6,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from beltdyn.arrays import FloatArray
 from beltdyn.kernel import interpreted, kernel
 from beltdyn.machines.profiles.harmonic import Harmonic, harmonic_factor, harmonic_rows
 from beltdyn.machines.profiles.profile import SEGMENT, Profile, segment_integral, segment_value
@@ -203,3 +204,33 @@ def _segment(profiles: Profiles, number: int, time: float) -> int:
         else:
             last = middle - 1
     return int(first)
+
+
+# Search in a table
+
+
+@kernel
+def first_above(numbers: FloatArray, first: int, end: int, value: float) -> int:
+    """Index of the first of ascending numbers above a value.
+
+    Parameters
+    ----------
+    numbers : ndarray, shape (n,)
+        Numbers.
+    first, end
+        Places of the first number to be looked at, and behind the last.
+    value
+        The value.
+
+    Returns
+    -------
+    int
+        The place, `end` where none is above.
+    """
+    while first < end:
+        middle = (first + end) // 2
+        if numbers[middle] > value:
+            end = middle
+        else:
+            first = middle + 1
+    return first

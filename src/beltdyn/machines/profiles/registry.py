@@ -4,8 +4,8 @@ from typing import TYPE_CHECKING, Annotated
 
 from pydantic import BeforeValidator, Field
 
+from beltdyn.machines import profiles as kinds
 from beltdyn.machines.family import any_of, kinds_in
-from beltdyn.machines.profiles import kinds
 from beltdyn.machines.profiles.profile import Profile
 from beltdyn.parts.quantity import AngularSpeed, Force, Frequency, Power, Pressure, Torque, quantity
 

@@ -6,8 +6,8 @@ import numpy as np
 
 from beltdyn.arrays import FloatArray
 from beltdyn.kernel import choice
+from beltdyn.machines import tensioners as kinds
 from beltdyn.machines.family import any_of, constants_of, kinds_in
-from beltdyn.machines.tensioners import kinds
 from beltdyn.machines.tensioners.tensioner import MovingTensioner, Tensioner
 from beltdyn.records import fill, record, row
 

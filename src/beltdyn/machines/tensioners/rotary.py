@@ -9,8 +9,7 @@ from pydantic import Field
 
 from beltdyn.arrays import FloatArray
 from beltdyn.kernel import kernel
-from beltdyn.machines.tensioners.spring import SPRING
-from beltdyn.machines.tensioners.tensioner import LEAST_LEVERAGE, Center, MovingTensioner
+from beltdyn.machines.tensioners.tensioner import LEAST_LEVERAGE, SPRING, Center, MovingTensioner
 from beltdyn.parts.quantity import (
     Angle,
     AngularSpeed,

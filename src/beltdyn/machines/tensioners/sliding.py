@@ -8,9 +8,7 @@ from pydantic import Field
 
 from beltdyn.arrays import FloatArray
 from beltdyn.kernel import kernel
-from beltdyn.machines.tensioners.direction import Direction
-from beltdyn.machines.tensioners.spring import SPRING
-from beltdyn.machines.tensioners.tensioner import LEAST_LEVERAGE, Center, MovingTensioner
+from beltdyn.machines.tensioners.tensioner import LEAST_LEVERAGE, SPRING, Center, Direction, MovingTensioner
 from beltdyn.parts.quantity import Coordinate, Damping, Force, Mass, Speed, Stiffness
 from beltdyn.records import record
 

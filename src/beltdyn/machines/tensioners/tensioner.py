@@ -2,15 +2,123 @@
 
 from abc import abstractmethod
 from collections.abc import Callable, Mapping
-from typing import TYPE_CHECKING, Any, ClassVar, NamedTuple, Self
+from math import tanh
+from typing import TYPE_CHECKING, Annotated, Any, ClassVar, Literal, NamedTuple, Self
 
 import numpy as np
-from pydantic import Field, model_validator
+from pydantic import AfterValidator, Field, model_validator
 
 from beltdyn.arrays import FloatArray
-from beltdyn.machines.tensioners.spring import TensionerForce, spring_force
+from beltdyn.kernel import kernel
 from beltdyn.parts.part import Part
-from beltdyn.parts.quantity import Name
+from beltdyn.parts.quantity import Coordinate, Name, Ratio
+from beltdyn.records import record
+
+# A direction in the plane of the drive
+
+_ROUNDING = 4 * np.finfo(float).eps
+
+
+def _unit(vector: tuple[float, float]) -> tuple[float, float]:
+    """Make a vector one metre long; one that is so already stays as it is."""
+    length = float(np.hypot(*vector))
+    if length == 0:
+        raise ValueError("has zero length: at least one component must differ from zero")
+    if abs(length - 1) <= _ROUNDING:
+        return vector
+    return vector[0] / length, vector[1] / length
+
+
+Direction = Annotated[tuple[Ratio, Ratio], AfterValidator(_unit)]
+
+
+# The force of spring-loaded tensioners: spring, viscous damper, dry friction and stops
+
+SPRING = record(
+    preload="f8",  # spring force at q = 0
+    rate="f8",  # spring force lost in a unit of q
+    damping="f8",  # viscous damping
+    tensioning_friction="f8",  # dry friction while q grows
+    yielding_friction="f8",  # dry friction while q falls
+    creep_speed="f8",  # speed over which dry friction builds up
+    lower="f8",  # lower stop, -inf where there is none
+    upper="f8",  # upper stop, inf where there is none
+    stop_stiffness="f8",  # stiffness of the stops
+    stop_damping="f8",  # damping of the stops
+)
+"""Constants of a spring-loaded tensioner; q is in m or rad, forces in N or N m."""
+
+
+class TensionerForce(NamedTuple):
+    """Generalised force of a tensioner on its coordinate, positive where it lengthens the path, without weight."""
+
+    force: float
+    """N or N m."""
+    by_position: float
+    by_velocity: float
+    energy: float
+    """Stored since q = 0, J."""
+    loss: float
+    """Power lost, W."""
+
+
+@kernel
+def spring_force(constants: np.record, q: float, velocity: float) -> TensionerForce:
+    """Force preload - k q - c v - dry friction + stops.
+
+    Parameters
+    ----------
+    constants
+        A row with a field `spring`, a row of `SPRING`.
+    q, velocity
+        Coordinate and its rate v, m and m/s, or rad and rad/s.
+    """
+    spring = constants.spring
+    friction, friction_slope = dry_friction(spring, velocity)
+    force = spring.preload - spring.rate * q - spring.damping * velocity - friction
+    energy = (0.5 * spring.rate * q - spring.preload) * q
+    by_position, by_velocity = -spring.rate, -spring.damping - friction_slope
+    loss = (spring.damping * velocity + friction) * velocity
+    if q > spring.upper:
+        depth, side = q - spring.upper, 1.0
+    elif q < spring.lower:
+        depth, side = spring.lower - q, -1.0
+    else:
+        return TensionerForce(force, by_position, by_velocity, energy, loss)
+    elastic, approach = spring.stop_stiffness * depth, side * velocity
+    stop = elastic + spring.stop_damping * approach
+    energy += 0.5 * elastic * depth
+    if stop <= 0.0:
+        return TensionerForce(force, by_position, by_velocity, energy, loss - elastic * approach)
+    return TensionerForce(
+        force - side * stop,
+        by_position - spring.stop_stiffness,
+        by_velocity - spring.stop_damping,
+        energy,
+        loss + spring.stop_damping * velocity * velocity,
+    )
+
+
+@kernel
+def dry_friction(spring: np.record, velocity: float) -> tuple[float, float]:
+    """Dry friction against the motion of a tensioner: f tanh(v / v_c), with an f for each sense.
+
+    Parameters
+    ----------
+    spring
+        A row of `SPRING`.
+    velocity
+        v, m/s or rad/s, positive where the path gets longer.
+
+    Returns
+    -------
+    friction, slope : float
+        Friction, N or N m, which has the sign of the velocity, and its derivative, that for positive ones at zero.
+    """
+    largest = spring.tensioning_friction if velocity >= 0.0 else spring.yielding_friction
+    rise = tanh(velocity / spring.creep_speed)
+    return largest * rise, largest * (1.0 - rise * rise) / spring.creep_speed
+
 
 LEAST_LEVERAGE = 1e-3
 """Least lengthening of the path per unit motion of the pulley's center."""
@@ -151,3 +259,20 @@ class MovingTensioner(Tensioner):
     def written(self, position: float) -> str:
         """Format a position, m or rad, with its unit."""
         return f"{np.degrees(position):.4g}°" if self.turns else f"{position:.4g} m"
+
+
+# A tensioner set before the drive runs
+
+
+class FixedTensioner(Tensioner):
+    """A pulley moved along a line before the drive runs, and held there.
+
+    Examples
+    --------
+    >>> bd.FixedTensioner(kind="fixed", pulley="idler", direction=[0, 2], take_up="10 mm").take_up
+    0.01
+    """
+
+    kind: Literal["fixed"] = Field(description="the kind of tensioner")
+    direction: Direction = Field(description="the direction of the take-up, as [x, y]")
+    take_up: Coordinate = Field(0.0, description="the displacement of the pulley from its center, in m")

@@ -7,7 +7,7 @@ them; to add one, write it there and enter it in `CHECKS`.
 from dataclasses import replace
 
 from beltdyn.model import Drive
-from beltdyn.parts.finding import Finding
+from beltdyn.parts.messages import Finding
 from beltdyn.results.checks.contact import (
     deep_penetration,
     large_strain,
@@ -18,16 +18,21 @@ from beltdyn.results.checks.contact import (
 )
 from beltdyn.results.checks.creep import impossible_slip, regularised_slip, smoothed_friction
 from beltdyn.results.checks.ending import NOTHING_RECORDED, unfinished, unsettled
-from beltdyn.results.checks.energy import numerical_damping, open_account, unbalanced_powers
 from beltdyn.results.checks.evidence import Check, Evidence
-from beltdyn.results.checks.flutter import flutter
-from beltdyn.results.checks.mesh import unresolved_by_mesh
-from beltdyn.results.checks.power import artificial_losses, driving_loads, negative_losses
+from beltdyn.results.checks.mesh import begun_by_means, mean_torques, off_steady_running, unresolved_by_mesh
+from beltdyn.results.checks.power import (
+    artificial_losses,
+    driving_loads,
+    flutter,
+    negative_losses,
+    numerical_damping,
+    open_account,
+    unbalanced_powers,
+)
 from beltdyn.results.checks.sliding import ended_by_slip, gross_slip, gross_slip_before, near_gross_slip
-from beltdyn.results.checks.steady import begun_by_means, mean_torques, off_steady_running
 from beltdyn.results.checks.tensioners import stopped_tensioners, unstable_tensioners
-from beltdyn.results.recorded import Recorded
-from beltdyn.results.resolution import Resolution
+from beltdyn.results.provenance import Resolution
+from beltdyn.results.schema import Recorded
 
 __all__ = ["CHECKS", "Check", "Evidence", "Finding", "find"]
 

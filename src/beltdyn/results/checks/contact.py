@@ -5,9 +5,9 @@ from collections.abc import Iterator
 import numpy as np
 
 from beltdyn.arrays import FloatArray
-from beltdyn.parts.finding import Finding, listing
+from beltdyn.parts.messages import Finding, listing
 from beltdyn.results.checks.evidence import Evidence
-from beltdyn.results.recorded import names
+from beltdyn.results.schema import names
 
 STRAIN_LIMIT = 0.05
 """Largest strain of a span that passes without a warning; belts with cords work below 0.02, elastic ones below 0.05."""

@@ -5,7 +5,7 @@ from collections.abc import Iterator
 import numpy as np
 
 from beltdyn.model.advice import other_creep
-from beltdyn.parts.finding import Finding, listing
+from beltdyn.parts.messages import Finding, listing
 from beltdyn.results.checks.evidence import Evidence
 from beltdyn.theory.creep import entry_creep
 

@@ -4,9 +4,9 @@ from collections.abc import Iterator
 from math import isnan, tau
 
 from beltdyn.model import Pulley
-from beltdyn.parts.finding import Finding
+from beltdyn.parts.messages import Finding
 from beltdyn.results.checks.evidence import Evidence
-from beltdyn.results.recorded import attribute
+from beltdyn.results.schema import attribute
 
 SETTLED = 0.01
 """Starting transient left in the span tensions at the start of a run-up, over the largest mean span tension."""

@@ -8,13 +8,12 @@ import numpy as np
 
 from beltdyn.arrays import FloatArray
 from beltdyn.model import Drive
-from beltdyn.parts.finding import Finding
+from beltdyn.parts.messages import Finding
 from beltdyn.results.balance import Balance, power_balance
-from beltdyn.results.cycles import mean_window
+from beltdyn.results.cycles import Window, mean_window
 from beltdyn.results.means import PulleySummary, pulley_means, span_means
-from beltdyn.results.recorded import Recorded
-from beltdyn.results.resolution import Resolution
-from beltdyn.results.window import Window
+from beltdyn.results.provenance import Resolution
+from beltdyn.results.schema import Recorded
 
 IDLE = 0.01
 """Power input over tension times belt speed below which a drive idles."""

@@ -4,12 +4,17 @@ import math
 import tomllib
 from collections.abc import Iterator
 
-from beltdyn.model import ERROR_LIMITS, unresolved
+import numpy as np
+
+from beltdyn.machines.loads.load import Load
+from beltdyn.model import ERROR_LIMITS, Drive, unresolved
 from beltdyn.model.resolution import PRESSURES
-from beltdyn.parts.finding import Finding
+from beltdyn.parts.messages import Finding, listing
+from beltdyn.results.balance import LOSSES
+from beltdyn.results.checks.creep import LOSS_LIMIT
 from beltdyn.results.checks.evidence import Evidence
-from beltdyn.results.checks.steady import STEADY_LOSSES
-from beltdyn.results.resolution import found_errors
+from beltdyn.results.provenance import found_errors
+from beltdyn.results.schema import runs_steadily
 
 
 def unresolved_by_mesh(evidence: Evidence) -> Iterator[Finding]:
@@ -41,3 +46,88 @@ def _given(evidence: Evidence) -> bool:
     """Whether the drive file gives the number of elements; the drive of a run may hold one that was chosen."""
     text = evidence.recorded.attrs.get("drive_as_given")
     return evidence.drive.belt.elements is not None if text is None else "elements" in tomllib.loads(str(text))["belt"]
+
+
+# Excitation that steady running ignores, and errors of losses and slip against it
+
+STEADY_LOSSES, STEADY_SLIPS, COARSE_SETTINGS = "steady_losses", "steady_slips", "coarse_settings"
+"""Attributes of a run: losses (W, in the order of `LOSSES`) and slips in steady running, and settings that differ."""
+
+_LEAST_SLIP = 1e-4
+"""Largest slip of a drive from which on its errors are told."""
+
+
+def mean_torques(evidence: Evidence) -> Iterator[Finding]:
+    """Loads that depend on the shaft angle, which steady running averages."""
+    if not runs_steadily(evidence.recorded):
+        return
+    for pulley in evidence.drive.pulleys:
+        for load in filter(_turns_with_its_shaft, pulley.load):
+            yield Finding(
+                f'the load of {pulley.name} of kind "{load.kind}" varies with the shaft angle; steady running uses its '
+                "mean over a cycle.",
+                "The vibration it excites is ignored: torques, tensions and speeds oscillate about these values.",
+                "Use `beltdyn response`, or simulate the drive with `beltdyn run`.",
+            )
+
+
+def off_steady_running(evidence: Evidence) -> Iterator[Finding]:
+    """Errors of losses and slip by settings of mesh and steps: steady running refines its mesh until it resolves."""
+    attributes = evidence.recorded.attrs
+    found = [*_off_losses(evidence), *_off_slips(evidence)] if STEADY_LOSSES in attributes else []
+    if found:
+        yield Finding(
+            f"against steady running, on a mesh that resolves it, {listing(found)}.",
+            "Losses, efficiency and slip are wrong by as much.",
+            f"Leave out {attributes[COARSE_SETTINGS]}, or take them from `beltdyn steady`.",
+        )
+
+
+def _off_losses(evidence: Evidence) -> Iterator[str]:
+    """Losses, by part, that differ from those of steady running."""
+    losses, steady = evidence.balance.losses, np.asarray(evidence.recorded.attrs[STEADY_LOSSES])
+    off = np.array([losses.get(cause, 0.0) for cause in LOSSES.values()]) - steady
+    parts = dict(zip(LOSSES.values(), (off / steady.sum()).tolist(), strict=True))
+    total = sum(parts.values())
+    if max(map(abs, (total, *parts.values()))) > LOSS_LIMIT:
+        told = (f"{cause} {part:+.1%}" for cause, part in parts.items() if abs(part) > 0.5 * LOSS_LIMIT)
+        yield f"losses are off by {total:+.1%} ({', '.join(told)} of the losses)"
+
+
+def _off_slips(evidence: Evidence) -> Iterator[str]:
+    """The slip that differs most from that of steady running."""
+    steady = np.asarray(evidence.recorded.attrs[STEADY_SLIPS])
+    largest = max(float(np.nanmax(np.abs(steady), initial=0.0)), _LEAST_SLIP)
+    off = np.nan_to_num([one.slip for one in evidence.pulleys] - steady) / largest
+    worst = int(np.argmax(np.abs(off)))
+    if abs(off[worst]) > LOSS_LIMIT:
+        yield f"the slip of {evidence.pulleys[worst].name} by {off[worst]:+.1%} of the largest slip"
+
+
+def begun_by_means(evidence: Evidence) -> Iterator[Finding]:
+    """Excitation that sets in with a run because the initial steady running ignores it."""
+    drive = evidence.drive
+    if runs_steadily(evidence.recorded) or drive.simulation.start != "steady":
+        return
+    swinging = list(_swinging(drive))
+    if swinging:
+        yield Finding(
+            f"the run starts from steady running with the mean of {listing(swinging)}; the oscillation sets in at "
+            "once.",
+            "The first part of the run still shows the transient that this causes.",
+            "Use the results after it has decayed, or use `beltdyn sweep`, which waits for it.",
+        )
+
+
+def _swinging(drive: Drive) -> Iterator[str]:
+    """What oscillates with the shaft angles, in words."""
+    for pulley in drive.pulleys:
+        if pulley.harmonics:
+            yield f"the speed of {pulley.name}"
+        if any(load.orders for load in pulley.load):
+            yield f"the load of {pulley.name}"
+
+
+def _turns_with_its_shaft(load: Load) -> bool:
+    """Whether a load depends on the angle of its shaft by more than harmonics."""
+    return len(load.orders) > len(load.harmonics)

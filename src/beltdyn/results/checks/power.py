@@ -1,13 +1,15 @@
 """Powers of the wrong sign, and losses that exist only in the computation."""
 
+import math
 from collections.abc import Iterator
 
+from beltdyn.model import Drive
 from beltdyn.model.defaults import DAMPING_RATIO
-from beltdyn.parts.finding import Finding, listing
+from beltdyn.parts.messages import Finding, listing
 from beltdyn.parts.quantity import RPM
-from beltdyn.results.balance import Balance
+from beltdyn.results.balance import Balance, largest_closure, largest_numerical_share
 from beltdyn.results.checks.evidence import Evidence, shorter_steps
-from beltdyn.results.recorded import attribute
+from beltdyn.results.schema import attribute
 
 DAMPING_LIMIT = 0.01
 """Largest share of the power (`Evidence.power`) that contact damping may dissipate without a warning."""
@@ -57,7 +59,7 @@ def may_flutter(evidence: Evidence) -> bool:
 def artificial_losses(evidence: Evidence) -> Iterator[Finding]:
     """Power lost in contact damping, which belongs to the numerical contact and not to a belt.
 
-    Where vibrations grow they cause the loss: see `beltdyn.results.checks.flutter`.
+    Where vibrations grow they cause the loss: see `beltdyn.results.checks.power`.
     """
     balance, share = evidence.balance, damping_share(evidence)
     power, drive = balance.losses["contact damping"], evidence.drive
@@ -100,4 +102,109 @@ def driving_loads(evidence: Evidence) -> Iterator[Finding]:
             "there.",
             "If the load should absorb power, change its sign: a load is negative on a shaft that turns "
             "counter-clockwise and positive on one that turns clockwise.",
+        )
+
+
+# The energy account
+
+CLOSURE_LIMIT = 0.01
+"""Largest closure error of the energy account, at any time, that passes without a warning."""
+
+NUMERICAL_LIMIT = 0.01
+"""Largest share of the energy input, at any time, that time integration may dissipate without a warning."""
+
+POWER_LIMIT = 0.01
+"""Part of the power (`Evidence.power`) that may be missing in means over outputs without a warning."""
+
+_OTHER_INTERVAL = 0.7
+"""The interval of outputs that the remedy names, over that of the run; elements are met at other places then."""
+
+
+def open_account(evidence: Evidence) -> Iterator[Finding]:
+    """An energy balance open by more than the limit at any time; NaN counts as open."""
+    time, error = largest_closure(evidence.recorded)
+    if not abs(error) <= CLOSURE_LIMIT:
+        yield Finding(
+            f"the energy balance does not close: at t = {time:.4g} s {error:.2%} of the energy input is unaccounted "
+            f"for (limit {CLOSURE_LIMIT:.0%}).",
+            "Losses and efficiency may be wrong by as much.",
+            _closing(evidence.drive),
+        )
+
+
+def _closing(drive: Drive) -> str:
+    """The remedy: on a staying mesh finer elements, otherwise shorter steps."""
+    if not drive.frame.stays:
+        return shorter_steps(drive)
+    return (
+        f"On a staying mesh the error falls as the mesh is refined: set belt.elements = {2 * drive.elements}, or "
+        f"reduce simulation.force_tolerance. If that does not help: {shorter_steps(drive)}"
+    )
+
+
+def numerical_damping(evidence: Evidence) -> Iterator[Finding]:
+    """Numerical damping by the time integrator above the limit."""
+    time, share = largest_numerical_share(evidence.recorded)
+    if not abs(share) <= NUMERICAL_LIMIT:
+        yield Finding(
+            f"time steps are too long for the vibrations: numerical damping has dissipated {share:.2%} of the energy "
+            f"input by t = {time:.4g} s (limit {NUMERICAL_LIMIT:.0%}).",
+            "Vibrations decay too fast, and the efficiency is too low by up to this share.",
+            shorter_steps(evidence.drive),
+        )
+
+
+def unbalanced_powers(evidence: Evidence) -> Iterator[Finding]:
+    """Mean shaft powers that do not balance over whole belt turns although the energy balance closes.
+
+    Torques of prescribed shafts ripple as elements pass. Outputs that meet each of them at the same place give a mean
+    torque and power that are off.
+    """
+    balance = evidence.balance
+    missing = balance.power_in - balance.power_out - balance.lost - balance.stored
+    closes = abs(largest_closure(evidence.recorded)[1]) <= CLOSURE_LIMIT
+    if evidence.window.turns and closes and abs(missing) > POWER_LIMIT * evidence.power and balance.power_in > 0.0:
+        interval = evidence.drive.simulation.output_interval
+        yield Finding(
+            f"the mean powers do not balance: {missing:.3g} W ({missing / balance.power_in:.1%}) of "
+            f"{balance.power_in:.4g} W input is unaccounted for, because a torque ripple is in step with the "
+            f"outputs, every {interval:g} s.",
+            "Mean torques and powers are wrong by as much; losses and speeds are correct.",
+            f"Set simulation.output_interval = {_OTHER_INTERVAL * interval:.2g}.",
+        )
+
+
+# Flutter of a sliding belt: vibrations that could grow far, and those that dissipate power
+
+GROWTH_LIMIT = math.log(100.0)
+"""Largest growth of vibrations where the belt slides, as the logarithm of a factor, that passes without a warning."""
+
+_LARGEST = 700.0
+"""Logarithm of about the largest number there is."""
+
+
+def flutter(evidence: Evidence) -> Iterator[Finding]:
+    """Vibrations that could grow beyond the limit while the belt slid, or that show in the contact damping.
+
+    States in which the belt flutters already show less growth than those from which it begins; but then the vibrations
+    take power in contact damping.
+    """
+    growth, start, end, frequency = (
+        attribute(evidence.recorded, f"flutter_{name}", 0.0) for name in ("growth", "start", "end", "frequency")
+    )
+    drive, share = evidence.drive, damping_share(evidence)
+    between = f"between t = {start:.4g} s and {end:.4g} s, vibrations of {frequency:.0f} Hz"
+    fault = ""
+    if growth > GROWTH_LIMIT:
+        factor = math.exp(min(growth, _LARGEST))
+        fault = f"the belt may flutter where it slides: {between} could grow by a factor of {factor:.1g}."
+    elif share > DAMPING_LIMIT and may_flutter(evidence):
+        fault = f"the belt flutters where it slides: {between} grow and dissipate {share:.1%} of the power."
+    if fault:
+        yield Finding(
+            fault,
+            f"Contact forces are then uncertain; a run with simulation.rtol = {drive.simulation.rtol / 10.0:g} shows "
+            "by how much speeds and slip are. Real belts rarely flutter like this.",
+            f"Increase contact.damping from {drive.contact_damping:.2g} to "
+            f"{DAMPING_RATIO * drive.critical_damping:.2g} N s/m^2, half of critical.",
         )

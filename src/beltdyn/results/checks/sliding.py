@@ -5,7 +5,7 @@ from math import ceil, floor
 
 import numpy as np
 
-from beltdyn.parts.finding import Finding, listing
+from beltdyn.parts.messages import Finding, listing
 from beltdyn.results.checks.evidence import Evidence
 from beltdyn.results.incidents import SLIDING_LIMIT, slides_through
 from beltdyn.results.mechanics import rim_speeds

@@ -6,7 +6,7 @@ import numpy as np
 
 from beltdyn.arrays import BoolArray, FloatArray
 from beltdyn.model import off_the_stop, unstable_balance
-from beltdyn.parts.finding import Finding
+from beltdyn.parts.messages import Finding
 from beltdyn.results.checks.evidence import Evidence
 from beltdyn.results.incidents import on_stops
 

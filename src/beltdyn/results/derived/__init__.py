@@ -1,14 +1,20 @@
 """Quantities derived from a run: functions of a `Run` that return labelled arrays with units."""
 
-from beltdyn.results.derived.arc import contact_arc
+from beltdyn.results.derived.arc import contact_arc, wear_by_arc, wear_by_belt
 from beltdyn.results.derived.labels import pulley_number
-from beltdyn.results.derived.power import balance, pulley_powers
-from beltdyn.results.derived.pulley import capstan_margins, hub_loads, tension_ratios
-from beltdyn.results.derived.slip import sliding_arcs, slips
-from beltdyn.results.derived.span import mid_span_displacements, span_tensions
+from beltdyn.results.derived.pulley import (
+    balance,
+    capstan_margins,
+    hub_loads,
+    mid_span_displacements,
+    pulley_powers,
+    sliding_arcs,
+    slips,
+    span_tensions,
+    tension_ratios,
+    turn_means,
+)
 from beltdyn.results.derived.spectrum import amplitude_spectrum, element_order, orders, overall_level, waterfall
-from beltdyn.results.derived.turn import turn_means
-from beltdyn.results.derived.wear import wear_by_arc, wear_by_belt
 
 __all__ = [
     "amplitude_spectrum",

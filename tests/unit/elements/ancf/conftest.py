@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from beltdyn.arrays import FloatArray
-from beltdyn.elements.section import Section
+from beltdyn.elements.kind import Section
 from beltdyn.model import Drive
 from beltdyn.system.discretization import belt_section
 

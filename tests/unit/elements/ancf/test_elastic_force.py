@@ -5,7 +5,7 @@ from beltdyn.arrays import FloatArray
 from beltdyn.elements.ancf.elastic_force import element_energy, element_force
 from beltdyn.elements.ancf.element import Ancf
 from beltdyn.elements.ancf.kind import ANCF
-from beltdyn.elements.section import Section
+from beltdyn.elements.kind import Section
 from beltdyn.quadrature import gauss_points
 from beltdyn.records import blank
 

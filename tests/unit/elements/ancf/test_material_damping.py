@@ -8,9 +8,7 @@ from beltdyn.elements.ancf.elastic_force import element_energy, element_force
 from beltdyn.elements.ancf.element import Ancf
 from beltdyn.elements.ancf.kind import ANCF
 from beltdyn.elements.ancf.material_damping import damping_force
-from beltdyn.elements.kind import DampingFactors
-from beltdyn.elements.section import Section
-from beltdyn.elements.tension import damping_tension
+from beltdyn.elements.kind import DampingFactors, Section, damping_tension
 from beltdyn.quadrature import gauss_points
 from beltdyn.records import blank
 from beltdyn.stretch import Green, Linear

@@ -9,11 +9,11 @@ from typing import Any
 import numpy as np
 import pytest
 
+from beltdyn.designs.batch import simulate_all
 from beltdyn.errors import ModelError
 from beltdyn.machines.loads.load import LoadTorque
 from beltdyn.machines.loads.shaft import shaft_torque
 from beltdyn.model import Drive, FunctionLoad, dumps, loads
-from beltdyn.solve import simulate_all
 from beltdyn.system.build_machines import machine_arrays
 
 Torque = Callable[..., LoadTorque]

@@ -7,7 +7,7 @@ import matplotlib as mpl
 import pytest
 from matplotlib.figure import Figure
 
-from beltdyn.plot.style import INK
+from beltdyn.show.plot.style import INK
 from validation.paper.picture import picture
 from validation.paper.statement import Picture
 

@@ -4,9 +4,10 @@ import numpy as np
 import pytest
 import xarray as xr
 
+from beltdyn.designs.worker import Ending
 from beltdyn.model import Drive, load
 from beltdyn.results import Run
-from beltdyn.solve import BatchProgress, Ending
+from beltdyn.solvers.progress import BatchProgress
 from validation.paper.runs import RunMissingError, Runs, run_all
 from validation.published import two_pulley
 

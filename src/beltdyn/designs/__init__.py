@@ -1,0 +1,1 @@
+"""Many designs of a drive: batches, studies, sensitivity, optimisation, calibration."""

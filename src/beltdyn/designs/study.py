@@ -1,0 +1,311 @@
+"""Parameter studies: any analysis for many variants of a drive."""
+
+import time
+from collections import deque
+from collections.abc import Callable, Iterable, Mapping
+from concurrent.futures import FIRST_COMPLETED, Future, wait
+from contextlib import suppress
+from inspect import signature
+from math import ceil
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from beltdyn.analyses import ANALYSES, Analysis
+from beltdyn.designs.point_work import ChunkOutcome, Outcome, PointWork, compute_points, require_reductions
+from beltdyn.designs.study_plan import plan_of
+from beltdyn.designs.study_table import StudyTable
+from beltdyn.designs.worker import GONE, ThisProcess, Workers, workers_of
+from beltdyn.errors import ModelError, SimulationError
+from beltdyn.model import Drive, ParameterStudy, load
+from beltdyn.model.drive import refuse_functions
+from beltdyn.model.toml_reader import read_study
+from beltdyn.parts.messages import suggest
+from beltdyn.results import Result
+from beltdyn.results.atomic import make_folder
+from beltdyn.signals import uninterrupted
+from beltdyn.solvers.progress import Pace, Phase, Progress, Report
+from beltdyn.transient.beginning import compile_ahead
+
+# Points of a study go to those who compute them, in chunks that take about a second, and come back in any order
+
+_CHUNK = 1.0
+"""Computing time of a chunk that is aimed at, s."""
+_LARGEST = 1000
+"""Points in a chunk."""
+_AHEAD = 2
+"""Chunks on their way for each process."""
+_SHARES = 4
+"""Chunks for each process among which the last points are shared out at least."""
+_LATEST = 0.5
+"""Weight of the latest chunk in the mean time of a point."""
+_ATTEMPTS = 3
+"""How often a process may be killed while it computes a point."""
+_POLL = 0.5
+
+Chunk = tuple[int, ...]
+
+
+class Dispatch:
+    """Sends points out, and takes what comes back.
+
+    Parameters
+    ----------
+    workers
+        Who computes.
+    work
+        What is asked of every point.
+    changes
+        Gives what differs from the drive at a point.
+    take
+        Is given every outcome once, with units of results.
+    tell
+        Is called now and then.
+    """
+
+    def __init__(
+        self,
+        workers: Workers,
+        work: PointWork,
+        changes: Callable[[int], Mapping[str, Any]],
+        take: Callable[[list[Outcome], Mapping[str, str]], None],
+        tell: Callable[[], None],
+    ) -> None:
+        self._workers, self._work, self._changes, self._take, self._tell = workers, work, changes, take, tell
+        self._waiting: deque[int] = deque()
+        self._again: deque[int] = deque()
+        self._attempts: dict[int, int] = {}
+        self._flying: dict[Future[ChunkOutcome], Chunk] = {}
+        self._seconds = 0.0
+
+    def run(self, points: Iterable[int]) -> None:
+        """Have points computed.
+
+        Parameters
+        ----------
+        points
+            Their numbers.
+
+        Raises
+        ------
+        SimulationError
+            If those who compute are gone; what came back until then was taken.
+        """
+        self._waiting.extend(points)
+        try:
+            while self._waiting or self._again or self._flying:
+                self._fill()
+                for future in wait(self._flying, timeout=_POLL, return_when=FIRST_COMPLETED).done:
+                    with uninterrupted():
+                        self._land(future)
+                self._tell()
+        except BaseException:
+            self._workers.close(abandon=True)
+            self._take_what_came()
+            raise
+        self._workers.close()
+
+    def _fill(self) -> None:
+        """Send chunks out, as many as may be on their way."""
+        while len(self._flying) < _AHEAD * self._workers.slots and (chunk := self._next()):
+            future = self._workers.submit(compute_points, self._work, [(one, self._changes(one)) for one in chunk])
+            self._flying[future] = chunk
+            if isinstance(self._workers, ThisProcess):
+                return
+
+    def _next(self) -> Chunk:
+        """The next points to send together; none where others have to come back first."""
+        if self._again:
+            alone = self._attempts[self._again[0]] > 1
+            return () if alone and self._flying else (self._again.popleft(),)
+        if any(self._attempts.get(chunk[0], 0) > 1 for chunk in self._flying.values()):
+            return ()
+        fair = ceil(len(self._waiting) / (_SHARES * max(self._workers.slots, 1)))
+        wanted = int(_CHUNK / self._seconds) if self._seconds > 0.0 else 1
+        size = min(max(min(wanted, fair, _LARGEST), 1), len(self._waiting))
+        return tuple(self._waiting.popleft() for _ in range(size))
+
+    def _land(self, future: Future[ChunkOutcome]) -> None:
+        """Take what a chunk has become."""
+        chunk = self._flying.pop(future)
+        if future.cancelled():
+            raise SimulationError(GONE)
+        error = future.exception()
+        if error is not None and self._workers.lost(error):
+            self._lose(chunk)
+        elif error is not None:
+            raise error
+        else:
+            found = future.result()
+            self._take_outcomes(found)
+            if found.interrupted and isinstance(self._workers, ThisProcess):
+                raise KeyboardInterrupt
+            done = {one.point for one in found.outcomes}
+            self._waiting.extendleft(point for point in reversed(chunk) if point not in done)
+
+    def _take_outcomes(self, found: ChunkOutcome) -> None:
+        if found.outcomes:
+            latest = sum(one.seconds for one in found.outcomes) / len(found.outcomes)
+            self._seconds += (_LATEST if self._seconds > 0.0 else 1.0) * (latest - self._seconds)
+            self._take(found.outcomes, found.units)
+
+    def _lose(self, chunk: Chunk) -> None:
+        """Have points computed again whose process was killed; one of which that happens too often has failed."""
+        for point in chunk:
+            self._attempts[point] = attempts = self._attempts.get(point, 0) + 1
+            if attempts < _ATTEMPTS:
+                self._again.append(point)
+            else:
+                failure = (
+                    f"its process was killed {attempts} times, possibly because memory ran out. Run fewer at once."
+                )
+                self._take([Outcome(point, {}, failure, "", 0.0)], {})
+
+    def _take_what_came(self) -> None:
+        """Take what came back before the end."""
+        for future in list(self._flying):
+            with suppress(BaseException):
+                if future.done() and not future.cancelled():
+                    self._take_outcomes(future.result())
+
+
+_OWN = ("output", "progress", "overwrite", "start", "integrator", "resume")
+"""Parameters of analyses that a study fills in, or leaves alone."""
+
+
+def study(
+    study: Path | str | ParameterStudy,
+    drive: Drive | None = None,
+    *,
+    jobs: int | None = None,
+    scheduler: str | None = None,
+    retry: bool = False,
+    output: Path | str | None = None,
+    progress: Report | None = None,
+    overwrite: bool = False,
+) -> Result:
+    """Analyse many variants of a drive, on all cores or on a cluster.
+
+    Failed points are marked with their reason. Results are written as points finish; an interrupted or killed study, or
+    one with added points, resumes when it is started again with the same file.
+
+    Parameters
+    ----------
+    study
+        The study file, TOML, or the study.
+    drive
+        The drive; by default that of the file that the study names.
+    jobs
+        Number of points computed in parallel; by default the number of cores. With 1 they are computed in this process.
+    scheduler
+        Address of the scheduler of a Dask cluster to use instead, such as "tcp://host:8786".
+    retry
+        Recompute points that failed before.
+    output
+        Result file (NetCDF4), with a CSV file of all finished points beside it; without it the results stay in memory.
+    progress
+        Called repeatedly with a `Progress`.
+    overwrite
+        Start again, and overwrite any regular files.
+
+    Returns
+    -------
+    Result
+        Along ``point`` the results, each under its name such as "hub_load[driven]", the numbers that vary as
+        coordinates under their paths, ``seconds``, ``failure`` and ``point_warnings``.
+
+    Raises
+    ------
+    ModelError
+        If the study does not fit the drive or its analysis, there is no such result, files cannot be written, or hold
+        points of another study.
+    SimulationError
+        If the cluster is lost.
+
+    Examples
+    --------
+    >>> study = bd.ParameterStudy(
+    ...     analysis="static",
+    ...     number=[{"path": "belt.width", "values": "10, 15 mm"}],
+    ...     results=["hub_load"],
+    ... )
+    >>> found = bd.study(study, drive, jobs=1)
+    >>> found.dataset["hub_load[driven]"].round(1).values.tolist()  # N
+    [53.5, 77.9]
+    """
+    given, base = (study, Path()) if isinstance(study, ParameterStudy) else (_read(study), Path(study).parent)
+    drive = _drive_of(given, base) if drive is None else drive
+    analysis = ANALYSES[given.analysis]
+    options = _options(analysis, given.options, base)
+    require_reductions(given.results)
+    plan = plan_of(given, drive, base)
+    path = None if output is None else Path(output)
+    work = PointWork(drive, analysis, options, given.results, _folder(given, path))
+    workers = workers_of(jobs, scheduler)
+    if not isinstance(workers, ThisProcess):
+        refuse_functions(drive, "points are computed by other processes, which a Python function cannot be passed to",
+                         "Compute them in this process with jobs = 1.")  # fmt: skip
+    with StudyTable(given, drive, plan, path, overwrite, retry) as table:
+        waiting = np.flatnonzero(~table.done).tolist()
+        teller = _Teller(table, progress, workers)
+        if waiting and scheduler is None:
+            teller.compiling()
+            compile_ahead(drive)
+        Dispatch(workers, work, plan.changes, table.take, teller.tell).run(waiting)
+    return table.result()
+
+
+def _read(file: Path | str) -> ParameterStudy:
+    return read_study(file, ParameterStudy)
+
+
+def _drive_of(study: ParameterStudy, base: Path) -> Drive:
+    if study.drive is None:
+        raise ModelError('the study names no drive. Write drive = "drive.toml", relative to the study file.')
+    return load(base / study.drive)
+
+
+def _options(analysis: Analysis, given: Mapping[str, Any], base: Path) -> dict[str, Any]:
+    """Options of the analysis, with files by their paths from here."""
+    parameters = dict(list(signature(analysis.function).parameters.items())[1:])
+    known = {name: one for name, one in parameters.items() if name not in _OWN}
+    for name in given:
+        if name not in known:
+            told = suggest(name, list(known)) if known else "It has no options"
+            raise ModelError(f'options: {name} is not an option of "{analysis.name}". {told}.'.replace("?.", "?"))
+    missing = [name for name, one in known.items() if one.default is one.empty and name not in given]
+    if missing:
+        raise ModelError(f'options: "{analysis.name}" needs {missing[0]}. Write it in [options].')
+    return {
+        name: base / value if isinstance(value, str) and "Path" in str(known[name].annotation) else value
+        for name, value in given.items()
+    }
+
+
+def _folder(study: ParameterStudy, output: Path | None) -> Path | None:
+    """Where result files of points are kept."""
+    if not study.keep_files:
+        return None
+    if output is None:
+        raise ModelError("keep_files = true needs a result file, beside which the files are kept. Give an output.")
+    return make_folder(output.with_name(f"{output.stem}-points")).resolve()
+
+
+class _Teller:
+    """Tells of progress."""
+
+    def __init__(self, table: StudyTable, progress: Report | None, workers: Workers) -> None:
+        self._table, self._progress, self._workers = table, progress, workers
+        self._begun, self._pace, self._before = time.perf_counter(), Pace(), int(table.done.sum())
+
+    def compiling(self) -> None:
+        if self._progress is not None:
+            self._progress(Progress(0.0, float(len(self._table.done)), 0.0, 0, "compiling"))
+
+    def tell(self) -> None:
+        if self._progress is not None:
+            done, elapsed = int(self._table.done.sum()), time.perf_counter() - self._begun
+            pace = self._pace.at(elapsed, float(done - self._before))
+            phase: Phase = "points" if self._workers.slots else "no workers"
+            self._progress(Progress(float(done), float(len(self._table.done)), 0.0, done, phase, elapsed, "", pace))

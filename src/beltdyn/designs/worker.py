@@ -1,0 +1,443 @@
+"""The processes of a batch: each analyses one drive after another, until its parent says so or is gone."""
+
+import asyncio
+import multiprocessing
+import os
+import signal
+import sys
+import time
+import warnings
+from collections.abc import Awaitable, Callable, Iterator, Mapping
+from concurrent.futures import CancelledError, Future, ProcessPoolExecutor
+from concurrent.futures.process import BrokenProcessPool
+from contextlib import closing, contextmanager
+from dataclasses import dataclass, replace
+from multiprocessing.synchronize import Event as SharedEvent
+from pathlib import Path
+from threading import Event, Lock, Thread, current_thread, main_thread
+from time import sleep
+from types import FrameType, ModuleType
+from typing import TYPE_CHECKING, Any, Protocol
+
+from beltdyn.analyses import Analysis
+from beltdyn.errors import BeltdynError, LostOutputError, ModelError, SimulationError
+from beltdyn.model import Drive
+from beltdyn.observation.compilation import usable_cores
+from beltdyn.results import Result, Run, Summary, open_result, summarize
+from beltdyn.results.atomic import locked_output, stamp
+from beltdyn.signals import ENDING
+from beltdyn.solvers.progress import Progress
+
+if TYPE_CHECKING:
+    from ctypes import Array, c_double
+
+
+# How processes are started that compute beside this one
+
+SPAWN = multiprocessing.get_context("spawn")
+_THREADS = "OMP_NUM_THREADS"
+"""What OpenBLAS and MKL ask for their number of threads."""
+
+
+@contextmanager
+def bare_workers() -> Iterator[None]:
+    """Let processes that are started meanwhile inherit little.
+
+    They ignore Ctrl-C, of which the parent tells them; use one thread for linear algebra unless the user chose a
+    number; and see an empty script in place of the caller's, which each of them would run otherwise.
+    """
+    script, threads = sys.modules["__main__"], os.environ.get(_THREADS)
+    in_main_thread = current_thread() is main_thread()
+    handler = signal.signal(signal.SIGINT, signal.SIG_IGN) if in_main_thread else None
+    sys.modules["__main__"] = ModuleType("__main__")
+    os.environ.setdefault(_THREADS, "1")
+    try:
+        yield
+    finally:
+        sys.modules["__main__"] = script
+        if threads is None:
+            del os.environ[_THREADS]
+        if in_main_thread:
+            signal.signal(signal.SIGINT, handler)
+
+
+_GRACE = 2.0  # s
+
+
+@dataclass(frozen=True, slots=True)
+class Work:
+    """What is asked of every drive: arguments of `analyse_all`."""
+
+    analysis: Analysis
+    options: Mapping[str, Any]
+    overwrite: bool
+    finish: Callable[[Run], None] | None
+
+
+@dataclass(frozen=True, slots=True)
+class Ending:
+    """How the analysis of a drive ended.
+
+    Attributes
+    ----------
+    status : str
+        "completed", "interrupted" by Ctrl-C, "failed", or "not started" before Ctrl-C.
+    error : str
+        Why it failed; empty otherwise.
+    summary : Summary or None
+        Summary of a run; None without output, or for other analyses.
+    warnings : tuple of str
+        The warnings.
+    kept : bool
+        Whether the file holds results.
+    """
+
+    status: str
+    error: str = ""
+    summary: Summary | None = None
+    warnings: tuple[str, ...] = ()
+    kept: bool = False
+
+
+_stop: SharedEvent | None = None
+_parts: "Array[c_double]"
+_working = Lock()
+_leaving = Event()
+
+
+def start_worker(stop: SharedEvent, parts: "Array[c_double] | tuple[()]" = ()) -> None:
+    """Keep what is shared with the parent.
+
+    Parameters
+    ----------
+    stop
+        Set when the parent is interrupted.
+    parts
+        The part of each simulation of a batch that is done, 0 to 1; NaN before it begins.
+    """
+    global _stop, _parts
+    _stop = stop
+    if parts:
+        _parts = parts
+    for number in ENDING:
+        signal.signal(number, signal.SIG_IGN)
+    signal.signal(signal.SIGTERM, _leave)
+    warnings.simplefilter("ignore")
+    Thread(target=_follow_parent, daemon=True).start()
+
+
+def _follow_parent() -> None:
+    """End when the parent was killed, after the simulation on its way has closed its file."""
+    parent = multiprocessing.parent_process()
+    if parent is not None:
+        parent.join()
+        if _stop is not None:
+            _stop.set()
+        with working():
+            os._exit(1)
+
+
+def _leave(number: int, frame: FrameType | None) -> None:
+    """End the simulation on its way, and then the process."""
+    _leaving.set()
+    Thread(target=_exit_when_told, daemon=True).start()
+
+
+def _exit_when_told() -> None:
+    """End the process when the simulation has closed its file and the parent has had time to hear of it."""
+    with working():
+        sleep(_GRACE)
+        os._exit(1)
+
+
+def working() -> Lock:
+    """What is held while a file is written, so that the process does not end meanwhile."""
+    return _working
+
+
+def stopped() -> bool:
+    """Whether the parent was interrupted, or is gone."""
+    return _stop is not None and _stop.is_set()
+
+
+def leaving() -> bool:
+    """Whether this process was told to end; another one takes what it is given from now on."""
+    return _leaving.is_set()
+
+
+def wait_for_the_end() -> None:
+    """Wait until this process ends, if it was told to."""
+    if leaving():
+        Event().wait()
+
+
+def heeding(tell: Callable[[Progress], None] | None = None) -> Callable[[Progress], None]:
+    """What an analysis tells of its progress, which is ended when the parent says so.
+
+    Parameters
+    ----------
+    tell
+        Is told too.
+    """
+
+    def heed(progress: Progress) -> None:
+        if tell is not None:
+            tell(progress)
+        if stopped() or leaving():
+            raise KeyboardInterrupt
+
+    return heed
+
+
+def analyse(place: int, file: Path, drive: Drive | Run, work: Work) -> Ending:
+    """Analyse a drive into a file, and finish what is complete.
+
+    Parameters
+    ----------
+    place
+        Of the drive in the batch, from zero.
+    file
+        The result file.
+    drive
+        The drive, or a run in place of it.
+    work
+        What is asked of it.
+
+    Returns
+    -------
+    Ending
+        How it ended; no error is raised.
+    """
+    if stopped():
+        return Ending("not started")
+    wait_for_the_end()
+    _parts[place] = 0.0
+
+    def note(progress: Progress) -> None:
+        _parts[place] = progress.time / progress.duration
+
+    before = stamp(file)
+    try:
+        with working(), locked_output(file):
+            result = work.analysis.write(drive, file, heeding(note), work.overwrite, **work.options)
+            ending = _ended(result) if stamp(file) != before else Ending(result.status)
+            if work.finish is not None and result.status == "completed":
+                work.finish(result)
+            return ending
+    except LostOutputError as error:
+        return Ending("failed", str(error))
+    except SimulationError as error:
+        left = stamp(file) not in (before, None)
+        return _kept(file, str(error)) if left else Ending("failed", str(error))
+    except BeltdynError as error:
+        return Ending("failed", str(error))
+    except Exception as error:
+        return Ending("failed", f"{type(error).__name__}: {error}")
+
+
+def _kept(file: Path, error: str) -> Ending:
+    """How an analysis ended that could not go on, with what it left."""
+    try:
+        found = open_result(file)
+        with closing(found.dataset):
+            return replace(_ended(found), error=error)
+    except (BeltdynError, OSError):  # its file was taken away
+        return Ending("failed", error)
+
+
+def _ended(result: Result) -> Ending:
+    summary = summarize(result) if isinstance(result, Run) else None
+    return Ending(result.status, summary=summary, warnings=tuple(result.warnings), kept=True)
+
+
+# Who computes the points of a study: this process, a pool of processes on this machine, or a Dask cluster
+
+GONE = "the scheduler was lost or has abandoned this study. Start the study again to resume it."
+_CONNECT = "30s"
+_ASK = 1.0
+"""Time between two questions for the number of workers, s."""
+
+
+class Workers(Protocol):
+    """Who computes."""
+
+    @property
+    def slots(self) -> int:
+        """How many points are computed at a time, now."""
+
+    def submit(self, function: Callable[..., Any], *arguments: Any) -> Future[Any]:
+        """Have a function of a module computed."""
+
+    def lost(self, error: BaseException) -> bool:
+        """Whether an error means that a process was killed; what comes next is given to others."""
+
+    def close(self, *, abandon: bool = False) -> None:
+        """End; with `abandon` what is on its way is given up as soon as it can be."""
+
+
+class ThisProcess:
+    """One point after another, in this process, at once when it is submitted."""
+
+    slots = 1
+
+    def submit(self, function: Callable[..., Any], *arguments: Any) -> Future[Any]:
+        """Compute; see `Workers.submit`."""
+        future: Future[Any] = Future()
+        try:
+            future.set_result(function(*arguments))
+        except Exception as error:
+            future.set_exception(error)
+        return future
+
+    def lost(self, error: BaseException) -> bool:
+        """Never; see `Workers.lost`."""
+        return False
+
+    def close(self, *, abandon: bool = False) -> None:
+        """Do nothing; see `Workers.close`."""
+
+
+class LocalProcesses:
+    """Processes of this machine, of which each uses one thread; one that is killed is replaced.
+
+    Parameters
+    ----------
+    jobs
+        How many; by default as many as there are cores.
+    """
+
+    def __init__(self, jobs: int | None = None) -> None:
+        self.slots = jobs or usable_cores()
+        self._stop = SPAWN.Event()
+        self._pool = self._new()
+
+    def _new(self) -> ProcessPoolExecutor:
+        return ProcessPoolExecutor(self.slots, SPAWN, start_worker, (self._stop,))
+
+    def submit(self, function: Callable[..., Any], *arguments: Any) -> Future[Any]:
+        """Have it computed; see `Workers.submit`."""
+        with bare_workers():
+            try:
+                return self._pool.submit(function, *arguments)
+            except BrokenProcessPool:
+                self._renew()
+                return self._pool.submit(function, *arguments)
+
+    def lost(self, error: BaseException) -> bool:
+        """See `Workers.lost`; of a pool all work is lost."""
+        return isinstance(error, BrokenProcessPool)
+
+    def _renew(self) -> None:
+        self._pool.shutdown(wait=True, cancel_futures=True)
+        self._pool = self._new()
+
+    def close(self, *, abandon: bool = False) -> None:
+        """End the processes; see `Workers.close`."""
+        if abandon:
+            self._stop.set()
+        self._pool.shutdown(wait=True, cancel_futures=abandon)
+
+
+class DaskWorkers:
+    """Workers of a Dask cluster that is there already, of which each computes a point at a time.
+
+    Parameters
+    ----------
+    scheduler
+        Address of its scheduler, such as "tcp://host:8786".
+
+    Raises
+    ------
+    ModelError
+        If `dask.distributed` is not installed, or there is no scheduler.
+    """
+
+    def __init__(self, scheduler: str) -> None:
+        try:
+            from distributed import Client
+        except ImportError as error:
+            raise ModelError(
+                f"scheduler = {scheduler!r} needs dask.distributed, which is not installed. Install it: pip install "
+                "'beltdyn[cluster]'."
+            ) from error
+        try:
+            self._client = Client(scheduler, timeout=_CONNECT, set_as_default=False)
+        except (OSError, ValueError) as error:
+            told = str(error) or type(error).__name__
+            raise ModelError(
+                f"scheduler = {scheduler!r} does not answer ({told}). Start one with `dask scheduler`, or correct it."
+            ) from error
+        self._asked, self._known = -_ASK, 0
+
+    @property
+    def slots(self) -> int:
+        """How many workers there are now; see `Workers.slots`."""
+        if time.monotonic() - self._asked > _ASK:
+            try:
+                self._known, self._asked = len(self._client.nthreads()), time.monotonic()
+            except OSError as error:
+                raise SimulationError(GONE) from error
+        return self._known
+
+    def submit(self, function: Callable[..., Any], *arguments: Any) -> Future[Any]:
+        """Have it computed; see `Workers.submit`."""
+        future: Future[Any] = Future()
+        task = self._client.submit(function, *arguments, pure=False)
+        self._client.loop.add_callback(hand_on, task, future)
+        return future
+
+    def lost(self, error: BaseException) -> bool:
+        """See `Workers.lost`; the scheduler gives work of a killed worker to others a few times itself."""
+        from distributed import KilledWorker
+
+        return isinstance(error, KilledWorker)
+
+    def close(self, *, abandon: bool = False) -> None:
+        """Leave the cluster; see `Workers.close`."""
+        self._client.close()
+
+
+async def hand_on(task: Awaitable[Any], future: Future[Any]) -> None:
+    """Give what becomes of a task of Dask to a future, whatever it is.
+
+    Dask's own executor never tells of a task whose result was lost with its worker, and that has failed since then.
+
+    Parameters
+    ----------
+    task
+        The task.
+    future
+        What is told.
+    """
+    try:
+        future.set_result(await task)
+    except (CancelledError, asyncio.CancelledError):
+        future.cancel()
+        future.set_running_or_notify_cancel()
+    except Exception as error:
+        future.set_exception(error)
+
+
+def workers_of(jobs: int | None, scheduler: str | None) -> Workers:
+    """Who computes.
+
+    Parameters
+    ----------
+    jobs
+        Number of processes of this machine; with one, this process.
+    scheduler
+        Address of a Dask scheduler, in place of processes of this machine.
+
+    Raises
+    ------
+    ModelError
+        If both are given, or there is no such scheduler.
+    """
+    if scheduler is None:
+        return ThisProcess() if jobs == 1 else LocalProcesses(jobs)
+    if jobs is not None:
+        raise ModelError(
+            f"jobs = {jobs} is for processes on this machine, but scheduler = {scheduler!r} is is for others. Give "
+            "one of them. Give one of them."
+        )
+    return DaskWorkers(scheduler)

@@ -1,0 +1,156 @@
+"""The cosine rise as the paper prints it (Eq. 29)."""
+
+from typing import ClassVar, Generic, Literal, Self, cast
+
+import numpy as np
+from pydantic import Field, model_validator
+
+from beltdyn.machines.profiles.profile import SEGMENT, Profile, Value
+from beltdyn.parts.quantity import Time
+from beltdyn.records import Records, records
+
+# A constant value
+
+
+class Constant(Profile[Value], Generic[Value]):
+    """The same value at all times.
+
+    Examples
+    --------
+    >>> bd.Constant(value=3.0).at([0.0, 1.0])
+    array([3., 3.])
+    """
+
+    kind: Literal["constant"] = Field("constant", description="the kind of profile")
+    value: Value = Field(description="the value at all times")
+
+    def segments(self) -> Records:
+        """One piece: value(t) = value."""
+        return records(SEGMENT, start=[-np.inf], offset=[self.value])
+
+
+# The common base of rises from zero to a value
+
+
+class Rise(Profile[Value], Generic[Value]):
+    """Zero before `start`, `value` after `end`."""
+
+    start: Time = Field(description="the start of the rise, in s")
+    end: Time = Field(description="the end of the rise, in s")
+    value: Value = Field(description="the value after the rise")
+
+    @model_validator(mode="after")
+    def _ends_after_its_start(self) -> Self:
+        if self.end <= self.start:
+            raise ValueError(f"end = {self.end:g} s must be later than start = {self.start:g} s. Increase end")
+        return self
+
+    def breakpoints(self) -> tuple[float, ...]:
+        """Start and end of the rise, s."""
+        return (self.start, self.end)
+
+
+# A linear rise (Eq. 28)
+
+
+class Ramp(Rise[Value], Generic[Value]):
+    """A linear rise from zero at `start` to `value` at `end`, Eq. (28).
+
+    Examples
+    --------
+    >>> bd.Ramp(start=0.0, end=2.0, value=10.0).at([0.5, 1.0, 3.0])
+    array([ 2.5,  5. , 10. ])
+    """
+
+    kind: Literal["ramp"] = Field("ramp", description="the kind of profile")
+
+    def segments(self) -> Records:
+        """Zero, then value (t - start) / (end - start), then value: Eq. (28)."""
+        slope = self.value / (self.end - self.start)
+        starts = [-np.inf, self.start, self.end]
+        return records(SEGMENT, start=starts, offset=[0.0, 0.0, float(self.value)], slope=[0.0, slope, 0.0])
+
+
+# A step from one value to another
+
+
+class Step(Profile[Value], Generic[Value]):
+    """The value `before` until `time`, and `value` after it.
+
+    Examples
+    --------
+    >>> bd.Step(time="500 ms", value=2.0).at([0.0, 1.0])
+    array([0., 2.])
+    """
+
+    kind: Literal["step"] = Field("step", description="the kind of profile")
+    time: Time = Field(description="the instant of the step, in s")
+    before: Value = Field(cast(Value, 0.0), description="the value before the step")
+    value: Value = Field(description="the value after the step")
+
+    def segments(self) -> Records:
+        """Two pieces: before, then value."""
+        return records(SEGMENT, start=[-np.inf, self.time], offset=[self.before, self.value])
+
+    def breakpoints(self) -> tuple[float, ...]:
+        """The instant of the step, s."""
+        return (self.time,)
+
+
+# A smooth rise along half a cosine
+
+
+class CosineRamp(Rise[Value], Generic[Value]):
+    """A smooth rise from zero at `start` to `value` at `end`, along half a cosine from start to end.
+
+    Examples
+    --------
+    >>> bd.CosineRamp(start=0.0, end=2.0, value=10.0).at([0.0, 1.0, 2.0]).round(6)
+    array([ 0.,  5., 10.])
+    """
+
+    kind: Literal["cosine_ramp"] = Field("cosine_ramp", description="the kind of profile")
+
+    def segments(self) -> Records:
+        """Zero, then value/2 (1 - cos(pi (t - start) / (end - start))), then value."""
+        omega = np.pi / (self.end - self.start)
+        half = self.value / 2
+        return records(
+            SEGMENT,
+            start=[-np.inf, self.start, self.end],
+            offset=[0.0, half, float(self.value)],
+            amplitude=[0.0, -half, 0.0],
+            frequency=[0.0, omega, 0.0],
+            phase=[0.0, -omega * self.start, 0.0],
+        )
+
+
+class CosineRampPublished(Rise[Value], Generic[Value]):
+    """The rise of Eq. (29) as printed: its cosine runs from time zero to `end`, so it jumps at `start`.
+
+    Examples
+    --------
+    >>> bd.CosineRampPublished(start=0.0, end=2.0, value=10.0).at([0.0, 1.0, 2.0]).round(6)
+    array([ 0.,  5., 10.])
+    """
+
+    multiplies: ClassVar[bool] = False
+
+    kind: Literal["cosine_ramp_published"] = Field("cosine_ramp_published", description="the kind of profile")
+
+    @model_validator(mode="after")
+    def _ends_after_time_zero(self) -> Self:
+        if self.end <= 0:
+            raise ValueError(f"end = {self.end:g} s must be later than time zero. Increase end, or use cosine_ramp")
+        return self
+
+    def segments(self) -> Records:
+        """Zero, then value/2 (1 - cos(pi t / end)), then value: Eq. (29)."""
+        half = self.value / 2
+        return records(
+            SEGMENT,
+            start=[-np.inf, self.start, self.end],
+            offset=[0.0, half, float(self.value)],
+            amplitude=[0.0, -half, 0.0],
+            frequency=[0.0, np.pi / self.end, 0.0],
+        )

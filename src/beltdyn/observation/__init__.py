@@ -1,0 +1,1 @@
+"""From states to results: what is observed, recorded, and filtered."""

@@ -1,0 +1,96 @@
+"""Compilation of the kernels of a simulation: once per machine, then loaded from disk.
+
+What solves the equations of motion takes more than half of the compilation; where nothing is on the disk yet and there
+is a second core, a second process does that part.
+"""
+
+import os
+import pickle
+import subprocess
+import sys
+from collections.abc import Iterator
+from contextlib import contextmanager
+from tempfile import TemporaryFile
+
+import numpy as np
+
+from beltdyn.kernel import CACHE_VARIABLE, holds_kernels, kernel_cache
+from beltdyn.observation.band_limit import compile_filter
+from beltdyn.results.friction_work import ARC_PARTS, Touch, WorkSoFar, add_friction_work
+from beltdyn.results.mid_span import fill_mid_spans
+from beltdyn.solvers.engine import accelerate
+from beltdyn.system.arrays import System
+from beltdyn.system.motion import new_equations, no_multipliers
+from beltdyn.system.observe import observe
+from beltdyn.system.state import State
+
+_SECOND = f"import pickle, sys; from {__name__} import compile_solving; compile_solving(*pickle.load(sys.stdin.buffer))"
+
+
+def usable_cores() -> int:
+    """Number of cores that this process may use."""
+    return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
+
+
+def compile_kernels(system: System, state: State) -> None:
+    """Call every kernel that static equilibrium, generalised-alpha and observation need, on no work at all.
+
+    Parameters
+    ----------
+    system
+        Any system; kernels do not depend on its size.
+    state
+        A state of it.
+    """
+    with _second_process(system, state):
+        _compile_observing(system)
+    compile_solving(system, state)
+
+
+def _compile_observing(system: System) -> None:
+    time, states, places = np.empty(0), np.empty((0, 0)), np.empty((0, 0, 2))
+    shown, touched = np.empty(0, dtype=np.bool_), np.empty((0, 0), dtype=np.int8)
+    observe(system, time, states, states)
+    touch, work = Touch(time, places, places, touched, states), np.empty((0, 0, ARC_PARTS + 1))
+    done = WorkSoFar(np.empty((2, 0, 0)), states)
+    add_friction_work(touch, np.empty((0, 0, 3)), time, time, shown, done, work)
+    fill_mid_spans(np.empty((0, 0, 2, 2)), places, touched, 0, states)
+    compile_filter()
+
+
+def compile_solving(system: System, state: State) -> None:
+    """Compile what solves the equations of motion alone; arguments as for `compile_kernels`."""
+    motion = State(state.position, np.zeros_like(state.position), np.zeros_like(state.position)).at(0.0)
+    accelerate(system, motion, no_multipliers(system), new_equations(system))
+
+
+@contextmanager
+def _second_process(system: System, state: State) -> Iterator[None]:
+    """Compile that part in another process meanwhile, if that is of use; if it fails, this one does it later.
+
+    Kernels depend on the classes of elements, laws and surfaces, so that the other process needs the system.
+    """
+    folder = kernel_cache()
+    if holds_kernels(folder) or usable_cores() < 2 or not sys.executable:
+        yield
+        return
+    with TemporaryFile() as arguments:
+        pickle.dump((system, state), arguments)
+        arguments.seek(0)
+        process = subprocess.Popen(
+            [sys.executable, "-c", _SECOND],
+            env={
+                **os.environ,
+                CACHE_VARIABLE: str(folder.parent),
+                "PYTHONPATH": os.pathsep.join(filter(None, sys.path)),
+            },
+            stdin=arguments,
+            stdout=subprocess.DEVNULL,
+            stderr=subprocess.DEVNULL,
+        )
+    try:
+        yield
+        process.wait()
+    finally:
+        process.kill()
+        process.wait()

@@ -1,0 +1,253 @@
+"""What is seen at successive states of a simulation: there, at ends of steps, the equations of motion hold."""
+
+from typing import Any, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from beltdyn.arrays import BoolArray, FloatArray
+from beltdyn.errors import ConvergenceError, SlipError
+from beltdyn.model import Drive
+from beltdyn.parts.quantity import RPM
+from beltdyn.results.checks.sliding import SWEEP_REMEDY
+from beltdyn.results.friction_work import FrictionWork, MaterialWork, Touch
+from beltdyn.results.mechanics import across
+from beltdyn.results.mid_span import mid_span_displacements
+from beltdyn.results.schema import FILTERED
+from beltdyn.results.slipping import sliding_of_pulleys
+from beltdyn.solvers.flutter import Flutter, FlutterWatch
+from beltdyn.solvers.trajectory import Chunk
+from beltdyn.system.arrays import BENDING_LOSS, ENERGY_WORKS, STRETCH_LOSS, System
+from beltdyn.system.discretization import curve_lengths
+from beltdyn.system.frame import Flowing, Travelling
+from beltdyn.system.moving_center import pulley_speeds
+from beltdyn.system.observations import OBSERVED
+from beltdyn.system.observe import observe_motion
+
+# The energy account of a run: what goes in, what is stored, what is lost, and whether that adds up
+
+
+class EnergyAccount:
+    """Closure error over time, relative to the energy put in.
+
+    With the energy E of the belt and the bodies (kinetic, strain and penalty), and V of springs, and of weight and
+    forces on ends, whose zero is anywhere, the error is
+
+        (E(t) - E(0) + V(t) - V(0) - driver work - torque work + losses) / energy put in,
+
+    where the energy put in up to t is E(0) plus the largest amounts that drivers, torques, springs and weight have
+    done by then, either way.
+    """
+
+    def __init__(self) -> None:
+        self._initial: tuple[float, FloatArray] | None = None
+        self._largest = np.zeros(4)
+
+    def closure(self, stored: FloatArray, potential: FloatArray, work: FloatArray, shown: BoolArray) -> FloatArray:
+        """Closure error in some of several successive states.
+
+        Parameters
+        ----------
+        stored : ndarray, shape (m,)
+            E in those that are shown, J; the first state of all is one of them.
+        potential : ndarray, shape (k, 2)
+            V of springs and of weight, J.
+        work : ndarray, shape (k, 10)
+            In the order of `ENERGY_WORKS`: driver work, torque work, then losses, J.
+        shown : ndarray of bool, shape (k,)
+            Which m of them are.
+
+        Returns
+        -------
+        ndarray, shape (m,)
+            Zero as long as no energy was put in at all.
+        """
+        if self._initial is None:
+            self._initial = float(stored[0]), potential[0].copy()
+        initial, level = self._initial
+        done = np.hstack([work[:, :2], level - potential])
+        largest = np.maximum.accumulate(np.vstack([self._largest, np.abs(done)]))
+        self._largest = largest[-1]
+        put_in = initial + largest[1:][shown].sum(axis=1)
+        error = stored - initial - done[shown].sum(axis=1) + work[shown, 2:].sum(axis=1)
+        return np.asarray(np.divide(error, put_in, out=np.zeros_like(error), where=put_in > 0.0))
+
+
+Arrays = dict[str, NDArray[Any]]
+
+
+class Seen(NamedTuple):
+    """What is seen at successive states."""
+
+    at_outputs: Arrays
+    """Recorded variables at those states that are shown."""
+    for_spectra: Arrays
+    """Those that are filtered over all states, at every state."""
+
+
+WORKS = ("friction_work_on_arc", "friction_work_on_belt")
+"""Variables that are seen as integrals from the start on, and recorded as what they grow by."""
+
+
+_VALUES_OF_SPANS = ("span_tension", "belt_speed", "mid_span_displacement")
+_OF_SHOWN = frozenset(name for name, per in OBSERVED.items() if per.shown)
+"""Observations that are there for states that are shown alone."""
+
+
+class Observer:
+    """Sees successive states, and keeps what has to be summed up over all of them.
+
+    Parameters
+    ----------
+    drive, system
+        What is simulated.
+    belt_coordinate : ndarray, shape (points,)
+        Of the contact points, m.
+    """
+
+    def __init__(self, drive: Drive, system: System, belt_coordinate: FloatArray) -> None:
+        self._drive, self._system, self._belt_coordinate = drive, system, belt_coordinate
+        lengths = curve_lengths(system)
+        self._shares = lengths / np.sum(lengths)
+        self._friction_work = FrictionWork(drive, np.outer(lengths, system.contact.weights).ravel(), len(lengths))
+        self._material_work = MaterialWork(lengths)
+        self._energy = EnergyAccount()
+        self._flutter = None if isinstance(system.frame, Flowing) else FlutterWatch(system)
+
+    def see(self, states: Chunk, shown: BoolArray) -> Seen:
+        """Every recorded variable at further states but those that are coordinates and their rates.
+
+        Parameters
+        ----------
+        states
+            At least one state.
+        shown : ndarray of bool, shape (k,)
+            For which states all of them are wanted; for the very first one.
+
+        Returns
+        -------
+        Seen
+            Name -> array with one row for each state that is shown; and what spectra show, of every state.
+        """
+        seen = observe_motion(self._system, states.position, states.velocity, states.forces, shown)
+        touched, centers, places = seen.contact_pulley, seen.pulley_center, seen.contact_position
+        aside = mid_span_displacements(self._drive, centers, places, touched)
+        lost = np.abs(seen.friction_force * seen.slip_velocity)
+        on_arc, on_belt = self._works(Touch(states.time, centers, places, touched, lost), states, shown)
+        potential = np.stack([seen.spring_energy, seen.potential_energy], axis=1)
+        stored = seen.kinetic_energy + seen.strain_energy + seen.penalty_energy[shown]
+        closure = self._energy.closure(stored, potential, states.work, shown)
+        every = seen._asdict() | {"mid_span_displacement": aside}
+        _require_numbers(states.time, shown, every)
+        if self._flutter:
+            self._flutter.take(states.time, states.position, states.velocity, every)
+        rows = {name: values if name in _OF_SHOWN else values[shown] for name, values in every.items()}
+        at_outputs = {
+            **rows,
+            **sliding_of_pulleys(
+                self._drive,
+                self._belt_coordinate,
+                rows["contact_pulley"],
+                rows["normal_force"],
+                rows["slip_velocity"],
+                pulley_speeds(self._system, states.velocity[shown]),
+            ),
+            **dict(zip(WORKS, (on_arc, on_belt), strict=True)),
+            **dict(zip(ENERGY_WORKS, states.work[shown].T, strict=True)),
+            "material_loss": states.work[shown][:, [STRETCH_LOSS, BENDING_LOSS]].sum(axis=1),
+            "energy_closure": closure,
+        }
+        return Seen(at_outputs, {name: values for name, values in every.items() if name in FILTERED})
+
+    def _works(self, touch: Touch, states: Chunk, shown: BoolArray) -> tuple[FloatArray, FloatArray]:
+        """Work of friction since the beginning by arc and by belt, in the states that are shown.
+
+        Where the belt flows through the mesh, it is spread on what passes in each step, whichever states are shown.
+        """
+        frame = self._system.frame
+        if isinstance(frame, Flowing):
+            on_arc, on_mesh = self._friction_work.take(touch, np.ones_like(shown))
+            return on_arc[shown], self._material_work.take(on_mesh, states.position[:, frame.place])[shown]
+        on_arc, on_belt = self._friction_work.take(touch, shown)
+        if not isinstance(frame, Travelling):  # all of the belt passes
+            on_belt = np.sum(on_belt, axis=-1, keepdims=True) * self._shares
+        return on_arc, on_belt
+
+    def find_flutter(self) -> Flutter | None:
+        """The largest growth of vibrations while the belt slid; None where none grows, or the mesh does not travel."""
+        return self._flutter.find() if self._flutter else None
+
+
+def _require_numbers(time: FloatArray, shown: BoolArray, seen: Arrays) -> None:
+    """Make sure that all that is seen has a value, but spans whose pulleys the belt has left.
+
+    Raises
+    ------
+    ConvergenceError
+        If something has none.
+    """
+    for name, values in seen.items():
+        if name not in _VALUES_OF_SPANS and not np.isfinite(values.sum()):
+            times = time[shown] if name in _OF_SHOWN else time
+            first = int(np.argmin(np.isfinite(values.reshape(len(times), -1)).all(axis=1)))
+            raise ConvergenceError(
+                f"the simulation fails at t = {times[first]:.6g} s: {name} is not finite. Check loads and "
+                "stiffnesses for extreme values, or reduce simulation.max_step."
+            )
+
+
+# Detection of gross slip, which ends the run: what follows would not be what the drive is for
+
+_FAST = 0.05
+"""Velocity of sliding of a whole arc, over the speed of the swept pulley's rim, from which on it counts."""
+
+
+class SlipThrough:
+    """Watches the outputs of a run-up.
+
+    Parameters
+    ----------
+    drive : Drive
+        What is simulated.
+    swept : int
+        Number of the pulley whose speed rises.
+    """
+
+    def __init__(self, drive: Drive, swept: int) -> None:
+        self._drive, self._swept, self._radius = drive, swept, float(drive.radii[swept])
+        self._since = np.full(len(drive.pulleys), np.inf)
+        self._load = np.zeros(len(drive.pulleys))
+        self._speed = np.zeros(len(drive.pulleys))
+
+    def __call__(self, outputs: Arrays) -> None:
+        """Look at further outputs.
+
+        Raises
+        ------
+        SlipError
+            If the whole arc of a pulley slides for a turn of the belt, faster than 5 % of the swept rim's speed.
+        """
+        for row, time in enumerate(outputs["time"]):
+            sliding = np.abs(outputs["sliding_speed"][row])
+            speed = float(outputs["pulley_speed"][row, self._swept])
+            rim = abs(speed) * self._radius
+            fast = sliding > _FAST * rim
+            begins = fast & np.isinf(self._since)
+            self._since = np.where(fast, np.where(begins, time, self._since), np.inf)
+            self._load = np.where(begins, np.abs(outputs["pulley_torque"][row]), self._load)
+            self._speed = np.where(begins, speed, self._speed)
+            for number in np.flatnonzero(time - self._since > self._drive.belt_length / max(rim, 1e-9)):
+                raise SlipError(self._message(int(number), time, speed, outputs, row), SWEEP_REMEDY)
+
+    def _message(self, number: int, time: float, speed: float, outputs: Arrays, row: int) -> str:
+        name, swept = (self._drive.pulleys[one].name for one in (number, self._swept))
+        before, after = (float(side[number]) for side in across(outputs["span_tension"][row], self._drive))
+        sliding = abs(float(outputs["sliding_speed"][row, number]))
+        share = sliding / (abs(speed) * self._radius)
+        return (
+            f"the sweep stops at t = {time:.4g} s, {swept} at {RPM * speed:.4g} rpm: {name} is in gross slip. "
+            f"Since {RPM * self._speed[number]:.4g} rpm its whole arc has been sliding, now at {sliding:.3g} "
+            f"m/s, {share:.0%} of the rim speed of {swept}. At the onset it had to transmit "
+            f"{self._load[number]:.4g} N m, more than friction can transmit with the tensions of "
+            f"{max(before, after):.4g} and {min(before, after):.4g} N in the adjacent spans."
+        )

@@ -1,0 +1,1 @@
+"""Many operating points of a drive: map, traction, duty, tensioner sheet."""

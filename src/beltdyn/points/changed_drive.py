@@ -1,0 +1,140 @@
+"""Drives at other operating points: a speed in place of a motor, other loads, a prescribed speed of any pulley."""
+
+from math import floor
+
+from beltdyn.errors import ModelError
+from beltdyn.machines import Constant
+from beltdyn.machines.loads.load import Load
+from beltdyn.model import Drive, Pulley
+from beltdyn.state.staying import bring_to_stand
+from beltdyn.state.steady import instant_given
+from beltdyn.transient.sweep import without_schedules
+
+
+def held_at(drive: Drive, at: float | str | None) -> Drive:
+    """Hold speeds, torques and schedules as they are at an instant, with the belt's length or take-up found.
+
+    Parameters
+    ----------
+    drive
+        The drive.
+    at
+        The instant, such as "0.5 s", or in s; by default the end of the simulation.
+
+    Raises
+    ------
+    ConvergenceError
+        If there is no length that gives the installed tension.
+    """
+    held = at_instant(drive, at)
+    return held if held.belt.installed_tension is None else bring_to_stand(held).drive
+
+
+def at_instant(drive: Drive, at: float | str | None) -> Drive:
+    """Hold speeds, torques and schedules as they are at an instant, as from `instant_given`."""
+    return without_schedules(drive, instant_given(drive, at))[0]
+
+
+def sense_of(drive: Drive, number: int) -> float:
+    """Sense in which a pulley turns, 1 or -1: that of its prescribed speed, or else the positive one."""
+    speed = drive.pulleys[number].speed
+    return -1.0 if speed is not None and float(speed.at([0.0])[0]) < 0.0 else 1.0
+
+
+def driver_of(drive: Drive) -> int:
+    """Number of the pulley that drives: the first whose speed is prescribed, or else the first with a motor.
+
+    Raises
+    ------
+    ModelError
+        If nothing drives.
+    """
+    if drive.driver is None:
+        raise ModelError(
+            "nothing drives the belt: no pulley has a speed or a motor. Give the pulley whose speed to prescribe."
+        )
+    return drive.driver
+
+
+def is_motor(load: Load) -> bool:
+    """Whether a load drives its shaft."""
+    return load.driven_speed != 0.0
+
+
+def at_speed(drive: Drive, number: int, speed: float) -> Drive:
+    """Prescribe the speed of a pulley, in place of its motor, torque and loads.
+
+    Parameters
+    ----------
+    drive
+        The drive.
+    number
+        Number of the pulley.
+    speed
+        rad/s.
+    """
+    return with_pulley(drive, number, _at_speed(drive.pulleys[number], speed))
+
+
+def at_speed_under(drive: Drive, number: int, speed: float, factor: float) -> Drive:
+    """Multiply all torques and loads, as `with_load`, and prescribe the speed of a pulley, as `at_speed`."""
+    pulleys = _loaded(drive, factor)
+    pulleys[number] = _at_speed(pulleys[number], speed)
+    return drive.replace(pulley=pulleys)
+
+
+def with_torque(drive: Drive, number: int, torque: float) -> Drive:
+    """Give the shaft of a pulley a torque (N m), in place of its torque and loads, but for motors."""
+    one = drive.pulleys[number]
+    if one.prescribed:
+        raise ModelError(
+            f"{one.name} has a prescribed speed, so its torque cannot be given. Give the torque of another pulley."
+        )
+    motors = tuple(load for load in one.load if is_motor(load))
+    return with_pulley(drive, number, one.replace(torque=Constant(value=torque), load=motors))
+
+
+def with_load(drive: Drive, factor: float) -> Drive:
+    """Multiply all torques and loads, but for those of motors.
+
+    A load times 1.3 is the load and another one with the schedule 0.3, as schedules reach up to 1.
+
+    Parameters
+    ----------
+    drive
+        With constant torques and schedules.
+    factor
+        Zero or more.
+    """
+    if factor == 1.0:
+        return drive
+    return drive.replace(pulley=_loaded(drive, factor))
+
+
+def with_pulley(drive: Drive, number: int, pulley: Pulley) -> Drive:
+    """The drive with another pulley in the place of one."""
+    return drive.replace(pulley=[*drive.pulleys[:number], pulley, *drive.pulleys[number + 1 :]])
+
+
+def _at_speed(pulley: Pulley, speed: float) -> Pulley:
+    return pulley.replace(speed=Constant(value=speed), torque=None, load=(), harmonics=())
+
+
+def _loaded(drive: Drive, factor: float) -> list[Pulley]:
+    """The pulleys with all torques and loads multiplied."""
+    if factor == 1.0:
+        return list(drive.pulleys)
+    return [one.replace(torque=_scaled(one, factor), load=_multiplied(one.load, factor)) for one in drive.pulleys]
+
+
+def _scaled(pulley: Pulley, factor: float) -> Constant | None:
+    return None if pulley.torque is None else Constant(value=factor * float(pulley.torque.at([0.0])[0]))
+
+
+def _multiplied(loads: tuple[Load, ...], factor: float) -> tuple[Load, ...]:
+    found = list[Load]()
+    for load in loads:
+        whole, part = (1, 0.0) if is_motor(load) else (floor(factor), factor - floor(factor))
+        given = 1.0 if load.schedule is None else float(load.schedule.at([0.0])[0])
+        found += [load] * whole + [load.replace(schedule=Constant(value=part * given))] * (part > 0.0)
+    return tuple(found)

@@ -1,0 +1,190 @@
+"""Duty cycle: operating points of a duty table, and means weighted by duration."""
+
+from collections.abc import Iterator, Mapping
+from functools import partial
+from pathlib import Path
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from beltdyn.arrays import FloatArray
+from beltdyn.errors import ModelError
+from beltdyn.model import Drive
+from beltdyn.parts.table_file import HeadedColumn, read_headed
+from beltdyn.points.changed_drive import at_speed, held_at, with_load, with_torque
+from beltdyn.points.operating_points import VARIABLES, Axes, OperatingPoints
+from beltdyn.results import Result, Variable
+from beltdyn.solvers.progress import Report
+
+UNITS = {"duration": "s", "load": "", "speed": "rad/s", "torque": "N m"}
+"""What columns hold, and their SI units."""
+_MEANS = ("pulley_slip", "power", "hub_load", "span_tension", "loss")
+_EXPONENT = 3.0
+"""Of the load in the life of ball bearings (ISO 281)."""
+
+
+class Column(NamedTuple):
+    """A column of a duty table."""
+
+    what: str
+    """"duration", "load", "speed" or "torque"."""
+    pulley: str
+    """Of a speed or torque; empty of others."""
+    values: list[float]
+    """In SI units."""
+
+
+def duty(
+    drive: Drive,
+    *,
+    table: Path | str,
+    at: float | str | None = None,
+    force_tolerance: float | None = None,
+    output: Path | str | None = None,
+    progress: Report | None = None,
+    overwrite: bool = False,
+) -> Result:
+    r"""Compute the operating points of a duty table, with means weighted by duration.
+
+    The table is a CSV file with a line of headings: "duration [s]", "NAME speed [rpm]" and "NAME torque [N m]" of
+    pulleys, and "load", the factor on all torques and loads of the drive file but those of motors. Each line is an
+    operating point. Quantities without a column are those of the drive file.
+
+    Parameters
+    ----------
+    drive
+        The drive.
+    table
+        The CSV file.
+    at
+        Instant at which the rest of the drive is evaluated, such as "0.5 s", or in s; by default the end of the
+        simulation.
+    force_tolerance
+        Tolerance of contact forces, relative to the largest on each pulley, to which the mesh is refined; by default
+        that of the drive, 0.01.
+    output
+        Result file (NetCDF4), updated point by point; without it the results stay in memory.
+    progress
+        Called repeatedly with a `Progress`.
+    overwrite
+        Overwrite any regular file, not only earlier results.
+
+    Returns
+    -------
+    Result
+        Variables along ``row``, and their means over all rows that have an operating point: ``mean_power_in``,
+        ``mean_efficiency`` and others; ``equivalent_hub_load`` is the cubic mean over the turns of each pulley, which
+        gives the same life of ball bearings.
+
+    Raises
+    ------
+    ModelError
+        If the file is not a duty table, or the drive cannot run steadily.
+    ConvergenceError
+        If no row has steady running.
+
+    Examples
+    --------
+    >>> from pathlib import Path
+    >>> _ = Path("duty.csv").write_text("duration [s], driver speed [rpm]\n60, 90\n30, 120\n")
+    >>> bd.duty(drive, table="duty.csv").dataset.efficiency.dims
+    ('row',)
+    """
+    columns = read_duty(Path(table))
+    held = held_at(drive, at)
+    durations = durations_of(columns)
+    axes = {"row": (Variable(("row",), "1", "Row", "int64"), np.arange(1, durations.size + 1))}
+    with OperatingPoints("duty", held, axes, output, progress, overwrite) as points:
+        points.more = {"duration": (Variable(("row",), "s", "Duration"), durations)}
+        points.derive = partial(_means, durations=durations)
+        points.attributes = {"drive_as_given": drive.text}
+        points.each(lambda row: at_row(held, columns, row - 1), force_tolerance)
+    return points.result()
+
+
+def read_duty(path: Path) -> list[Column]:
+    """Read a duty table.
+
+    Parameters
+    ----------
+    path
+        The CSV file.
+
+    Raises
+    ------
+    ModelError
+        If it cannot be read, or a heading, number or duration is wrong.
+    """
+    columns = [_column(one) for one in read_headed("table", path)]
+    durations = [one.values for one in columns if one.what == "duration"]
+    if len(durations) != 1 or min(durations[0]) < 0.0 or not sum(durations[0]) > 0.0:
+        raise ModelError(f'{path} needs one column "duration [s]" of non-negative numbers, not all zero.')
+    return columns
+
+
+def _column(given: HeadedColumn) -> Column:
+    """A column in SI units."""
+    pulley, _, what = given.what.rpartition(" ")
+    if what not in UNITS or bool(pulley) != (what in ("speed", "torque")):
+        raise ModelError(
+            f'{given.path}: the heading "{given.what}" must be "duration [s]", "load", "NAME speed [rpm]" or '
+            '"NAME torque [N m]".'
+        )
+    return Column(what, pulley.strip(), given.values(UNITS[what]))
+
+
+def durations_of(columns: list[Column]) -> FloatArray:
+    """Durations of the rows of a table, s."""
+    return np.array(next(one.values for one in columns if one.what == "duration"))
+
+
+def at_row(held: Drive, columns: list[Column], row: int) -> Drive:
+    """The drive at the operating point of a row of a table.
+
+    Parameters
+    ----------
+    held
+        The drive, with constant speeds and torques.
+    columns
+        The table.
+    row
+        Number of the row, from 0.
+    """
+    loads = [one.values[row] for one in columns if one.what == "load"]
+    if loads and loads[0] < 0.0:
+        raise ModelError(f"row {row + 1}: load = {loads[0]:g} is negative, with which loads would drive.")
+    changed = with_load(held, loads[0] if loads else 1.0)
+    for one in columns:
+        if one.pulley:
+            change = at_speed if one.what == "speed" else with_torque
+            changed = change(changed, held.number_of(one.pulley), one.values[row])
+    return changed
+
+
+def _means(arrays: Mapping[str, NDArray[np.float64]], durations: NDArray[np.float64]) -> Axes:
+    """Means over the rows that were found, weighted by their durations."""
+    found = np.isfinite(arrays["power_in"])
+    weights = durations[found]
+    if not weights.sum() > 0.0:
+        return {}
+    return dict(_mean_of(arrays, found, weights))
+
+
+def _mean_of(
+    arrays: Mapping[str, NDArray[np.float64]], found: NDArray[np.bool_], weights: NDArray[np.float64]
+) -> Iterator[tuple[str, tuple[Variable, ArrayLike]]]:
+    """Name and values of each mean."""
+    put_in, taken = (np.average(arrays[name][found], axis=0, weights=weights) for name in ("power_in", "power_out"))
+    yield "mean_power_in", (Variable((), "W", "Mean power input"), put_in)
+    yield "mean_power_out", (Variable((), "W", "Mean power output"), taken)
+    yield "mean_efficiency", (Variable((), "1", "Energy efficiency"), taken / put_in if put_in else np.nan)
+    for name in _MEANS:
+        if name in arrays:
+            one = VARIABLES[name]
+            mean = np.average(arrays[name][found], axis=0, weights=weights)
+            yield f"mean_{name}", (Variable(one.dims, one.units, f"Mean of {one.long_name.lower()}"), mean)
+    turns = weights[:, None] * np.abs(arrays["pulley_speed"][found])
+    power = np.sum(turns * arrays["hub_load"][found] ** _EXPONENT, axis=0)
+    cubic = np.divide(power, turns.sum(axis=0), out=np.zeros_like(power), where=turns.sum(axis=0) > 0.0)
+    yield "equivalent_hub_load", (Variable(("pulley",), "N", "Equivalent hub load"), cubic ** (1.0 / _EXPONENT))

@@ -1,0 +1,324 @@
+"""Tensioner sheet: position, tension and hub load of a tensioner for belts of all lengths."""
+
+from collections.abc import Iterator
+from contextlib import suppress
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from beltdyn.arrays import FloatArray
+from beltdyn.errors import ConvergenceError, ModelError
+from beltdyn.machines.tensioners.tensioner import MovingTensioner
+from beltdyn.model import Drive, Installation
+from beltdyn.model.carrier import moved
+from beltdyn.model.tensioner_balance import held_belt
+from beltdyn.parts.messages import reason
+from beltdyn.parts.quantity import to_si
+from beltdyn.points.operating_points import Axes
+from beltdyn.results import Result, Variable, build_result
+from beltdyn.solvers.progress import Progress, Report
+from beltdyn.state.installation import looked_at
+from beltdyn.state.staying import bring_to_stand, stand
+
+_FINENESS = 1.2
+"""Of the meshes."""
+_ACCURACY = 1e-9
+"""Of the place at a stop, over the way on which the path lengthens by itself."""
+_MOST_TRIALS = 20
+_FREE, _NOMINAL = "free arm", "nominal belt"
+_BELTS = ("worn belt", "longest belt", _NOMINAL, "shortest belt")
+_STATE = ("state",)
+
+
+class _Column(NamedTuple):
+    """A variable of the sheet."""
+
+    line: tuple[str, str]
+    """Unit and meaning of a tensioner that slides along a line."""
+    arm: tuple[str, str]
+    """The same of one on an arm."""
+
+    def variable(self, turns: bool) -> Variable:
+        """What it is for a tensioner of either kind."""
+        return Variable(_STATE, *(self.arm if turns else self.line))
+
+
+def _of_both(units: str, meaning: str) -> _Column:
+    return _Column((units, meaning), (units, meaning))
+
+
+COLUMNS = {
+    "belt_length": _of_both("m", "Belt length"),
+    "position": _Column(("m", "Position, from the given center"), ("rad", "Arm angle, from the given center")),
+    "from_free": _Column(("m", "Deflection, from the free spring"), ("rad", "Deflection, from the free arm")),
+    "spring_load": _Column(("N", "Spring force"), ("N m", "Spring torque")),
+    "leverage": _Column(("1", "Take-up rate, path per travel"), ("m", "Take-up rate, path per rad")),
+    "wrap_angle": _of_both("rad", "Wrap angle"),
+    "tension": _of_both("N", "Tension"),
+    "tension_after_tensioning": _of_both("N", "After tensioning: lower tension limit of dry friction"),
+    "tension_after_yielding": _of_both("N", "After yielding: upper tension limit of dry friction"),
+    "hub_load": _of_both("N", "Hub load"),
+    "hub_direction": _of_both("rad", "Direction, of the hub load"),
+    "slack": _of_both("m", "Slack, at the lower stop"),
+}
+"""What a tensioner sheet tells of each state."""
+
+
+def tensioner_sheet(
+    drive: Drive,
+    *,
+    pulley: str | None = None,
+    tolerance: str = "0.5 %",
+    wear: str = "1 %",
+    progress: Report | None = None,
+) -> Result:
+    """Compute a tensioner sheet: position, tension and hub load of a tensioner for belts of different lengths.
+
+    The belt is at rest, in equilibrium. The nominal belt is that of the drive file; the longest and the shortest belt
+    differ from it by the tolerance, and the worn belt is the longest one, lengthened by wear. For a stop the sheet
+    gives the belt length at which the tensioner just reaches it. Dry friction gives a range of tensions.
+
+    Parameters
+    ----------
+    drive
+        The drive.
+    pulley
+        The pulley of the tensioner; by default that of the only moving tensioner.
+    tolerance
+        Length tolerance of a new belt, such as "6 mm" or "0.5 %".
+    wear
+        Elongation of the belt over its life, such as "10 mm" or "1 %".
+    progress
+        Called repeatedly with a `Progress`.
+
+    Returns
+    -------
+    Result
+        Variables along ``state``, from the free arm to the lower stop; the attribute ``pulley`` names the pulley.
+
+    Raises
+    ------
+    ModelError
+        If the drive has no moving tensioner, or several and pulley is not given, or if tolerance or wear is not a
+        length.
+    ConvergenceError
+        If no static equilibrium of the nominal belt is found.
+
+    Examples
+    --------
+    >>> slide = {"kind": "sliding", "pulley": "driven", "direction": [1, 0], "mass": 1.0, "preload": 60.0}
+    >>> sheet = bd.tensioner_sheet(drive.replace(tensioner=[slide]), tolerance="1 mm", wear="2 mm")
+    >>> sheet.dataset.tension.sel(state="worn belt").round().item()  # N
+    30.0
+    """
+    number = _number_of(drive, pulley)
+    tell = progress or (lambda _: None)
+    tell(Progress(0.0, drive.simulation.duration, 0.0, 0, "equilibrium"))
+    rest = bring_to_stand(drive).drive
+    held = rest.replace(contact=rest.completed.contact)
+    sheet = _Sheet(held, number)
+    nominal = held.belt_length
+    spread, worn = _length("tolerance", tolerance, nominal), _length("wear", wear, nominal)
+    lengths = dict(zip(_BELTS, (nominal + spread + worn, nominal + spread, nominal, nominal - spread), strict=True))
+    sheet.add_free()
+    sheet.add_stop("upper stop")
+    for state, length in lengths.items():
+        sheet.add_belt(state, length)
+    sheet.add_stop("lower stop")
+    return sheet.result(drive.text)
+
+
+class _Sheet:
+    """The states of a tensioner, one after the other."""
+
+    def __init__(self, drive: Drive, number: int) -> None:
+        self._drive, self._number = drive, number
+        self._carrier = drive.carriers[number]
+        self._tensioner = drive.moving_tensioners[number]
+        self._rows = dict[str, dict[str, float]]()
+        self._failures = dict[str, str]()
+        rate, preload = self._tensioner.rate, self._tensioner.preload
+        lower, upper = self._tensioner.stops or (-np.inf, np.inf)
+        spring = self._tensioner.spring
+        pushes = {name: sense * spring[f"{name}_friction"] for name, sense in (("tensioning", -1.0), ("yielding", 1.0))}
+        self._frictions = pushes if any(pushes.values()) else {}
+        self._stops = {"upper stop": upper, "lower stop": lower}
+        self._free = min(upper, preload / rate if rate else np.inf)
+        at_lower = self._placed(lower)
+        self._shortest = moved(drive.path, drive.carriers, at_lower).length if np.isfinite(lower) else np.nan
+
+    def add_free(self) -> None:
+        """The tensioner without a belt, where its spring has no force or its stop holds it."""
+        if np.isfinite(self._free):
+            self._rows[_FREE] = {
+                "position": self._free,
+                "from_free": 0.0,
+                "spring_load": self._carrier.force(self._free),
+                "tension": 0.0,
+                "hub_load": 0.0,
+            }
+
+    def add_belt(self, state: str, length: float) -> None:
+        """A belt of a length, m."""
+        try:
+            self._rows[state] = self._row(self._drive, length)
+        except (ConvergenceError, ModelError) as error:
+            if state == _NOMINAL:
+                raise
+            self._failures[state] = str(error)
+            self._rows[state] = {"belt_length": length}
+
+    def add_stop(self, state: str) -> None:
+        """The belt with which the tensioner just stands at a stop; nothing without one."""
+        stop = self._stops[state]
+        if np.isfinite(stop):
+            free = self._tensioner.replace(stops=None, stop_stiffness=None, stop_damping=0.0)
+            try:
+                self._rows[state] = self._at(self._with(free), stop)
+            except (ConvergenceError, ModelError, ValueError) as error:
+                self._failures[state] = str(error)
+                self._rows[state] = {"position": stop}
+
+    def _at(self, drive: Drive, stop: float) -> dict[str, float]:
+        """The row of the belt that brings a tensioner without stops to a place, m or rad, by the secant method."""
+        length = held_belt(
+            drive.path, drive.belt, drive.contact, drive.carriers, self._placed(stop), self._number
+        ).length
+        slope, before = None, None
+        for _ in range(_MOST_TRIALS):
+            row = self._row(drive, length)
+            missing = stop - row["position"]
+            if abs(missing) <= _ACCURACY * max(1.0, abs(stop)):
+                break
+            if before is not None and before[1] != missing:
+                slope = (length - before[0]) / (before[1] - missing)
+            before = length, missing
+            length += missing * (slope or row["leverage"])
+        return row
+
+    def _row(self, drive: Drive, length: float) -> dict[str, float]:
+        """What is told of a belt of a length, m."""
+        drive = drive.replace(belt=drive.belt.replace(length=length))
+        there, tensioner = _balanced(drive), drive.moving_tensioners[self._number]
+        carrier, position = drive.carriers[self._number], float(there.tensioner_positions[self._number])
+        force = there.hub_loads[carrier.pulley]
+        row = {
+            "belt_length": length,
+            "position": position,
+            "from_free": self._free - position,
+            "spring_load": carrier.force(position),
+            "leverage": float(there.path.gradient(carrier.pulley) @ carrier.place(position)[1]),
+            "wrap_angle": float(there.path.wrap_angles[carrier.pulley]),
+            "tension": there.tension,
+            "hub_load": float(np.hypot(*force)),
+            "hub_direction": float(np.arctan2(force[1], force[0])),
+            "slack": length - self._shortest,
+        }
+        for name, push in self._frictions.items():
+            pushed = self._with(tensioner.replace(preload=tensioner.preload + push), drive)
+            with suppress(ConvergenceError, ModelError):
+                row[f"tension_after_{name}"] = _balanced(pushed).tension
+        return row
+
+    def _placed(self, position: float) -> FloatArray:
+        """Places of all tensioners, with this one elsewhere and the others where the nominal belt has them."""
+        positions = self._drive.balance[1].copy()
+        positions[self._number] = position
+        return positions
+
+    def _with(self, tensioner: MovingTensioner, drive: Drive | None = None) -> Drive:
+        """A drive with another tensioner in the place of this one."""
+        drive = drive or self._drive
+        own = drive.moving_tensioners[self._number]
+        return drive.replace(tensioner=[tensioner if one is own else one for one in drive.tensioners])
+
+    def result(self, given: str) -> Result:
+        """The sheet; the text is that of the drive as it is given."""
+        states = list(self._rows)
+        known = {name for row in self._rows.values() for name in row if np.isfinite(row[name])}
+        variables: Axes = {
+            name: (column.variable(self._tensioner.turns), [row.get(name, np.nan) for row in self._rows.values()])
+            for name, column in COLUMNS.items()
+            if name in known
+        }
+        tensions = [row["tension"] for state, row in self._rows.items() if state in _BELTS and "tension" in row]
+        spread = (max(tensions) - min(tensions)) / self._rows[_NOMINAL]["tension"]
+        more: Axes = {
+            "failure": (Variable(_STATE, "1", "Why this state does not exist", "str"), self._reasons(states)),
+            "tension_spread": (Variable((), "1", "Tension range over all belts"), spread),
+        }
+        names = {"state": (Variable(_STATE, "1", "State", "str"), states)}
+        result = build_result("tensioner", self._drive, {**variables, **more}, names, list(self._warnings()))
+        result.dataset.attrs |= {"drive_as_given": given, "pulley": self._tensioner.pulley}
+        return result
+
+    def _reasons(self, states: list[str]) -> NDArray[np.object_]:
+        return np.array([self._failures.get(state, "") for state in states], dtype=object)
+
+    def _warnings(self) -> Iterator[str]:
+        """What a designer has to look after."""
+        lower, upper, written = self._stops["lower stop"], self._stops["upper stop"], self._tensioner.written
+        for state, cause in self._failures.items():
+            yield f"{state}: {cause}"
+        for state in _BELTS:
+            row = self._rows[state]
+            if not lower <= row.get("position", lower) <= upper:
+                yield (
+                    f"the {state} moves the tensioner of {self._tensioner.pulley} to its stop at "
+                    f"{written(row['position'])}, where the spring no longer sets the tension "
+                    f"({row['tension']:.4g} N). Change the belt length, the tolerance, or the stops."
+                )
+            if row.get("slack", 0.0) < 0.0:
+                yield (
+                    f"the {state} is {-1e3 * row['slack']:.3g} mm too short to be fitted with the tensioner of "
+                    f"{self._tensioner.pulley} at its lower stop. Lower that stop, or use a longer belt."
+                )
+
+
+def _balanced(drive: Drive) -> Installation:
+    """The belt at rest."""
+    rest = stand(drive, fineness=_FINENESS)
+    return looked_at(drive, rest.system, rest.state).installation
+
+
+def _number_of(drive: Drive, pulley: str | None) -> int:
+    """Number of a tensioner among those that move.
+
+    Raises
+    ------
+    ModelError
+        If there is none, or none of that name, or several of which none is named.
+    """
+    names = [one.pulley for one in drive.moving_tensioners]
+    if not names:
+        raise ModelError(
+            "the drive has no moving tensioner. Add a [[tensioner]] with a spring, or use `beltdyn check` for tensions."
+        )
+    if pulley is None and names[1:]:
+        raise ModelError(
+            f"a tensioner sheet describes one tensioner; those of {', '.join(names)} move. Choose one with pulley."
+        )
+    if pulley is not None and pulley not in names:
+        raise ModelError(f"pulley = {pulley!r} has no moving tensioner. Choose from: {', '.join(names)}.")
+    return names.index(pulley) if pulley is not None else 0
+
+
+def _length(name: str, text: str, nominal: float) -> float:
+    """A length, m, given as one or as a part of the nominal length.
+
+    Raises
+    ------
+    ModelError
+        If it is neither, below zero, or as long as the belt.
+    """
+    whole = text.strip()
+    try:
+        found = nominal * float(whole[:-1]) / 100.0 if whole.endswith("%") else to_si(whole, "m")
+    except ValueError as error:
+        raise ModelError(
+            f'{name} = {text!r} {reason(error)}. Give a length or a share, such as "6 mm" or "0.5 %".'
+        ) from error
+    if not 0.0 <= found < nominal:
+        raise ModelError(f"{name} = {text!r} must be non-negative and less than the belt length of {nominal:.4g} m.")
+    return found

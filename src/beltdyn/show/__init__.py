@@ -1,0 +1,5 @@
+"""Results for a reader: sheets, notebook, figures, reports."""
+
+import lazy_loader
+
+__getattr__, __dir__, __all__ = lazy_loader.attach(__name__, ["plot", "report"])

@@ -1,0 +1,173 @@
+"""A drive and a result as a notebook shows them: picture, numbers, warnings."""
+
+import math
+from collections.abc import Callable
+from dataclasses import dataclass
+from functools import cache
+
+import numpy as np
+from jinja2 import Environment, PackageLoader
+
+from beltdyn.model.advice import advise
+from beltdyn.model.drive import Drive
+from beltdyn.model.installation import install
+from beltdyn.model.path import Path
+from beltdyn.results.result import Result
+from beltdyn.results.schema import runs_steadily
+from beltdyn.show.sheet import sheet
+
+# A drive as a small vector picture: its pulleys and the path of its belt, as text in SVG
+
+_SIZE = 360.0
+"""Longer side of the picture, pixels."""
+_MARGIN = 0.06
+"""Room around the drive, over its longer side."""
+
+
+@dataclass(frozen=True)
+class Circle:
+    """A pulley in the picture, pixels; `prescribed` says whether its speed is prescribed."""
+
+    name: str
+    x: float
+    y: float
+    radius: float
+    prescribed: bool
+
+
+@dataclass(frozen=True)
+class Picture:
+    """The data of a template to draw a drive.
+
+    Attributes
+    ----------
+    width, height : float
+        Pixels.
+    circles : tuple of Circle
+        The pulleys.
+    belt : str
+        Path of the belt's line of tension, in the language of the attribute ``d``.
+    """
+
+    width: float
+    height: float
+    circles: tuple[Circle, ...]
+    belt: str
+
+
+def picture(drive: Drive) -> Picture:
+    """Draw a drive, with spring-loaded tensioners where the file has them.
+
+    Parameters
+    ----------
+    drive : Drive
+
+    Returns
+    -------
+    Picture
+        y points up in the drive and down in the picture.
+    """
+    path = drive.path
+    reach = abs(path.radii)[:, None]
+    points = np.concatenate([path.centers - reach, path.centers + reach, *([] if path.ends is None else [path.ends])])
+    low, high = points.min(axis=0), points.max(axis=0)
+    scale = _SIZE / max(high - low)
+    room = _MARGIN * _SIZE
+    width, height = (float(side) for side in scale * (high - low) + 2 * room)
+
+    def place(x: float, y: float) -> tuple[float, float]:
+        return room + scale * (x - low[0]), room + scale * (high[1] - y)
+
+    circles = tuple(
+        Circle(pulley.name, *place(*center), scale * pulley.radius, pulley.prescribed)
+        for pulley, center in zip(drive.pulleys, path.centers.tolist(), strict=True)
+    )
+    return Picture(width, height, circles, outline(path, place, scale))
+
+
+def outline(path: Path, place: Callable[[float, float], tuple[float, float]], scale: float) -> str:
+    """Draw the line of a path.
+
+    Parameters
+    ----------
+    path : Path
+        The path.
+    place : callable
+        Gives the place in the picture of a point in the plane of the drive, m; it turns y over.
+    scale : float
+        Pixels a metre.
+
+    Returns
+    -------
+    str
+        In the language of the attribute ``d``.
+    """
+    x, y = place(*path.span_points[path.order[0], 0])
+    steps = [f"M {x:.2f} {y:.2f}"]
+    for span in path.order:
+        x, y = place(*path.span_points[span, 1])
+        steps.append(f"L {x:.2f} {y:.2f}")
+        arc = (span + 1) % path.spans
+        if arc == path.count:
+            break
+        radius, large = scale * abs(path.radii[arc]), int(path.wrap_angles[arc] > math.pi)
+        x, y = place(*path.span_points[arc, 0])
+        steps.append(f"A {radius:.2f} {radius:.2f} 0 {large} {int(path.radii[arc] < 0)} {x:.2f} {y:.2f}")
+    return " ".join(steps)
+
+
+@cache
+def templates() -> Environment:
+    """Templates of the pages that notebooks show; text is escaped."""
+    return Environment(loader=PackageLoader("beltdyn"), autoescape=True, trim_blocks=True, lstrip_blocks=True)
+
+
+def drive_html(drive: Drive) -> str:
+    """Show a drive as HTML.
+
+    Parameters
+    ----------
+    drive : Drive
+
+    Returns
+    -------
+    str
+        A fragment that takes the notebook's fonts and colours.
+    """
+    installation = install(drive)
+    template = templates().get_template("drive.html.jinja")
+    return template.render(
+        picture=picture(drive),
+        drive=drive,
+        radii=drive.radii,
+        wraps=np.degrees(drive.path.wrap_angles),
+        tension=installation.tension,
+        warnings=advise(drive, installation),
+    )
+
+
+def result_html(result: Result) -> str:
+    """Show a result as HTML.
+
+    Parameters
+    ----------
+    result : Result
+        Of any analysis.
+
+    Returns
+    -------
+    str
+        A fragment that takes the notebook's fonts and colours.
+    """
+    return (
+        templates()
+        .get_template("result.html.jinja")
+        .render(
+            drive=result.drive,
+            picture=picture(result.drive),
+            kind="steady running" if runs_steadily(result.dataset) else result.kind,
+            status=result.status,
+            sheet=sheet(result).parts,
+            warnings=result.warnings,
+        )
+    )

@@ -1,0 +1,58 @@
+"""Figures of a run: ``f(run, ax=None) -> Axes``; labels and units come from its dataset. And the layout of a drive."""
+
+from beltdyn.show.plot.animation import animate as animate
+from beltdyn.show.plot.contact import contact_forces as contact_forces
+from beltdyn.show.plot.contact import contact_pressure as contact_pressure
+from beltdyn.show.plot.contact import wear_by_arc as wear_by_arc
+from beltdyn.show.plot.contact import wear_by_belt as wear_by_belt
+from beltdyn.show.plot.designs import optimization as optimization
+from beltdyn.show.plot.designs import sensitivity as sensitivity
+from beltdyn.show.plot.designs import tolerances as tolerances
+from beltdyn.show.plot.drive import configuration as configuration
+from beltdyn.show.plot.figures import save_all as save_all
+from beltdyn.show.plot.history import energy as energy
+from beltdyn.show.plot.history import mid_spans as mid_spans
+from beltdyn.show.plot.history import span_tensions as span_tensions
+from beltdyn.show.plot.history import speeds as speeds
+from beltdyn.show.plot.history import tension_spectrum as tension_spectrum
+from beltdyn.show.plot.history import tensioners as tensioners
+from beltdyn.show.plot.history import torques as torques
+from beltdyn.show.plot.layout import layout as layout
+from beltdyn.show.plot.layout import save_layout as save_layout
+from beltdyn.show.plot.operating_points import efficiency_map as efficiency_map
+from beltdyn.show.plot.operating_points import operating_points as operating_points
+from beltdyn.show.plot.operating_points import tensioner_sheet as tensioner_sheet
+from beltdyn.show.plot.operating_points import traction_curve as traction_curve
+from beltdyn.show.plot.pulleys import capstan_margins as capstan_margins
+from beltdyn.show.plot.pulleys import hub_load_sizes as hub_load_sizes
+from beltdyn.show.plot.pulleys import hub_loads as hub_loads
+from beltdyn.show.plot.pulleys import losses as losses
+from beltdyn.show.plot.pulleys import powers as powers
+from beltdyn.show.plot.pulleys import slip as slip
+from beltdyn.show.plot.registry import FIGURES as FIGURES
+from beltdyn.show.plot.stretch import save_stretch as save_stretch
+from beltdyn.show.plot.stretch import stretch as stretch
+from beltdyn.show.plot.study import parallel_coordinates as parallel_coordinates
+from beltdyn.show.plot.study import study_contour as study_contour
+from beltdyn.show.plot.study import study_lines as study_lines
+from beltdyn.show.plot.study_effects import sobol_indices as sobol_indices
+from beltdyn.show.plot.study_effects import tornado as tornado
+from beltdyn.show.plot.sweep import orders as orders
+from beltdyn.show.plot.sweep import waterfall as waterfall
+from beltdyn.show.plot.vibration import animate_modes as animate_modes
+from beltdyn.show.plot.vibration import campbell as campbell
+from beltdyn.show.plot.vibration import mode_damping as mode_damping
+from beltdyn.show.plot.vibration import mode_shape as mode_shape
+from beltdyn.show.plot.vibration import response as response
+
+__all__ = [
+    "FIGURES",
+    "animate",
+    "animate_modes",
+    "layout",
+    "save_all",
+    "save_layout",
+    "save_stretch",
+    "stretch",
+    *FIGURES,
+]

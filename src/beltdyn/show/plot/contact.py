@@ -1,0 +1,316 @@
+"""Contact on a pulley: forces over the belt laid straight, as in Figs. 10-13 of the paper; pressure over the arc."""
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from functools import partial
+from typing import Literal, get_args
+
+import numpy as np
+import xarray as xr
+from matplotlib.axes import Axes
+from matplotlib.collections import LineCollection
+from matplotlib.figure import Figure
+from matplotlib.lines import Line2D
+from matplotlib.patches import Patch
+
+from beltdyn.analyses import RUN, STATIC
+from beltdyn.arrays import BoolArray, FloatArray, IntArray
+from beltdyn.results import Result, Run, StaticResult, derived
+from beltdyn.show.plot.headline import at_instant
+from beltdyn.show.plot.legends import name_lines
+from beltdyn.show.plot.registry import Choice, always, figure, on_request
+from beltdyn.show.plot.style import INK, SHADE, axes_or_new, color, dash, label, panels, reserve, rows, unit
+
+# The part of the belt that lies on a pulley, laid out from where the belt enters
+
+
+@dataclass(frozen=True, slots=True)
+class Wrap:
+    """Contact points on a pulley, from where the belt enters to where it leaves.
+
+    Attributes
+    ----------
+    points : ndarray, shape (k,)
+        Numbers of the contact points, free ones between touching ones included.
+    distance : ndarray, shape (k,)
+        Unstretched length of belt between the first of them and each, m.
+    """
+
+    points: IntArray
+    distance: FloatArray
+
+
+def unwrap(belt_coordinate: FloatArray, touching: BoolArray, length: float, speed: float) -> Wrap:
+    """Find the contiguous part of a closed belt that lies on a pulley.
+
+    The part is what is left of the belt when its longest free stretch is taken away.
+
+    Parameters
+    ----------
+    belt_coordinate : ndarray, shape (points,)
+        Belt coordinates of all contact points, ascending, m.
+    touching : ndarray of bool, shape (points,)
+        Which of them touch the pulley.
+    length : float
+        Unstretched length of the belt, m.
+    speed : float
+        Speed of the pulley; with a negative one the belt enters at the other end.
+
+    Returns
+    -------
+    Wrap
+        The points and their distances from where the belt enters; empty when nothing touches.
+    """
+    (on,) = np.nonzero(touching)
+    if on.size == 0:
+        return Wrap(on, np.empty(0))
+    count = len(belt_coordinate)
+    gaps = np.diff(belt_coordinate[on], append=belt_coordinate[on[0]] + length)
+    widest = int(np.argmax(gaps))
+    first, last = on[(widest + 1) % on.size], on[widest]
+    points = (first + np.arange((last - first) % count + 1)) % count
+    distance = (belt_coordinate[points] - belt_coordinate[first]) % length
+    if speed < 0.0:
+        return Wrap(points[::-1], distance[-1] - distance[::-1])
+    return Wrap(points, distance)
+
+
+# Figures of wear intensity, the work of friction
+
+
+@figure(compares=True)
+def wear_by_arc(run: Run, ax: Axes | None = None) -> Axes:
+    """Draw the work of friction over the arcs of the pulleys, from where the belt enters.
+
+    Parameters
+    ----------
+    run : Run
+        The run.
+    ax : Axes, optional
+        Where to draw; a new figure by default.
+
+    Returns
+    -------
+    Axes
+        The axes.
+
+    Raises
+    ------
+    ModelError
+        If the run holds no output.
+
+    Examples
+    --------
+    >>> bd.plot.wear_by_arc(run).get_xlabel()
+    'Angle from the inlet [°]'
+    """
+    ax = axes_or_new(ax)
+    wear = derived.wear_by_arc(run)
+    for number, name in enumerate(wear["pulley"].values):
+        worn = wear[number][wear[number].values > 0.0]
+        ax.plot(np.degrees(worn["angle"]), worn, color=color(number), linestyle=dash(number), label=str(name))
+    ax.set(xlabel="Angle from the inlet [°]", ylabel=label(wear), ylim=(0.0, None))
+    name_lines(ax)
+    return ax
+
+
+@figure(compares=True)
+def wear_by_belt(run: Run, ax: Axes | None = None) -> Axes:
+    """Draw the work of friction over the belt, and what each pulley does of it.
+
+    Parameters
+    ----------
+    run : Run
+        The run.
+    ax : Axes, optional
+        Where to draw; a new figure by default.
+
+    Returns
+    -------
+    Axes
+        The axes.
+
+    Raises
+    ------
+    ModelError
+        If the run holds no output.
+
+    Examples
+    --------
+    >>> bd.plot.wear_by_belt(run).get_xlabel()
+    "Belt coordinate of the element's middle, unstretched [m]"
+    """
+    ax = axes_or_new(ax)
+    wear = derived.wear_by_belt(run)
+    for number, name in enumerate(wear["pulley"].values):
+        place = wear["element_coordinate"]
+        ax.plot(place, wear[number], color=color(number), linestyle=dash(number), lw=1.1, label=str(name))
+    ax.set(xlabel=label(wear["element_coordinate"]), ylabel=label(wear), ylim=(0.0, None))
+    name_lines(ax)
+    return ax
+
+
+Kind = Literal["normal", "friction"]
+_KILO = 1e3
+_ALIKE = 4.0
+"""Radii over each other up to which pressures have one scale."""
+
+
+def _pulleys(choice: Choice) -> list[list[str]]:
+    """Names of the chosen pulleys, in rows."""
+    return rows(choice.pulleys if choice.pulley is None else [choice.pulleys[choice.pulley]])
+
+
+def _kinds_by_pulleys(draw: Callable[..., Axes], run: Result, choice: Choice) -> Figure:
+    """Lay out a panel for each kind of force and pulley; at rest nothing rubs."""
+    kinds = ("normal",) if isinstance(run, StaticResult) else get_args(Kind)
+    blocks = [(block, kind) for block in _pulleys(choice) for kind in kinds]
+    return panels([[partial(draw, run, name, kind=kind) for name in block] for block, kind in blocks])
+
+
+def _by_pulleys(draw: Callable[..., Axes], run: Result, choice: Choice) -> Figure:
+    """Lay out a panel for each pulley, with one legend for all."""
+    radii = [pulley.radius for pulley in run.drive.pulleys]
+    alike = max(radii) < _ALIKE * min(radii)
+    page = panels([[partial(draw, run, name) for name in row] for row in _pulleys(choice)], sharey=alike)
+    named = [
+        Line2D([], [], color=INK, label="pressure"),
+        Line2D([], [], color=INK, linestyle=dash(1), label="shear"),
+        Patch(color=SHADE, label="sliding part of the arc"),
+    ]
+    page.legend(handles=named[: 1 if isinstance(run, StaticResult) else 3], loc="outside lower left", ncols=3)
+    return page
+
+
+@figure(on_request, _kinds_by_pulleys, of=(RUN, STATIC), compares=True)
+def contact_forces(
+    run: Run | StaticResult, pulley: str | int, time: float | None = None, kind: Kind = "normal", ax: Axes | None = None
+) -> Axes:
+    """Draw the contact forces on the belt from where it enters a pulley to where it leaves.
+
+    Dashed lines beside the friction force are what Coulomb friction allows: the belt slides where the
+    force reaches them. Forces that the mesh does not resolve are marked.
+
+    Parameters
+    ----------
+    run : Run or StaticResult
+        The run, or the drive at rest.
+    pulley : str or int
+        Name or number of the pulley.
+    time : float, optional
+        The instant, s; the output of fields nearest to it is drawn. The last one by default.
+    kind : {"normal", "friction"}
+        Which force. Friction is positive along the counter-clockwise tangent.
+    ax : Axes, optional
+        Where to draw; a new figure by default.
+
+    Returns
+    -------
+    Axes
+        The axes.
+
+    Raises
+    ------
+    ModelError
+        If there is no such pulley, or the run holds no output.
+
+    Examples
+    --------
+    >>> bd.plot.contact_forces(run, pulley="driver").get_xlabel()
+    'Belt coordinate from entry to exit [m]'
+    """
+    number = derived.pulley_number(run, pulley)
+    instant = run.fields_at(time)
+    ax = axes_or_new(ax)
+    wrap = unwrap(
+        instant["belt_coordinate"].values,
+        instant["contact_pulley"].values == number,
+        run.drive.belt_length,
+        run.drive.pulleys[number].turning * float(instant["pulley_speed"][number]),
+    )
+    if kind == "friction":
+        _draw_limits(ax, instant, wrap, float(run.drive.frictions[number]))
+    force = instant[f"{kind}_force"]
+    values = force.values[wrap.points]
+    name = run.drive.pulleys[number].name
+    ax.plot(wrap.distance, values, color=color(number), marker="o", markersize=3.0, label=name)
+    ax.axhline(0.0, color="0.4", linewidth=0.8, zorder=1)
+    ax.locator_params(axis="x", nbins=5)
+    coordinate_unit = unit(run.dataset["belt_coordinate"])
+    ax.set(xlabel=f"Belt coordinate from entry to exit [{coordinate_unit}]", ylabel=label(force))
+    ax.set_title(_title(run, name, float(instant["time"])))
+    if not run.resolution.resolves("peak pressure"):
+        reserve(ax, f"peaks not resolved by {run.drive.elements} elements")
+    return ax
+
+
+@figure(always, _by_pulleys, of=(RUN, STATIC))
+def contact_pressure(
+    run: Run | StaticResult, pulley: str | int, time: float | None = None, ax: Axes | None = None
+) -> Axes:
+    """Draw pressure and shear over the angle on a pulley from where the belt enters.
+
+    The shaded part of the arc slides: there friction is fully used. What the mesh does not resolve is marked.
+
+    Parameters
+    ----------
+    run : Run or StaticResult
+        The run, or the drive at rest.
+    pulley : str or int
+        Name or number of the pulley.
+    time : float, optional
+        The instant, s; the output of fields nearest to it is drawn. The last one by default.
+    ax : Axes, optional
+        Where to draw; a new figure by default.
+
+    Returns
+    -------
+    Axes
+        The axes. Shear is positive in the direction in which the rim moves.
+
+    Raises
+    ------
+    ModelError
+        If there is no such pulley, or the run holds no output.
+
+    Examples
+    --------
+    >>> bd.plot.contact_pressure(run, pulley="driver").get_xlabel()
+    'Angle from the inlet [°]'
+    """
+    number = derived.pulley_number(run, pulley)
+    arc = derived.contact_arc(run, number, time)
+    ax = axes_or_new(ax)
+    angle = np.degrees(arc["angle"].values)
+    parts = (("pressure", color(number), "-"), ("shear", INK, dash(1)))
+    for part, tint, style in parts[: 1 if isinstance(run, StaticResult) else 2]:  # at rest nothing rubs
+        ax.plot(angle, arc[part] / _KILO, color=tint, linestyle=style, label=str(arc[part].attrs["long_name"]))
+    ax.margins(x=0.0)
+    _shade_sliding(ax, angle, arc["sliding"].values)
+    ax.axhline(0.0, color="0.4", linewidth=0.8, zorder=1)
+    ax.set(xlabel="Angle from the inlet [°]", ylabel="Contact stress [kPa]")
+    ax.set_title(_title(run, run.drive.pulleys[number].name, float(arc["time"])))
+    if not run.resolution.resolves("peak pressure"):
+        reserve(ax, f"peaks not resolved by {run.drive.elements} elements")
+    return ax
+
+
+def _title(run: Result, name: str, time: float) -> str:
+    """The pulley, and the instant of a run."""
+    return ", ".join(filter(None, (name, at_instant(run, time))))
+
+
+def _shade_sliding(ax: Axes, angle: FloatArray, sliding: FloatArray) -> None:
+    """Shade what slides, half of the way to the neighbours of each point."""
+    if angle.size:
+        edges = np.concatenate([angle[:1], 0.5 * (angle[1:] + angle[:-1]), angle[-1:]])
+        ax.stairs(sliding, edges, transform=ax.get_xaxis_transform(), fill=True, color=SHADE, zorder=0)
+
+
+def _draw_limits(ax: Axes, instant: xr.Dataset, wrap: Wrap, friction: float) -> None:
+    """Draw what Coulomb friction allows, without making room for it: the force may be much smaller."""
+    limit = friction * instant["normal_force"].values[wrap.points]
+    edges = [np.column_stack([wrap.distance, sign * limit]) for sign in (1, -1)]
+    lines = LineCollection(edges, colors=INK, linestyles=dash(1), linewidths=1.0, label="Coulomb limit")
+    ax.add_collection(lines, autolim=False)
+    ax.legend(handles=[lines], loc="lower left", bbox_to_anchor=(0.62, 1.0), borderaxespad=0.2)

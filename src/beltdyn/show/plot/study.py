@@ -1,0 +1,312 @@
+"""Figures of a study: results over numbers, in lines, as contours, and along parallel axes."""
+
+import json
+import re
+from collections.abc import Callable
+from functools import partial
+
+import numpy as np
+import xarray as xr
+from matplotlib import colormaps
+from matplotlib.axes import Axes
+from matplotlib.collections import LineCollection
+from matplotlib.figure import Figure
+
+from beltdyn.analyses import STUDY
+from beltdyn.arrays import BoolArray, FloatArray
+from beltdyn.errors import ModelError
+from beltdyn.parts.messages import suggest
+from beltdyn.results import Result
+from beltdyn.results.schema import shown_unit
+from beltdyn.show.plot.legends import name_once
+from beltdyn.show.plot.registry import Choice, figure
+from beltdyn.show.plot.style import INK, axes_or_new, color, dash, panels, rows
+
+# What figures of a study share: which numbers and results they show, in which units, and which figures suit it
+
+_MOST_PANELS = 6
+_BESIDE = 2
+"""Panels beside each other: their words are long."""
+_CORNERS = 3
+"""Points from which on there are contours."""
+
+
+def panel_for_each_result(draw: Callable[..., Axes], result: Result, choice: Choice) -> Figure:
+    """Lay out a panel for each of the first results, with one legend where all have the same."""
+    draws = [partial(draw, result, name) for name in results_of(result)[:_MOST_PANELS]]
+    page = panels(rows(draws, _BESIDE), sharey=False)
+    titles = [box.get_title().get_text() for ax in page.axes if (box := ax.get_legend()) is not None]
+    name_once(page, next(iter(titles), ""))
+    return page
+
+
+def suits(kind: str) -> Callable[[Result], bool]:
+    """Whether a figure is the one, or one of those, that suit a study."""
+
+    def is_suited(result: Result) -> bool:
+        if not results_of(result):
+            return False
+        sampling, count = str(result.dataset.attrs["sampling"]), len(varied_numbers(result))
+        if sampling == "one_at_a_time":
+            return kind == "tornado"
+        if sampling == "saltelli":
+            return kind in ("indices", "parallel")
+        if count > 2:
+            return kind == "parallel"
+        return (kind == "lines" and count > 0) or (kind == "contour" and spans_a_plane(result))
+
+    return is_suited
+
+
+def spans_a_plane(result: Result) -> bool:
+    """Whether two numbers vary, and not along a line."""
+    varied = varied_numbers(result)
+    if len(varied) != 2:
+        return False
+    places = np.stack([result.dataset[one].values for one in varied], axis=1)
+    places = (places - places.mean(axis=0)) / np.ptp(places, axis=0)
+    return len(places) >= _CORNERS and int(np.linalg.matrix_rank(places, tol=1e-6)) == 2
+
+
+def numbers_of(result: Result) -> list[str]:
+    """Paths of the numbers of a study."""
+    return str(result.dataset.attrs["numbers"]).splitlines()
+
+
+def varied_numbers(result: Result) -> list[str]:
+    """Numbers that have several values; not those that are words."""
+    found = [result.dataset[path] for path in numbers_of(result)]
+    return [str(one.name) for one in found if one.dtype.kind in "fi" and len(np.unique(one.values)) > 1]
+
+
+def results_of(result: Result) -> list[str]:
+    """Results that are known somewhere."""
+    names = str(result.dataset.attrs["results"]).splitlines()
+    return [name for name in names if np.isfinite(result.dataset[name].values).any()]
+
+
+def moved_from_base(values: xr.DataArray) -> BoolArray:
+    """Where a number is not that of the drive file."""
+    given = json.loads(str(values.attrs.get("base", "null")))
+    return np.asarray(values.values != given)
+
+
+def chosen_result(result: Result, of: str | None) -> str:
+    """The name of a result that is asked for; by default the first."""
+    names = results_of(result)
+    name = (names or [""])[0] if of is None else of
+    if name not in names:
+        raise ModelError(f"of = {name!r} is not a result of the study. {suggest(name, names)}")
+    return name
+
+
+def chosen_number(result: Result, over: str | None, varied: list[str]) -> str:
+    """The path of a number that is asked for; by default the one that has most values."""
+    if over is None and varied:
+        return max(varied, key=lambda path: len(np.unique(result.dataset[path].values)))
+    if over not in varied:
+        raise ModelError(f"over = {over!r} is not a varying parameter of the study. {suggest(str(over), varied)}")
+    return over
+
+
+def in_shown_units(values: xr.DataArray) -> FloatArray:
+    """Numbers in the unit in which they are shown."""
+    return shown_unit(values)[1] * values.values.astype(float)
+
+
+def labelled(values: xr.DataArray, width: int = 30) -> str:
+    """Name and unit of a number or a result, in lines of so many letters where it can be broken."""
+    unit = shown_unit(values)[0].replace("*", "·").replace(" ", "·")
+    lines = [""]
+    for piece in filter(None, re.split(r"(?<=[._,])|(?=\[)", str(values.name))):
+        if lines[-1] and len(lines[-1]) + len(piece) > width:
+            lines.append("")
+        lines[-1] += piece
+    return "\n".join(lines) + (f" [{unit}]" if unit else "")
+
+
+def value_in_words(values: xr.DataArray, value: float) -> str:
+    """A value of a number with its unit."""
+    unit, factor = shown_unit(values)
+    return f"{factor * value:.4g} {unit.replace('*', '·')}".rstrip()
+
+
+_FAMILY = 7
+"""Lines of one panel."""
+_MOST_LINES = 1500
+_AXES = 4
+"""Results along parallel axes."""
+_LEVELS = 12
+_NARROW = 11
+"""Letters in a line below one of them."""
+_BACK = {"facecolor": "w", "edgecolor": "none", "pad": 0.8}
+"""Behind numbers."""
+
+
+@figure(suits("lines"), panel_for_each_result, of=(STUDY,))
+def study_lines(result: Result, of: str | None = None, over: str | None = None, *, ax: Axes | None = None) -> Axes:
+    """Draw a result of a study over a parameter, with a line for each value of a second one, or points for more.
+
+    Parameters
+    ----------
+    result : Result
+        Of `study`.
+    of : str, optional
+        Name of the result; by default the first.
+    over : str, optional
+        Path of the number along the horizontal axis; by default the one that has most values.
+    ax : Axes, optional
+        Where to draw; a new figure by default.
+
+    Returns
+    -------
+    Axes
+        The axes.
+
+    Raises
+    ------
+    ModelError
+        If there is no such result or number.
+
+    Examples
+    --------
+    >>> study = bd.ParameterStudy(
+    ...     analysis="static",
+    ...     results=["tension"],
+    ...     number=[{"path": "belt.width", "values": "10..20 mm", "steps": 3}],
+    ... )
+    >>> bd.plot.study_lines(bd.study(study, drive, jobs=1)).get_xlabel()
+    'belt.width [mm]'
+    """
+    name, ax, varied = chosen_result(result, of), axes_or_new(ax), varied_numbers(result)
+    along = chosen_number(result, over, varied)
+    others = [one for one in varied if one != along]
+    x, y = in_shown_units(result.dataset[along]), in_shown_units(result.dataset[name])
+    family = np.unique(result.dataset[others[0]].values) if len(others) == 1 else np.empty(0)
+    if others and not 0 < len(family) <= _FAMILY:
+        ax.plot(x, y, "o", markersize=3, color=color(0))
+    else:
+        for number, value in enumerate(family if len(family) else [None]):
+            chosen = np.isfinite(y) if value is None else (result.dataset[others[0]].values == value) & np.isfinite(y)
+            order = np.flatnonzero(chosen)[np.argsort(x[chosen], kind="stable")]
+            told = None if value is None else value_in_words(result.dataset[others[0]], value)
+            ax.plot(x[order], y[order], color=color(number), linestyle=dash(number), marker="o", ms=3, label=told)
+    if len(family):
+        ax.legend(title=str(result.dataset[others[0]].name))
+    ax.set(xlabel=labelled(result.dataset[along]), title=labelled(result.dataset[name]))
+    return ax
+
+
+@figure(suits("contour"), panel_for_each_result, of=(STUDY,))
+def study_contour(result: Result, of: str | None = None, *, ax: Axes | None = None) -> Axes:
+    """Draw a result of a study over two parameters as contours; crosses mark failed points.
+
+    Parameters
+    ----------
+    result : Result
+        Of `study`, in which two numbers vary.
+    of : str, optional
+        Name of the result; by default the first.
+    ax : Axes, optional
+        Where to draw; a new figure by default.
+
+    Returns
+    -------
+    Axes
+        The axes.
+
+    Raises
+    ------
+    ModelError
+        If there is no such result, or other than two numbers vary.
+
+    Examples
+    --------
+    >>> study = bd.ParameterStudy(
+    ...     analysis="static",
+    ...     results=["tension"],
+    ...     number=[
+    ...         {"path": "belt.width", "values": "10..20 mm", "steps": 2},
+    ...         {"path": "pulley[driven].radius", "values": "81..81.5 mm", "steps": 2},
+    ...     ],
+    ... )
+    >>> bd.plot.study_contour(bd.study(study, drive, jobs=1)).get_ylabel()
+    'pulley[driven].radius [mm]'
+    """
+    name = chosen_result(result, of)
+    if not spans_a_plane(result):
+        raise ModelError(
+            f"contours need two varying parameters; this study varies {', '.join(varied_numbers(result)) or 'none'}."
+        )
+    ax, (first, second) = axes_or_new(ax), varied_numbers(result)
+    x, y, z = (in_shown_units(result.dataset[one]) for one in (first, second, name))
+    known = np.isfinite(z)
+    if np.count_nonzero(known) > 2 and np.ptp(z[known]) > 0.0:
+        filled = ax.tricontourf(x[known], y[known], z[known], levels=_LEVELS, cmap="viridis")
+        page = ax.get_figure()
+        assert page is not None
+        page.colorbar(filled, ax=ax)
+    ax.set_title(labelled(result.dataset[name]))
+    ax.plot(x[known], y[known], ".", color=INK, markersize=2)
+    ax.plot(x[~known], y[~known], "x", color=color(1), markersize=5)
+    ax.set(xlabel=labelled(result.dataset[first]), ylabel=labelled(result.dataset[second]))
+    ax.grid(visible=False)
+    return ax
+
+
+@figure(suits("parallel"), of=(STUDY,))
+def parallel_coordinates(result: Result, of: str | None = None, *, ax: Axes | None = None) -> Axes:
+    """Draw each point of a study as a line across parallel axes of parameters and results.
+
+    Parameters
+    ----------
+    result : Result
+        Of `study`.
+    of : str, optional
+        Name of the result that colors the lines; by default the first, which stands last.
+    ax : Axes, optional
+        Where to draw; a new figure by default.
+
+    Returns
+    -------
+    Axes
+        The axes.
+
+    Raises
+    ------
+    ModelError
+        If there is no such result.
+
+    Examples
+    --------
+    >>> study = bd.ParameterStudy(
+    ...     analysis="static",
+    ...     results=["tension", "hub_load[driven]"],
+    ...     number=[{"path": "belt.width", "values": "10..20 mm", "steps": 2}],
+    ... )
+    >>> ax = bd.plot.parallel_coordinates(bd.study(study, drive, jobs=1))
+    >>> ax.get_xticklabels()[0].get_text()
+    'belt.width [mm]'
+    """
+    name = chosen_result(result, of)
+    names = [*varied_numbers(result), *[one for one in results_of(result) if one != name][: _AXES - 1], name]
+    ax = axes_or_new(ax, (1.6 * len(names) + 1.5, 4.2))
+    table = np.stack([in_shown_units(result.dataset[one]) for one in names], axis=1)
+    table = table[np.isfinite(table).all(axis=1)]
+    table = table[np.unique(np.linspace(0, len(table) - 1, _MOST_LINES).astype(int))]
+    low, high = table.min(axis=0), table.max(axis=0)
+    scaled = (table - low) / np.where(high > low, high - low, 1.0)
+    places = np.arange(len(names))
+    paths = [np.column_stack([places, row]) for row in scaled]
+    shade = colormaps["viridis"](scaled[:, -1])
+    ax.add_collection(LineCollection(paths, colors=shade, linewidths=0.8, alpha=0.6))
+    for place, bottom, top in zip(range(len(names)), low, high, strict=True):
+        ax.axvline(place, color=INK, linewidth=0.9)
+        for value, height, side in ((bottom, -0.02, "top"), (top, 1.02, "bottom")):
+            ax.text(place, height, f"{value:.4g}", ha="center", va=side, fontsize=7, bbox=_BACK)
+    ax.set_xticks(places, [labelled(result.dataset[one], _NARROW) for one in names], fontsize=7)
+    ax.set(xlim=(-0.5, len(names) - 0.5), ylim=(-0.12, 1.12), yticks=[])
+    ax.tick_params(axis="x", length=0, pad=8)
+    ax.spines[["left", "bottom"]].set_visible(False)
+    ax.grid(visible=False)
+    return ax

@@ -1,0 +1,318 @@
+"""How every figure looks, and how axes are labelled from the dataset."""
+
+from collections.abc import Callable, Sequence
+from functools import wraps
+from math import ceil
+from typing import Any, ParamSpec, TypeVar
+
+import matplotlib as mpl
+import matplotlib.pyplot as plt
+import numpy as np
+import xarray as xr
+from cycler import cycler
+from matplotlib.axes import Axes
+from matplotlib.colors import Colormap, ListedColormap
+from matplotlib.figure import Figure
+from matplotlib.ticker import LogFormatter
+from matplotlib.typing import LineStyleType
+
+from beltdyn.results import Result
+
+P = ParamSpec("P")
+R = TypeVar("R")
+Dash = LineStyleType
+
+INK = "#2b2f36"
+"""Color of text and outlines."""
+
+PALE = "#e9ecf1"
+"""Color of surfaces."""
+
+SHADE = "#f6d9c9"
+"""Areas where something is at its limit."""
+
+COLORS = (
+    *("#0072b2", "#d55e00", "#009e73", "#cc79a7", "#56b4e9", "#e69f00"),
+    *("#7a5cc9", "#a03050", "#85861f", "#5d5d5d"),
+)
+"""Colors of pulleys, and of the spans that leave them, in all figures: six of Okabe and Ito (2008), and four more."""
+
+DASHES: tuple[Dash, ...] = ("-", (0, (5, 1.6)), (0, (1.2, 1.4)), (0, (6, 1.4, 1.2, 1.4)))
+"""Line styles, so that lines that lie on each other can both be seen."""
+
+SIZE = (7.0, 3.8)
+"""Width and height of a figure, inches."""
+
+POLAR_SIZE = (6.2, 4.6)
+"""Those of a polar one."""
+
+NOTE = "note"
+"""Name of what is written below axes."""
+
+_BELOW = 38.0
+"""Distance of notes from the axes, points: numbers and a label are between them."""
+
+RESERVATION = "reservation"
+"""Name of what is written along the right edge."""
+
+_RULES: dict[Any, Any] = {
+    "figure.dpi": 110,
+    "savefig.dpi": 160,
+    "font.size": 10,
+    "axes.titlesize": 10,
+    "axes.titlelocation": "left",
+    "axes.labelsize": 10,
+    "axes.labelcolor": INK,
+    "axes.edgecolor": INK,
+    "axes.linewidth": 0.8,
+    "axes.spines.top": False,
+    "axes.spines.right": False,
+    "axes.grid": True,
+    "axes.axisbelow": True,
+    "axes.prop_cycle": cycler(color=COLORS),
+    "axes.formatter.useoffset": False,
+    "axes.xmargin": 0.02,
+    "grid.color": "#dfe3e8",
+    "grid.linewidth": 0.7,
+    "lines.linewidth": 1.7,
+    "lines.solid_capstyle": "round",
+    "legend.frameon": False,
+    "legend.fontsize": 9,
+    "text.color": INK,
+    "text.parse_math": False,  # names of files and titles may hold dollars
+    "xtick.color": INK,
+    "ytick.color": INK,
+}
+
+
+def styled(function: Callable[P, R]) -> Callable[P, R]:
+    """Make a function draw in the style of this package.
+
+    Parameters
+    ----------
+    function : callable
+        A function that draws.
+
+    Returns
+    -------
+    callable
+        The same function, with the style in force while it runs.
+    """
+
+    @wraps(function)
+    def draw(*args: P.args, **kwargs: P.kwargs) -> R:
+        with mpl.rc_context(_RULES):
+            return function(*args, **kwargs)
+
+    return draw
+
+
+def set_log_scale(ax: Axes) -> None:
+    """Make the vertical axis logarithmic, with numbers that need no setting of formulas."""
+    ax.set_yscale("log")
+    ax.yaxis.set_major_formatter(LogFormatter())
+    ax.yaxis.set_minor_formatter(LogFormatter())
+
+
+def new_figure(size: tuple[float, float] = SIZE) -> Figure:
+    """Make a figure that belongs to no window, for files.
+
+    Parameters
+    ----------
+    size : tuple of float
+        Width and height, inches.
+
+    Returns
+    -------
+    Figure
+        An empty figure.
+    """
+    return Figure(figsize=size, layout="constrained")
+
+
+def axes_or_new(ax: Axes | None, size: tuple[float, float] = SIZE) -> Axes:
+    """Give the axes to draw on.
+
+    Parameters
+    ----------
+    ax : Axes or None
+        The caller's axes, or None for a new figure.
+    size : tuple of float
+        Width and height of a new figure, inches.
+
+    Returns
+    -------
+    Axes
+        The axes.
+    """
+    return plt.subplots(figsize=size, layout="constrained")[1] if ax is None else ax
+
+
+def polar_or_new(ax: Axes | None, size: tuple[float, float] = POLAR_SIZE) -> Axes:
+    """Give the axes to draw on; new ones are polar. See `axes_or_new`."""
+    if ax is not None:
+        return ax
+    return plt.subplots(figsize=size, layout="constrained", subplot_kw={"projection": "polar"})[1]
+
+
+def unit(variable: xr.DataArray) -> str:
+    """Give the unit of a variable as it is printed.
+
+    Parameters
+    ----------
+    variable : DataArray
+        A variable of a result.
+
+    Returns
+    -------
+    str
+        Such as "N·m".
+    """
+    return str(variable.attrs["units"]).replace(" ", "·")
+
+
+def label(variable: xr.DataArray) -> str:
+    """Give the label of an axis.
+
+    Parameters
+    ----------
+    variable : DataArray
+        A variable of a result.
+
+    Returns
+    -------
+    str
+        Such as "Span tension [N]"; of a ratio without unit.
+    """
+    name, units = str(variable.attrs["long_name"]), unit(variable)
+    return name if units == "1" else f"{name} [{units}]"
+
+
+def reserve(ax: Axes, text: str) -> None:
+    """Write a reservation about what is drawn along the right edge, where nothing else stands."""
+    ax.annotate(
+        text,
+        (1.0, 0.5),
+        gid=RESERVATION,
+        xycoords="axes fraction",
+        xytext=(4.0, 0.0),
+        textcoords="offset points",
+        rotation=90.0,
+        verticalalignment="center",
+        color=COLORS[1],
+        fontsize=9,
+    )
+
+
+def note(ax: Axes, text: str) -> None:
+    """Write below the label of the horizontal axis, at the right, where it covers nothing.
+
+    Parameters
+    ----------
+    ax : Axes
+        Where to write.
+    text : str
+        In few lines.
+    """
+    ax.annotate(
+        text, (1.0, 0.0), (0.0, -_BELOW), "axes fraction", "offset points", ha="right", va="top", fontsize=8, gid=NOTE
+    )
+
+
+def shade(ax: Axes, low: float, high: float, text: str) -> None:
+    """Shade a band of the values, and write in it what is at its limit there."""
+    ax.axhspan(low, high, color=SHADE, linewidth=0.0, zorder=0)
+    middle = ("axes fraction", "data")
+    ax.annotate(text, (0.005, 0.5 * (low + high)), xycoords=middle, ha="left", va="center", fontsize=9)
+
+
+def dash(number: int) -> Dash:
+    """Give the line style of the line of this number, counted from 0."""
+    return DASHES[number % len(DASHES)]
+
+
+def color(number: int) -> str:
+    """Give the color of the line of this number, counted from 0."""
+    return COLORS[number % len(COLORS)]
+
+
+def tension_colors() -> Colormap:
+    """Give the color map of the tension: from dark blue to yellow, without tones too pale for white paper."""
+    return ListedColormap(mpl.colormaps["plasma"](np.linspace(0.0, 0.88, 256)), "tension")
+
+
+# Panels of a figure, side by side
+
+Item = TypeVar("Item")
+
+_PANEL = (3.7, 2.7)
+_COLUMNS = 3
+
+
+def one_panel(draw: Callable[..., Axes], run: Result, choice: object) -> Figure:
+    """Lay out a figure of one panel.
+
+    Parameters
+    ----------
+    draw : callable
+        ``draw(run, ax=None) -> Axes``.
+    run : Result
+        What is drawn.
+    choice : Choice
+        Not needed.
+
+    Returns
+    -------
+    Figure
+        The figure.
+    """
+    figure = new_figure()
+    draw(run, ax=figure.add_subplot())
+    return figure
+
+
+def rows(items: Sequence[Item], most: int = _COLUMNS) -> list[list[Item]]:
+    """Break a sequence into rows of nearly the same length.
+
+    Parameters
+    ----------
+    items : sequence
+        One or more.
+    most : int
+        Items of a row at most.
+
+    Returns
+    -------
+    list of list
+        The rows.
+    """
+    columns = ceil(len(items) / ceil(len(items) / most))
+    return [list(items[first : first + columns]) for first in range(0, len(items), columns)]
+
+
+def panels(calls: Sequence[Sequence[Callable[..., Axes]]], *, sharey: bool = True) -> Figure:
+    """Draw rows of panels; the last row may be shorter.
+
+    Parameters
+    ----------
+    calls : sequence of sequence of callable
+        Rows of ``call(ax=...)``.
+    sharey : bool
+        Whether the panels of a row have the same vertical scale.
+
+    Returns
+    -------
+    Figure
+        The figure.
+    """
+    columns = len(calls[0])
+    figure = new_figure((_PANEL[0] * columns, _PANEL[1] * len(calls)))
+    grid = figure.subplots(len(calls), columns, squeeze=False, sharey="row" if sharey else False)
+    for axes, draws in zip(grid, calls, strict=True):
+        for ax in axes[len(draws) :]:
+            ax.remove()
+        for column, (ax, draw) in enumerate(zip(axes, draws, strict=False)):
+            draw(ax=ax)
+            if sharey and column:
+                ax.set_ylabel("")
+    return figure

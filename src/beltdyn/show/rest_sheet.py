@@ -1,0 +1,200 @@
+"""The sheet of a drive at rest: facts, pulleys, spans, tensioners, and chosen values."""
+
+import math
+
+from beltdyn.model import Drive, Installation, describe_time, tensioner_balances
+from beltdyn.model.hysteresis import bending_resistance, compression_losses
+from beltdyn.model.plausibility import other_diameters
+from beltdyn.model.simulation import unused_settings
+from beltdyn.parts.messages import aligned
+from beltdyn.results.layout import describe_size
+from beltdyn.show.sheet import Facts, Sheet, Table
+
+_PULLEY_HEADINGS = (
+    "",
+    "speed",
+    "turns",
+    "wrap",
+    "effective\nradius mm",
+    "speed\nratio",
+    "penetration\nmm",
+    "hub load\nN",
+    "hub load\ndirection",
+)
+
+
+_SPAN_HEADINGS = ("", "length\nm", "tension\nN", "first frequency\nHz")
+_TENSIONER_HEADINGS = ("", "position", "spring", "stops", "other equilibria")
+
+_SAME_TENSION = 5e-4
+"""Relative change of tension by bending and soft contact that is not mentioned."""
+_HALF_TURN = 179.95
+"""Angle from which a direction is shown as 180.0, degrees."""
+
+
+def rest_sheet(given: Drive, drive: Drive, installation: Installation) -> Sheet:
+    """Summarise a drive at rest.
+
+    Parameters
+    ----------
+    given : Drive
+        The drive of the file.
+    drive : Drive
+        The same drive with the length, or the take-up, that gives the installed tension.
+    installation : Installation
+        Its static equilibrium, or an estimate.
+
+    Returns
+    -------
+    Sheet
+        Facts of the belt, tables of pulleys, spans and tensioners, and the chosen values.
+    """
+    parts: list[Table | Facts] = [
+        Facts(tuple(_facts(given, drive, installation))),
+        Table("Pulleys at rest", _PULLEY_HEADINGS, tuple(_pulleys(drive, installation))),
+        Table("Spans at rest", _SPAN_HEADINGS, tuple(_spans(drive, installation))),
+    ]
+    if installation.tensioner_positions.size:
+        parts.append(Table("Tensioners at rest", _TENSIONER_HEADINGS, tuple(_tensioners(drive, installation))))
+    if given.completed.choices:
+        parts.append(Facts(tuple(_choices(given)), "Chosen values (not given in the file)"))
+    return Sheet("", tuple(parts))
+
+
+def _facts(given: Drive, drive: Drive, installation: Installation) -> list[tuple[str, str]]:
+    asked_for = given.belt.installed_tension is not None
+    length, path = drive.belt_length, installation.path.length
+    unused = unused_settings(drive.belt, drive.contact) if drive.frame.stays else []
+    return [
+        *([("drive", drive.name)] if drive.name else []),
+        ("tension at rest", f"{installation.tension:.4g} N{_origin(drive, installation, asked_for)}"),
+        (
+            "belt length",
+            f"{length:.5g} m unstretched, stretched by {installation.strain:z.3%} on its path of {path:.5g} m",
+        ),
+        *_as_sold(given, drive),
+        *_taken_up(drive),
+        ("mesh", f"{drive.elements} {drive.element_kind.name} elements, {drive.frame.words}"),
+        ("element length", f"{1e3 * length / drive.elements:.3g} mm{_in_the_mean(drive)}"),
+        *([("not used", f"{', '.join(unused)} (only for a travelling mesh)")] if unused else []),
+        *_lost_in_the_belt(drive),
+        ("result size", f"about {describe_size(drive)}"),
+        *([("computing time", time)] if (time := describe_time(drive)) else []),
+    ]
+
+
+def _as_sold(given: Drive, drive: Drive) -> list[tuple[str, str]]:
+    """The nominal length with its measuring force, and the effect of other diameters."""
+    belt, force = drive.belt, drive.belt.measuring_force
+    sold = force is not None or belt.nominal_length is not None
+    if drive.ends or not sold:
+        return []
+    nominal = f"{belt.nominal_length_of(drive.belt_length):.5g} m"
+    other = other_diameters(given)
+    diameters = [("with pitch diameters", other)] if other else []
+    if force is None:
+        return [("nominal length", f"{nominal}, assumed unstretched (no measuring force given)"), *diameters]
+    stretched = f"stretched by {belt.measured_stretch - 1.0:.3%}"
+    return [("nominal length", f"{nominal} under {force:.4g} N between two pulleys, {stretched}"), *diameters]
+
+
+def _in_the_mean(drive: Drive) -> str:
+    """The elements of a travelling mesh are equally long."""
+    return " on average" if drive.frame.stays else ""
+
+
+def _taken_up(drive: Drive) -> list[tuple[str, str]]:
+    """Pulley centers after the take-up of fixed tensioners."""
+    fixed = [tensioner for tensioner in drive.tensioners if tensioner.kind == "fixed"]
+    places = [(one.pulley, drive.centers[drive.carried(one)]) for one in fixed]
+    return [(f"center of {name}", f"[{x:.5g}, {y:.5g}] m after take-up") for name, (x, y) in places]
+
+
+def _lost_in_the_belt(drive: Drive) -> list[tuple[str, str]]:
+    """The loss in bending and compression, independent of speed and load."""
+    forces = {"bending": bending_resistance(drive), "compression": compression_losses(drive).sum()}
+    return [
+        (f"{cause} loss", f"{force:.3g} N of belt pull, {force:.3g} W per m/s of belt speed")
+        for cause, force in forces.items()
+        if force > 0.0
+    ]
+
+
+def _origin(drive: Drive, installation: Installation, asked_for: bool) -> str:
+    asked = " as specified" * asked_for
+    if installation.tensioner_positions.size:
+        return f"{asked}, set by tensioners"
+    if any(not end.held for end in drive.ends):
+        return ", set by the pulled end"
+    gained = installation.tension / installation.laid_tension - 1
+    if abs(gained) < _SAME_TENSION:
+        return asked
+    change = f"{abs(gained):.1%} {'less' if gained < 0 else 'more'} than {installation.laid_tension:.4g} N"
+    return f"{asked} ({change} without bending stiffness and contact compliance)"
+
+
+def _pulleys(drive: Drive, installation: Installation) -> list[tuple[str, ...]]:
+    """Pulley rows; the speed ratio is that without creep, negative for the opposite sense."""
+    path, loads = installation.path, installation.hub_loads.tolist()
+    return list(
+        zip(
+            (pulley.name for pulley in drive.pulleys),
+            ("prescribed" if pulley.prescribed else "free" for pulley in drive.pulleys),
+            ("ccw" if drive.running_sense * pulley.turning > 0 else "cw" for pulley in drive.pulleys),
+            (f"{math.degrees(wrap):.1f}°" for wrap in path.wrap_angles),
+            aligned([1e3 * abs(radius) for radius in path.radii], 5),
+            (f"{path.radii[0] / radius:.4f}" for radius in path.radii),
+            aligned([1e3 * depth for depth in installation.penetrations], 2),
+            aligned([math.hypot(*load) for load in loads]),
+            (f"{_angle(load):z.1f}°" for load in loads),
+            strict=True,
+        )
+    )
+
+
+def _angle(force: list[float]) -> float:
+    """Direction of a force, above -180° up to 180°."""
+    angle = math.degrees(math.atan2(force[1], force[0]))
+    return angle if angle > -_HALF_TURN else angle + 360.0
+
+
+def _spans(drive: Drive, installation: Installation) -> list[tuple[str, ...]]:
+    columns = installation.path.span_lengths, installation.span_tensions, installation.span_frequencies
+    names = (f"{start} to {end}" for start, end in drive.spans)
+    return list(zip(names, *(aligned(column.tolist()) for column in columns), strict=True))
+
+
+def _tensioners(drive: Drive, installation: Installation) -> list[tuple[str, ...]]:
+    rows = list[tuple[str, ...]]()
+    others = _others(drive, installation)
+    for tensioner, position, other in zip(
+        drive.moving_tensioners, installation.tensioner_positions.tolist(), others, strict=True
+    ):
+        unit = "N m" if tensioner.turns else "N"
+        rows.append(
+            (
+                tensioner.pulley,
+                tensioner.written(position),
+                f"{tensioner.preload - tensioner.rate * position:.4g} {unit}",
+                " to ".join(tensioner.written(stop) for stop in tensioner.stops or ()),
+                other or "none",
+            )
+        )
+    return rows
+
+
+def _choices(drive: Drive) -> list[tuple[str, str]]:
+    """Chosen values with their reasons."""
+    return [(choice.key, choice.words) for choice in drive.completed.choices]
+
+
+def _others(drive: Drive, installation: Installation) -> list[str]:
+    """Other equilibrium positions, one text for each spring-loaded tensioner, empty if there are none."""
+    return [
+        ", ".join(
+            f"{tensioner.written(balance.position)} ({'stable' if balance.stable else 'unstable'})"
+            for balance in balances
+            if not balance.here
+        )
+        for tensioner, balances in zip(drive.moving_tensioners, tensioner_balances(drive, installation), strict=True)
+    ]

@@ -1,0 +1,429 @@
+"""Sheets of results: the tables and facts that the screen, notebooks and reports show."""
+
+import math
+import re
+from collections.abc import Iterable, Sequence
+from typing import NamedTuple
+
+import numpy as np
+import xarray as xr
+
+from beltdyn.analyses import STUDY
+from beltdyn.parts.messages import aligned
+from beltdyn.parts.quantity import RPM, SHOWN_UNITS
+from beltdyn.results.provenance import Resolution, mesh_facts
+from beltdyn.results.result import Result
+from beltdyn.results.run import Run
+from beltdyn.results.schema import VARIOUS, attribute, in_words, runs_steadily, shown_unit
+from beltdyn.results.summary import FAILURE, Compared, Summary, steady_comparison, summarize
+
+# Parts of a sheet
+
+_NUMBER = re.compile(r"[<>]?\s*[-+−]?[\d.]|[–-]?$|nan|-?inf")
+
+
+class Table(NamedTuple):
+    """A table whose first column holds names.
+
+    Attributes
+    ----------
+    title : str
+        What stands above it, or nothing.
+    headings : tuple of str
+        Name and unit of each column, in two lines where a column is narrow.
+    rows : tuple of tuple of str
+        Its rows.
+    """
+
+    title: str
+    headings: tuple[str, ...]
+    rows: tuple[tuple[str, ...], ...]
+
+    def has_words(self, column: int) -> bool:
+        """Whether a column holds words, and not numbers alone."""
+        return any(_NUMBER.match(row[column]) is None for row in self.rows)
+
+
+class Facts(NamedTuple):
+    """Names and their values.
+
+    Attributes
+    ----------
+    facts : tuple of (str, str)
+        Such as ``("efficiency", "96.04%")``.
+    title : str
+        What stands above them, or nothing.
+    """
+
+    facts: tuple[tuple[str, str], ...]
+    title: str = ""
+
+
+class Sheet(NamedTuple):
+    """The tables and facts of a result.
+
+    Attributes
+    ----------
+    title : str
+        The name of the drive, or what the result is; may be empty.
+    parts : tuple of Table or Facts
+        In the order in which they are read.
+    """
+
+    title: str
+    parts: tuple[Table | Facts, ...]
+
+
+# The sheet of a study: number of points, and range of each input and result
+
+_DIGITS = 5
+_MOST = 40
+"""Results in the table."""
+
+
+def study_sheet(result: Result) -> Sheet:
+    """Give the sheet of a study.
+
+    Parameters
+    ----------
+    result : Result
+        The result of `study`.
+
+    Returns
+    -------
+    Sheet
+        Without its warnings.
+    """
+    dataset = result.dataset
+    names = str(dataset.attrs["results"]).splitlines()
+    numbers = [_row(dataset[path]) for path in str(dataset.attrs["numbers"]).splitlines()]
+    tables = [Table("", ("number", "", "min", "max"), tuple(numbers))]
+    if names:
+        rows = tuple(_result_row(dataset[name]) for name in names[:_MOST])
+        tables.append(Table("", ("result", "", "min", "at point", "mean", "max", "at point"), rows))
+    return Sheet(str(dataset.attrs["title"]), (Facts(tuple(_facts(dataset, names))), *tables))
+
+
+def _facts(dataset: "xr.Dataset", names: list[str]) -> list[tuple[str, str]]:
+    seconds = dataset["seconds"].values
+    done, failed = int(dataset.attrs["done"]), int((dataset["failure"] != "").sum())
+    facts = [("points", f"{done} of {dataset.sizes['point']}, {failed} failed" if failed else f"{done}")]
+    if done < dataset.sizes["point"] and not failed:
+        facts = [("points", f"{done} of {dataset.sizes['point']}")]
+    if done:
+        facts.append(("computing time", f"{np.nansum(seconds):.3g} s, {np.nanmean(seconds):.3g} s per point"))
+    if len(names) > _MOST:
+        facts.append(("results", f"{len(names)}, {_MOST} shown"))
+    return facts
+
+
+def _row(values: "xr.DataArray") -> tuple[str, ...]:
+    """An input and its range."""
+    if values.dtype.kind not in "fi":
+        words = list(dict.fromkeys(map(str, values.values)))
+        return str(values.name), "", ", ".join(words[:3]), f"{len(words)} values" if len(words) > 3 else ""
+    unit, factor = shown_unit(values)
+    return str(values.name), unit, *(f"{factor * float(one):z.{_DIGITS}g}" for one in (values.min(), values.max()))
+
+
+def _result_row(values: "xr.DataArray") -> tuple[str, ...]:
+    """A result: its mean, and its extremes with their points."""
+    known = np.flatnonzero(np.isfinite(values.values))
+    if not known.size:
+        return str(values.name), "", "", "", "", "", ""
+    unit, factor = shown_unit(values)
+    numbers = factor * values.values[known]
+    least, largest = int(np.argmin(numbers)), int(np.argmax(numbers))
+    low, mean, high = aligned([float(numbers[least]), float(numbers.mean()), float(numbers[largest])], _DIGITS)
+    point = values["point"].values[known]
+    return str(values.name), unit, low, str(point[least]), mean, high, str(point[largest])
+
+
+# The sheet of a run: pulleys, spans, power, tensioners and solver statistics
+
+_COMPARED_UNITS = {**SHOWN_UNITS, "m": ("mm", 1e3), "1": ("%", 100.0)}
+"""SI unit -> the one that is shown, and the factor."""
+_OF_PARTS = ("rad/s", "N", "N/m")
+
+_LARGEST_MARGIN = 100.0
+_LEAST_SHARE = 0.01
+"""Share of the power input from which a shaft is named."""
+_NOTHING = 1e-9
+"""Power below which it is rounding, W."""
+_KILOWATTS = 1e4
+"""Power from which powers are shown in kW, W."""
+
+
+def run_sheet(run: Run) -> Sheet:
+    """Summarise a run in tables and facts.
+
+    Parameters
+    ----------
+    run : Run
+        The run.
+
+    Returns
+    -------
+    Sheet
+        For a run without outputs, a sentence that says so.
+    """
+    if run.outputs == 0:
+        return Sheet("The run ended before its first output.", ())
+    summary = summarize(run)
+    over = _window(run, summary)
+    spans = Table(
+        f"Spans{over}",
+        ("", "tension\nN", "min\nN", "max\nN", "belt speed\nm/s"),
+        tuple(_spans(summary)),
+    )
+    facts = Facts((*_power(summary), *_tensioners(summary), *_run_up(run), *_mesh_used(run), *_solver(summary)))
+    return Sheet(run.drive.name or "", (_pulleys(f"Pulleys{over}", summary), spans, *_steady_running(run), facts))
+
+
+def _run_up(run: Run) -> list[tuple[str, str]]:
+    """The settling before a run-up, and the quantities held constant in it."""
+    with run.recorded() as recorded:
+        said, left = recorded.attrs, attribute(recorded, "settling_left", math.nan)
+        time, held = attribute(recorded, "settling_time", 0.0), str(said.get("held", ""))
+    part = "a transient of unknown size" if math.isnan(left) else f"a transient of {left:.1%} of the tensions"
+    before = f"{time:.3g} s at the first speed, not recorded; {part} remains"
+    return [*([("settling", before)] if time else []), *([("held constant", held)] if held else [])]
+
+
+def _mesh_used(run: Run) -> list[tuple[str, str]]:
+    """Elements and their number."""
+    with run.recorded() as recorded:
+        return mesh_facts(recorded.attrs)
+
+
+def _pulleys(title: str, summary: Summary) -> Table:
+    """The table of pulleys; powers in kW where they are large."""
+    pulleys = summary.pulleys
+    unit, watts = ("kW", 1e3) if max(abs(one.power) for one in pulleys) >= _KILOWATTS else ("W", 1.0)
+    headings = (
+        "",
+        "rpm",
+        "rad/s",
+        "torque\nN m",
+        f"power\n{unit}",
+        "slip",
+        "elastic\ncreep",
+        "wrap\nangle",
+        "sliding\narc",
+    )
+    columns = (
+        (one.name for one in pulleys),
+        aligned([RPM * one.speed for one in pulleys], 5),
+        aligned([one.speed for one in pulleys], 5),
+        aligned([one.shaft_torque for one in pulleys]),
+        aligned([one.power / watts for one in pulleys]),
+        (_share(one.slip) for one in pulleys),
+        (_share(one.elastic_creep) for one in pulleys),
+        (f"{math.degrees(one.wrap_angle):.1f}°" for one in pulleys),
+        (f"{math.degrees(one.sliding_arc):.1f}°" for one in pulleys),
+        (_margin(one.margin) for one in pulleys),
+        aligned([one.hub_load for one in pulleys]),
+    )
+    return Table(title, (*headings, "capstan\nmargin", "hub load\nN"), tuple(zip(*columns, strict=True)))
+
+
+def _window(run: Run, summary: Summary) -> str:
+    """The averaging window and its belt turns; none in steady running."""
+    with run.recorded() as recorded:
+        if runs_steadily(recorded):
+            return " (steady running)"
+    if not summary.end > summary.start:
+        return ""
+    turns = f", {summary.turns} turn{'s'[: summary.turns != 1]} of the belt" if summary.turns else ""
+    return f" (means from {summary.start:.4g} to {summary.end:.4g} s{turns})"
+
+
+def _share(part: float) -> str:
+    """A share of the first rim's speed; a dash where that stands still."""
+    return "–" if math.isnan(part) else f"{part:z.3%}"
+
+
+def _margin(margin: float) -> str:
+    """The capstan margin; a dash without load."""
+    if math.isnan(margin):
+        return "–"
+    return f"{margin:.3g}" if margin < _LARGEST_MARGIN else f"> {_LARGEST_MARGIN:.0f}"
+
+
+def _spans(summary: Summary) -> Iterable[tuple[str, ...]]:
+    """Span rows, with the same number of decimals in all tension columns.
+
+    A span has no tension or speed while the belt has left one of its pulleys; a warning says so.
+    """
+    spans = summary.spans
+    tensions = iter(aligned([tension for one in spans for tension in (one.tension, one.lowest, one.highest)]))
+    speeds = aligned([one.belt_speed for one in spans])
+    for one, speed in zip(spans, speeds, strict=True):
+        yield one.name, next(tensions), next(tensions), next(tensions), speed
+
+
+def _watts(power: float, digits: int = 4) -> str:
+    """A power in W or kW with the given significant digits, but at least to the unit."""
+    if abs(power) < _NOTHING:
+        return "0 W"
+    value, unit = (power / 1e3, "kW") if abs(power) >= _KILOWATTS else (power, "W")
+    return f"{value:.{digits}g} {unit}" if abs(value) < 10.0**digits - 0.5 else f"{value:.0f} {unit}"
+
+
+def _power(summary: Summary) -> list[tuple[str, str]]:
+    """Power, efficiency and losses by cause, if there is power input."""
+    balance = summary.balance
+    if not balance.power_in > 0.0:
+        return []
+    losses = ", ".join(f"{cause} {_watts(power, 3)}" for cause, power in balance.losses.items() if power != 0.0)
+    efficiency = f"{balance.efficiency:.2%}" if balance.power_out > 0.0 else "none (no power output)"
+    flows = f"{_watts(balance.power_in)} in{_givers(summary)}, {_watts(balance.power_out)} out"
+    return [
+        ("power", f"{flows}, {_watts(balance.stored, 3)} stored" if summary.steps else flows),
+        ("efficiency", efficiency),
+        ("losses", f"{_watts(balance.lost, 3)}: {losses}" if losses else "none"),
+    ]
+
+
+def _givers(summary: Summary) -> str:
+    """The shafts that put power in, if several."""
+    givers = [pulley for pulley in summary.pulleys if pulley.power > _LEAST_SHARE * summary.balance.power_in]
+    parts = ", ".join(f"{pulley.name} {_watts(pulley.power)}" for pulley in givers)
+    return f" ({parts})" if len(givers) > 1 else ""
+
+
+def _tensioners(summary: Summary) -> list[tuple[str, str]]:
+    """Tensioner positions and their range."""
+    facts = []
+    for one in summary.tensioners:
+        size, unit = (math.degrees, "°") if one.rotary else (lambda value: 1e3 * value, " mm")
+        place, lowest, highest = (f"{size(value):z.4g}{unit}" for value in (one.position, one.lowest, one.highest))
+        travel = f" (range {lowest} to {highest})" if one.highest > one.lowest else ""
+        facts.append((f"tensioner of {one.name}", f"{place}{travel}"))
+    return facts
+
+
+def _solver(summary: Summary) -> list[tuple[str, str]]:
+    """Solver statistics: mesh errors, energy balance, steps and computing time; fewer without time steps."""
+    steps = f"{summary.steps} accepted, {summary.rejected_steps} rejected"
+    facts = [
+        ("mesh errors", _mesh(summary.resolution)),
+        ("energy balance", f"closes within {abs(summary.energy_closure):.1e} of the energy input"),
+        ("time steps", f"{steps}; {summary.outputs} outputs"),
+    ]
+    prepared = f", plus {summary.compile_time:.3g} s of preparation" if summary.steps else ""
+    took = f"{summary.wall_time:.3g} s{_pace(summary)}{prepared}"
+    known = not math.isnan(summary.wall_time)
+    moves = not math.isnan(summary.resolution.errors["slip"])
+    return [*(facts if summary.steps else facts[:moves]), *([("computing time", took)] if known else [])]
+
+
+def _pace(summary: Summary) -> str:
+    """Computing time per simulated second; empty without time steps."""
+    pace = summary.computing_time_per_second
+    return "" if math.isnan(pace) or not summary.steps else f" ({pace:.3g} s per simulated second)"
+
+
+def _mesh(resolution: Resolution) -> str:
+    """The estimated mesh errors that are known; without slip they are those at rest."""
+    known = {name: error for name, error in resolution.errors.items() if not math.isnan(error)}
+    errors = ", ".join(f"{name} {error:.1%}" if error < 1.0 else f"{name} > 100%" for name, error in known.items())
+    return f"{errors}{', at rest' * ('slip' not in known)}" if errors else "unknown"
+
+
+def _steady_running(run: Run) -> tuple[Table | Facts, ...]:
+    """What a sheet says of steady running: the comparison, or why there is none; nothing where none was asked for.
+
+    Parameters
+    ----------
+    run : Run
+        The run.
+    """
+    with run.recorded() as recorded:
+        failure = str(recorded.attrs.get(FAILURE, ""))
+    if failure:
+        return (Facts((("steady running", failure),)),)
+    rows = tuple(map(_comparison_row, steady_comparison(run)))
+    return (Table("Against steady running", ("", "run", "steady", "unit", "difference", ""), rows),) if rows else ()
+
+
+def _comparison_row(one: Compared) -> tuple[str, ...]:
+    """A row of the table: slips and places differ by so much, others by a part too."""
+    unit, factor = _COMPARED_UNITS.get(one.unit, (one.unit, 1.0))
+    pair = aligned([factor * one.run, factor * one.steady], 5)
+    share = f"{one.run / one.steady - 1.0:+z.2%}" if one.unit in _OF_PARTS and one.steady else ""
+    return (f"{one.quantity} of {one.name}", *pair, unit, f"{factor * (one.run - one.steady):+z.3g}", share)
+
+
+_SHEET_DIGITS = 5
+_FIRST_PART = re.compile("[,:]")
+_AMONG_WARNINGS = frozenset({"failure"})
+"""Variables of long texts, which warnings quote."""
+
+
+def sheet(result: Result) -> Sheet:
+    """Give the sheet of a result: the summary of a run, or the values and tables of another analysis.
+
+    Parameters
+    ----------
+    result : Result
+        The result of any analysis.
+
+    Returns
+    -------
+    Sheet
+        Without its warnings.
+    """
+    if isinstance(result, Run):
+        return run_sheet(result)
+    if result.kind == STUDY:
+        return study_sheet(result)
+    dataset = result.dataset
+    variables = dataset.data_vars.values()
+    numbers = [(str(one.attrs["long_name"]), _single(one)) for one in variables if not one.dims]
+    numbers += mesh_facts(dataset.attrs)
+    axes = tuple(str(dataset.attrs.get("axes", "")).split())
+    tables, left_out = list[Table](), _AMONG_WARNINGS | {dataset.attrs.get("tables_by")}
+    for dims in dict.fromkeys([axes, *((str(dimension),) for dimension in dataset.dims)]):
+        columns = [one for one in variables if dims and one.dims == dims and one.name not in left_out]
+        if columns and all(dimension in dataset.coords for dimension in dims):
+            labels = [one for one in dataset.coords.values() if one.dims and set(one.dims) <= set(dims)]
+            shown = [*(one.broadcast_like(columns[0]) for one in labels), *columns]
+            tables += _tables(shown, dataset.get(dataset.attrs.get("tables_by")))
+    return Sheet(str(dataset.attrs["title"]), (*([Facts(tuple(numbers))] if numbers else []), *tables))
+
+
+def _tables(shown: "Sequence[xr.DataArray]", group: "xr.DataArray | None") -> list[Table]:
+    """A table of columns; or one for each word of a variable along their rows, below that word."""
+    headings, rows = tuple(map(_heading, shown)), list(zip(*map(_column, shown), strict=True))
+    if group is None or group.dims != shown[0].dims:
+        return [Table("", headings, tuple(rows))]
+    words = [str(one) for one in group.values]
+    return [
+        Table(
+            word[:1].upper() + word[1:],
+            headings,
+            tuple(row for row, own in zip(rows, words, strict=True) if own == word),
+        )
+        for word in dict.fromkeys(words)
+    ]
+
+
+def _single(variable: "xr.DataArray") -> str:
+    """A number with its unit, with five digits."""
+    return f"{_column(variable)[0]} {shown_unit(variable)[0]}" if variable.dtype.kind == "f" else in_words(variable)
+
+
+def _heading(variable: "xr.DataArray") -> str:
+    """The first part of its name up to a comma or a colon, and its unit."""
+    name = str(variable.attrs.get("long_name", variable.name))
+    return f"{_FIRST_PART.split(name)[0]}\n{shown_unit(variable)[0]}".rstrip()
+
+
+def _column(variable: "xr.DataArray") -> list[str]:
+    """The numbers of a variable, with as many decimals each where they have one unit, or its words."""
+    if variable.dtype.kind != "f":
+        return [str(one) for one in variable.values.ravel()]
+    if variable.attrs.get("units") == VARIOUS:
+        return [f"{one:z.{_SHEET_DIGITS}g}" for one in variable.values.ravel()]
+    return aligned((shown_unit(variable)[1] * variable.values.ravel()).tolist(), _SHEET_DIGITS)

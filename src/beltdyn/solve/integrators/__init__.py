@@ -1,1 +1,0 @@
-"""Time integrators: generalised-alpha in compiled code, standard ones, and what their users put together."""

@@ -1,1 +1,0 @@
-"""The belt at rest in its drive, on both meshes."""

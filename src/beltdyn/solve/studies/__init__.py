@@ -1,1 +1,0 @@
-"""Studies: many designs of a drive, their results by name, and the search among them."""

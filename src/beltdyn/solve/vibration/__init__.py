@@ -1,1 +1,0 @@
-"""Small motions about a state: modes, their shapes, and the response to what excites them."""

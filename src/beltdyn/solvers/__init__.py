@@ -1,0 +1,1 @@
+"""Numerical methods on the equations of motion: time integration, equilibrium, eigenvalues. One compiled engine."""

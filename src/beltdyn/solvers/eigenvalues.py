@@ -1,0 +1,431 @@
+"""Eigenvalues of linearised equations of motion (K + s C + s^2 M) x = 0, those that swing, from the slowest on.
+
+A motion that meets no force, such as that of a free pulley that turns, gives a double eigenvalue of zero: it may stand
+anywhere, and turn on.  Its rate takes its place as the unknown, which leaves no such pair.
+"""
+
+from collections.abc import Callable, Iterator
+from math import sqrt
+from typing import TYPE_CHECKING, NamedTuple
+
+import numpy as np
+
+from beltdyn.arrays import BoolArray, ComplexArray, FloatArray, IntArray
+from beltdyn.errors import ConvergenceError
+
+if TYPE_CHECKING:
+    from scipy.sparse import csc_array
+
+
+# Eigenvalues of largest magnitude of a linear map, by the Arnoldi method without restarts
+
+_BATCH = 40
+"""Steps after which eigenvalues are looked at."""
+
+
+class Ritz(NamedTuple):
+    """Eigenvalues as known after some steps, the largest first."""
+
+    values: ComplexArray
+    """Shape (steps,)."""
+    residuals: FloatArray
+    """Error of A v = value v for the unit vector v, over the magnitude of the value, shape (steps,)."""
+    within: ComplexArray
+    """Coordinates of the eigenvectors in the basis, shape (steps, steps)."""
+    basis: list[ComplexArray]
+    """Orthonormal vectors, one more than there are steps."""
+
+    def vectors(self, count: int) -> ComplexArray:
+        """Eigenvectors of so many of the largest values, in columns."""
+        found = np.zeros((self.basis[0].size, count), complex)
+        for direction, parts in zip(self.basis, self.within[:, :count], strict=False):
+            found += np.multiply.outer(direction, parts)
+        return found
+
+
+def arnoldi(apply: Callable[[ComplexArray], ComplexArray], size: int, most: int) -> Iterator[Ritz]:
+    """Find eigenvalues of a map, better after each batch of steps.
+
+    Parameters
+    ----------
+    apply
+        The map, from vectors of shape (size,) to such.
+    size
+        Of its vectors.
+    most
+        Batches of steps.
+    """
+    most = min(most, -(-size // _BATCH))
+    vector = np.random.default_rng(0).standard_normal(size).astype(complex)
+    basis = [vector / np.linalg.norm(vector)]
+    projected = np.zeros((most * _BATCH + 1, most * _BATCH), complex)
+    for steps in range(1, min(most * _BATCH, size) + 1):
+        vector = apply(basis[-1])
+        for _ in range(2):  # once more, since what is found already comes back by rounding
+            for number, direction in enumerate(basis):
+                part = np.vdot(direction, vector)
+                projected[number, steps - 1] += part
+                vector -= part * direction
+        rest = float(np.linalg.norm(vector))
+        if not np.isfinite(rest):
+            return
+        if steps % _BATCH == 0 or steps == size:
+            values, within = np.linalg.eig(projected[:steps, :steps])
+            order = np.argsort(-np.abs(values))
+            values, within = values[order], within[:, order]
+            with np.errstate(divide="ignore", invalid="ignore"):
+                residuals = rest * np.abs(within[-1]) / np.abs(values)
+            yield Ritz(values, residuals, within, basis)
+        projected[steps, steps - 1] = rest
+        basis.append(vector / rest if rest > 0.0 else vector)
+
+
+_SMALL = 160
+"""Order of the pencil up to which all eigenvalues are found by the QZ algorithm."""
+_AT_A_TIME, _MOST_AT_A_TIME = 24, 96
+"""Eigenvalues that are found around a shift, at least."""
+_BATCHES, _TOLERANCE = 8, 1e-9
+"""Batches of steps of the Arnoldi method, at most, and the residual of an eigenvalue that is found."""
+_BAND = 0.5
+"""Half of the band of frequencies around a shift whose lightly damped eigenvalues are known, over the radius within
+which all are."""
+_ROUNDING = 1e-6
+"""Part by which a disk is smaller than the distance of its farthest eigenvalue, which is that of another disk then."""
+_SWINGS = 0.1
+"""Least imaginary part of an eigenvalue that grows and swings, over its magnitude."""
+MOST_DAMPED = 0.9
+"""Damping ratio from which on a mode is left out: within half a swing 0.15 % of a free motion is left."""
+LIGHT = 0.5
+"""Damping ratio below which a mode counts as lightly damped: at resonance a force moves one damped so by 15 % more than
+the same force does if it stays, 1 / (2 z sqrt(1 - z^2)), and one damped more by less."""
+_SLOWEST = 1e-6
+"""Least magnitude of an eigenvalue that swings, 1/s: those below are of motions without force, and of rounding."""
+_RATE = 1000.0
+"""w, rad/s."""
+_MOST_SHIFTS = 400
+MOST_SWINGING = 99
+"""Eigenvalues that swing, counted or not, with which a search ends, unless more are asked for."""
+_INFINITE = 1e10
+"""Magnitude from which on an eigenvalue is that of a constraint or of a coordinate without mass, 1/s."""
+
+
+_SLIVER = 0.05
+"""Size of a gap between disks, over their radius, that gets a disk of its own and is not divided further."""
+
+
+class Pencil(NamedTuple):
+    """A z = s B z for z = (a, s a / w, b' / w): x = S (Z a + N b), with coordinates a and motions N b without force.
+
+    S makes the masses of coordinates one, and w = 1000 rad/s rates about as large as coordinates, so that an error of z
+    is one of all of them alike.
+    """
+
+    by_state: "csc_array"
+    """A."""
+    by_rate: "csc_array"
+    """B."""
+    placed: IntArray
+    """Numbers of the coordinates a."""
+    free: FloatArray
+    """N, shape (n, k)."""
+    scale: FloatArray
+    """Diagonal of S, shape (n,)."""
+
+    @property
+    def size(self) -> int:
+        """Its order."""
+        return int(self.by_state.shape[0])
+
+    def coordinates(self, values: ComplexArray, vectors: ComplexArray) -> ComplexArray:
+        """Coordinates x of eigenvectors.
+
+        Parameters
+        ----------
+        values : ndarray, shape (k,)
+            Eigenvalues s, 1/s.
+        vectors : ndarray, shape (size, k)
+            Eigenvectors z.
+
+        Returns
+        -------
+        ndarray, shape (n, k)
+        """
+        placed = self.placed.size
+        found: ComplexArray = self.free @ (_RATE * vectors[2 * placed :] / values)
+        found[self.placed] += vectors[:placed]
+        return self.scale[:, None] * found
+
+
+def pencil(stiffness: "csc_array", damping: "csc_array", mass: "csc_array", free: FloatArray) -> Pencil:
+    """Make the pencil of first order.
+
+    Parameters
+    ----------
+    stiffness, damping, mass : csc_array, shape (n, n)
+        K, C and M.
+    free : ndarray, shape (n, k)
+        N, motions without force: K N = 0.
+
+    Returns
+    -------
+    Pencil
+        Of order 2 n - k.
+    """
+    from scipy.linalg import qr
+    from scipy.sparse import block_array, csc_array, diags_array, eye_array
+
+    size, count = free.shape
+    scale = unit_masses(mass)
+    stiffness, damping, mass = (matrix @ diags_array(scale) for matrix in (stiffness, damping, mass))
+    free = free / scale[:, None]
+    given = qr(free.T, mode="r", pivoting=True)[1][:count] if count else np.zeros(0, int)
+    placed = np.setdiff1d(np.arange(size), given)
+    same, none = eye_array(placed.size, format="csc"), csc_array((placed.size, placed.size))
+    gap, below, turning = csc_array((placed.size, count)), csc_array((size, placed.size)), csc_array(free)
+    forces = [-stiffness[:, placed], -_RATE * damping[:, placed], -_RATE * (damping @ turning)]
+    return Pencil(
+        block_array([[none, _RATE * same, gap], forces], format="csc"),
+        block_array([[same, none, gap], [below, _RATE * mass[:, placed], _RATE * (mass @ turning)]], format="csc"),
+        placed,
+        free,
+        scale,
+    )
+
+
+def unit_masses(mass: "csc_array") -> FloatArray:
+    """Scales of the coordinates in which their masses are one.
+
+    In other units the matrices are so far from normal that residuals tell nothing: slopes and curvatures of quintic
+    elements are numbers of other sizes than places.
+
+    Parameters
+    ----------
+    mass : csc_array, shape (n, n)
+        M.
+
+    Returns
+    -------
+    ndarray, shape (n,)
+        One for coordinates without mass.
+    """
+    own = np.abs(mass.diagonal())
+    scale: FloatArray = np.divide(1.0, np.sqrt(own), out=np.ones(own.size), where=own > 0.0)
+    return scale
+
+
+def all_eigenvalues(given: Pencil) -> tuple[ComplexArray, ComplexArray]:
+    """Every finite eigenvalue, with its eigenvector in a column, by the QZ algorithm on dense matrices."""
+    from scipy.linalg import eig
+
+    values, vectors = eig(given.by_state.toarray(), given.by_rate.toarray())
+    finite = np.abs(values) < _INFINITE
+    return values[finite], vectors[:, finite]
+
+
+def nearest(given: Pencil, shift: complex, count: int) -> tuple[ComplexArray, ComplexArray]:
+    """Eigenvalues nearest to a shift, with their eigenvectors in columns, by the Arnoldi method on the shifted inverse.
+
+    Parameters
+    ----------
+    given
+        The pencil.
+    shift
+        1/s.
+    count
+        How many, at least.
+
+    Raises
+    ------
+    ConvergenceError
+        If they are not found.
+    """
+    from scipy.sparse.linalg import splu
+
+    def inverse(vector: ComplexArray) -> ComplexArray:
+        return np.asarray(factors.solve(np.asarray(given.by_rate @ vector)), complex)
+
+    try:
+        factors = splu((given.by_state - shift * given.by_rate).tocsc())
+        for ritz in arnoldi(inverse, given.size, _BATCHES):
+            found = int(np.argmin(np.append(ritz.residuals < _TOLERANCE, False)))
+            if found >= min(count, given.size):
+                with np.errstate(divide="ignore", invalid="ignore"):
+                    return shift + 1.0 / ritz.values[:found], ritz.vectors(found)
+    except RuntimeError as error:
+        raise ConvergenceError(f"the modes cannot be computed: {error}. Check masses and inertias.") from error
+    raise ConvergenceError(
+        f"{count} vibrations near {abs(shift) / (2.0 * np.pi):.4g} Hz were not found. Reduce the number of modes."
+    )
+
+
+def swings(values: ComplexArray) -> BoolArray:
+    """Which eigenvalues (1/s) swing: of each conjugate pair one, with a damping ratio below `MOST_DAMPED`."""
+    size = np.abs(values)
+    return np.asarray((-values.real < MOST_DAMPED * size) & (values.imag > _SWINGS * size) & (size > _SLOWEST))
+
+
+def lightly_damped(values: ComplexArray) -> BoolArray:
+    """Which eigenvalues (1/s) have a damping ratio below `LIGHT`."""
+    return np.asarray(-values.real < LIGHT * np.abs(values))
+
+
+def swinging(
+    given: Pencil, count: int, first: float = 10.0, *, counted: Callable[[ComplexArray], BoolArray] = swings
+) -> tuple[ComplexArray, ComplexArray]:
+    """Eigenvalues that swing, from the slowest on, with their eigenvectors in columns.
+
+    Parameters
+    ----------
+    given
+        The pencil.
+    count
+        How many of those that are counted.
+    first
+        Where to begin to look, rad/s.
+    counted
+        Which of those that swing are counted; all by default. Those between them are given, too.
+
+    Returns
+    -------
+    values : ndarray, shape (k,)
+        Growth rate and angular frequency above zero, 1/s; of each conjugate pair one. Fewer than `count` where the
+        pencil has no more, and at most `MOST_SWINGING` or `count`, whichever is more.
+    vectors : ndarray, shape (size, k)
+
+    Raises
+    ------
+    ConvergenceError
+        If eigenvalues are not found.
+    """
+    if given.size <= _SMALL:
+        found, shapes = all_eigenvalues(given)
+    else:
+        found, shapes = _band_by_band(given, count, first, counted)
+    chosen = np.flatnonzero(swings(found))
+    chosen = chosen[np.argsort(found[chosen].imag)][: max(count, MOST_SWINGING)]
+    enough = int(np.searchsorted(np.cumsum(counted(found[chosen])), count))
+    chosen = chosen[: enough + 1]
+    return found[chosen], shapes[:, chosen]
+
+
+class _Disk(NamedTuple):
+    """A part of the complex plane of which all eigenvalues are known."""
+
+    center: complex
+    radius: float
+
+    def holds(self, values: ComplexArray) -> BoolArray:
+        """Whether values lie in it."""
+        return np.asarray(np.abs(values - self.center) < self.radius)
+
+
+class _Cell(NamedTuple):
+    """A rectangle of the complex plane whose eigenvalues are looked for, by its corners."""
+
+    low: complex
+    high: complex
+
+    @property
+    def center(self) -> complex:
+        return 0.5 * (self.low + self.high)
+
+    @property
+    def wanted(self) -> bool:
+        """Whether a mode in it may be damped by less than `MOST_DAMPED`: its upper right corner is the least damped."""
+        return -self.high.real < MOST_DAMPED * abs(self.high)
+
+    def within(self, disk: _Disk) -> bool:
+        """Whether all of it lies in a disk."""
+        corners = np.array(
+            [self.low, self.high, complex(self.low.real, self.high.imag), complex(self.high.real, self.low.imag)]
+        )
+        return bool(np.all(disk.holds(corners)))
+
+    def quarters(self) -> "list[_Cell]":
+        """The four parts of it."""
+        step = 0.5 * (self.high - self.low)
+        return [
+            _Cell(low, low + step)
+            for low in (self.low + complex(x * step.real, y * step.imag) for x in (0, 1) for y in (0, 1))
+        ]
+
+
+class _Known:
+    """Eigenvalues of disks that overlap, each but once."""
+
+    def __init__(self, given: Pencil) -> None:
+        self._given, self.disks = given, list[_Disk]()
+        self._values, self._vectors = list[ComplexArray](), list[ComplexArray]()
+
+    @property
+    def values(self) -> ComplexArray:
+        """Eigenvalues, 1/s."""
+        return np.concatenate(self._values)
+
+    @property
+    def vectors(self) -> ComplexArray:
+        """Their eigenvectors in columns."""
+        return np.concatenate(self._vectors, axis=1)
+
+    def look(self, shift: complex, count: int) -> _Disk:
+        """Eigenvalues nearest to a shift, and the disk that holds all of them."""
+        found, vectors = nearest(self._given, shift, count)
+        disk = _Disk(shift, (1.0 - _ROUNDING) * float(np.max(np.abs(found - shift))))
+        new = disk.holds(found) & (np.abs(found) < _INFINITE)
+        for other in self.disks:
+            new &= ~other.holds(found)
+        self.disks.append(disk)
+        self._values.append(found[new])
+        self._vectors.append(vectors[:, new])
+        return disk
+
+    def fill(self, high: float) -> None:
+        """Look for all modes up to a frequency (rad/s), however much they are damped below `MOST_DAMPED`."""
+        widest = high * MOST_DAMPED / sqrt(1.0 - MOST_DAMPED**2)
+        cells = [_Cell(complex(-widest, 0.0), complex(0.0, high))]
+        while cells:
+            cell = cells.pop()
+            if not cell.wanted or any(cell.within(disk) for disk in self.disks):
+                continue
+            around = [disk.radius for disk in self.disks if disk.holds(np.array([cell.center]))[0]]
+            if not around or abs(cell.high - cell.low) < _SLIVER * max(around):
+                self.look(cell.center, _AT_A_TIME)
+            if not any(cell.within(disk) for disk in self.disks):
+                cells += cell.quarters()
+
+
+def _band_by_band(
+    given: Pencil, count: int, first: float, counted: Callable[[ComplexArray], BoolArray]
+) -> tuple[ComplexArray, ComplexArray]:
+    """Eigenvalues in neighbouring bands of frequencies, until enough of them swing and are counted.
+
+    Disks along the imaginary axis leave out what is damped much between them: the rest of the wedge of modes below the
+    last band is filled up, so that which of them are listed depends neither on shifts nor on the Arnoldi method.
+    """
+    known, low, ahead = _Known(given), 0.0, first
+    for _ in range(_MOST_SHIFTS):
+        high = _band(known, low, ahead)
+        if not np.isfinite(high):
+            return known.values, known.vectors
+        below = known.values[(known.values.imag <= high) & swings(known.values)]
+        if np.count_nonzero(counted(below)) >= count or below.size >= max(count, MOST_SWINGING):
+            break
+        low, ahead = high, 0.5 * (high - low)
+    known.fill(high)
+    values = known.values
+    return values[values.imag <= high], known.vectors[:, values.imag <= high]
+
+
+def _band(known: _Known, low: float, ahead: float) -> float:
+    """Look around a shift above a frequency; up to which frequency (rad/s) the imaginary axis is known then."""
+    count = _AT_A_TIME
+    while True:
+        disk = known.look(1j * (low + ahead), count)
+        if disk.radius > _INFINITE:
+            return np.inf
+        if _BAND * disk.radius >= ahead:
+            return low + ahead + _BAND * disk.radius
+        if count < _MOST_AT_A_TIME:
+            count *= 2
+        else:
+            ahead *= 0.5

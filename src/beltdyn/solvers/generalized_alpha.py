@@ -1,0 +1,185 @@
+"""Generalised-alpha behind the interface of all integrators."""
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Any, ClassVar
+
+import numpy as np
+
+from beltdyn.errors import ConvergenceError
+from beltdyn.solvers.alpha_advance import REACHED, SMALLEST_STEP
+from beltdyn.solvers.engine import advance, restart
+from beltdyn.solvers.integrator_state import IntegratorState, Settings, Steps, empty_steps, new_state
+from beltdyn.solvers.trajectory import Chunk, Task
+from beltdyn.system.arrays import BodyForces, Equations, System
+from beltdyn.system.motion import new_equations
+from beltdyn.system.state import crossing_time
+
+_ROOM = 64
+"""Steps handed out at once, at most."""
+_STEPS_AT_ONCE = 8000
+_FIRST_STEP = 1e-6
+_NEWTON_FRACTION = 0.01
+"""With 0.03 iterations are fewer by a tenth, but belts slide up to 4 % too slowly on arcs of travelling meshes."""
+_CROSSINGS = 2.0
+"""The drive vibrates on its belt about as slowly as an axial wave crosses it so often.  Until that turns, errors that
+pull the same way add up: a step is long from sqrt(rtol) times this time."""
+_FINE = 1e-4
+"""The default tolerance; looser ones leave vibrations to numerical damping."""
+_NUMERICAL_SHARE = 10.0
+"""Part of the losses that numerical damping may take, over rtol.  The losses err by about five times this part: waves
+that errors of time excite have an energy of fourth order in the step, and are lost in contact."""
+
+
+@dataclass(frozen=True)
+class GeneralizedAlpha:
+    """Generalised-alpha with variable steps.
+
+    Attributes
+    ----------
+    spectral_radius : float
+        At infinite frequency, 0 (strongest damping) to 1 (none).
+    rtol : float
+        Local error per unit of time over the velocity scale of the task; less for long steps.
+    max_step : float or None
+        s.
+
+    Examples
+    --------
+    >>> bd.GeneralizedAlpha(spectral_radius=0.9, rtol=1e-4)
+    GeneralizedAlpha(spectral_radius=0.9, rtol=0.0001, max_step=None)
+    """
+
+    spectral_radius: float
+    rtol: float
+    max_step: float | None = None
+    name: ClassVar[str] = "generalized_alpha"
+
+    def __call__(self, task: Task) -> Iterator[Chunk]:
+        """Integrate; see `Integrator`."""
+        return self.begin(task).chunks()
+
+    def begin(self, task: Task) -> "AlphaIntegration":
+        """Begin an integration, which can be kept and gone on with."""
+        begin = task.instants.begin
+        period = _CROSSINGS * crossing_time(task.system)
+        settings = Settings(
+            spectral_radius=self.spectral_radius,
+            velocity_tolerance=self.rtol * task.velocity_scale,
+            newton_fraction=_NEWTON_FRACTION,
+            max_step=self.max_step or task.instants.end - begin,
+            long_step=self.rtol**0.5 * period,
+            output_begin=begin,
+            output_interval=task.instants.interval,
+            numerical_share=_NUMERICAL_SHARE * self.rtol if self.rtol <= _FINE else np.inf,
+            averaging_time=period,
+        )
+        first_step = min(_FIRST_STEP, settings.max_step)
+        state = new_state(task.system, begin, first_step, task.start.position, task.start.velocity)
+        return AlphaIntegration(self, task, settings, task.system, state)
+
+
+@dataclass
+class AlphaIntegration:
+    """An integration on its way: all that its next step depends on, so that a copy goes on with the same steps.
+
+    Attributes
+    ----------
+    method, task, settings
+        What is integrated, and how.
+    system : System
+        Its arrays; profiles may be exchanged between two stops.
+    state : IntegratorState
+        Where it is.
+    begun : bool
+        Whether the state at the beginning was handed out.
+    restarted : float
+        Stop up to which the accelerations were last taken from the equations of motion, s.
+    """
+
+    method: GeneralizedAlpha
+    task: Task
+    settings: Settings
+    system: System
+    state: IntegratorState
+    begun: bool = False
+    restarted: float = -np.inf
+
+    @cached_property
+    def _equations(self) -> Equations:
+        """Arrays to work in."""
+        return new_equations(self.system)
+
+    def __getstate__(self) -> dict[str, Any]:
+        return {name: value for name, value in vars(self).items() if name != "_equations"}
+
+    def exchange(self, system: System, state: IntegratorState) -> None:
+        """Go on with another system and state; after more than an exchange of numbers `restart` is needed."""
+        self.system, self.state = system, state
+        vars(self).pop("_equations", None)
+
+    def chunks(self) -> Iterator[Chunk]:
+        """Integrate from where it is to the end; see `Integrator`."""
+        task = self.task
+        if not self.begun:
+            self.begun = True
+            yield Chunk.start(self.system, task.start, task.instants.begin)
+        for stop in task.stops:
+            if stop > self.restarted:
+                self.restart()
+                self.restarted = stop
+            yield from self.until(stop)
+
+    def restart(self) -> None:
+        """Take accelerations from the equations of motion: at the beginning, and where what drives has a kink."""
+        restart(self.system, self.state, self._equations)
+
+    def until(self, stop: float) -> Iterator[Chunk]:
+        """Integrate up to an instant (s), on which the last step ends.
+
+        Raises
+        ------
+        ConvergenceError
+            If it fails.
+        """
+        budget = max(1, _STEPS_AT_ONCE // self.system.length.size)
+        while self.state.clock.time < stop:
+            steps = empty_steps(self.system, min(_ROOM, budget))
+            status, filled = advance(self.system, self.settings, self.state, self._equations, stop, budget, steps)
+            _count(self.task, self.state)
+            yield _chunk(steps, filled, self.state)
+            if status != REACHED:
+                raise ConvergenceError(_message(self.task, self.state, self.method))
+
+
+def _chunk(steps: Steps, filled: int, state: IntegratorState) -> Chunk:
+    """The filled part of the room for steps."""
+    forces = BodyForces(*(array[:filled] for array in steps.forces))
+    rows = {name: array[:filled] for name, array in steps._asdict().items() if name != "forces"}
+    return Chunk(**rows, forces=forces, reached=float(state.clock.time))
+
+
+def _count(task: Task, state: IntegratorState) -> None:
+    """Hand the counters on."""
+    task.statistics.steps = int(state.counts.steps)
+    task.statistics.rejected_steps = int(state.counts.rejected + state.counts.failed)
+    task.statistics.newton_iterations = int(state.counts.iterations)
+
+
+def _message(task: Task, state: IntegratorState, method: GeneralizedAlpha) -> str:
+    """Where and when the state ended, and what to try."""
+    places, accelerations = (
+        vector[: task.system.first_body].reshape(-1, len(task.system.scale) // task.system.points)[:, :2]
+        for vector in (state.position, state.acceleration)
+    )
+    worst = int(np.argmax(np.hypot(accelerations[:, 0], accelerations[:, 1])))
+    x, y = places[worst]
+    undamped = "a simulation.spectral_radius below 1, " if method.spectral_radius == 1.0 else ""
+    return (
+        f"the simulation fails at t = {state.clock.time:.6g} s: a time step of "
+        f"{min(SMALLEST_STEP, method.max_step or SMALLEST_STEP):g} s is still too long. The largest "
+        f"acceleration is at node {worst}, x = {x:.4g} m, y = {y:.4g} m. Try {undamped}more elements, "
+        f"another simulation.rtol than {method.rtol:g}, or a gentler start; omit all keys of [contact] "
+        "except friction, so that they are chosen."
+    )

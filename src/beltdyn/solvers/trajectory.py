@@ -1,0 +1,275 @@
+"""What every time integrator takes and gives, whatever its method."""
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, replace
+from typing import Any, Protocol, Self
+
+import numpy as np
+from numpy.typing import NDArray
+
+from beltdyn.arrays import BoolArray, FloatArray, IntArray
+from beltdyn.model import Drive, install
+from beltdyn.model.pulley import fastest_rim
+from beltdyn.model.simulation import SAME, Instants
+from beltdyn.system.arrays import ENERGY_WORKS, BodyForces, System
+from beltdyn.system.state import State
+from beltdyn.system.state_forces import body_forces_at
+
+
+@dataclass(frozen=True, eq=False)
+class Chunk:
+    """Successive states of a solver, at the ends of its steps; none in a chunk that only tells of progress.
+
+    Attributes
+    ----------
+    time : ndarray, shape (k,)
+        s, ascending.
+    step : ndarray, shape (k,)
+        Length of the step that ends there, s; zero at the start.
+    position, velocity : ndarray, shape (k, n N + D)
+        Nodal coordinates and coordinates of bodies, and their rates.
+    work : ndarray, shape (k, 10)
+        In the order of `system.arrays.ENERGY_WORKS`, since time zero, J.
+    forces : BodyForces
+        Of each state; `system.state_forces.body_forces_at` finds them where a method does not know them.
+    reached : float
+        Time that the solver has reached, s.
+    """
+
+    time: FloatArray
+    step: FloatArray
+    position: FloatArray
+    velocity: FloatArray
+    work: FloatArray
+    forces: BodyForces
+    reached: float
+
+    @classmethod
+    def start(cls, system: System, state: State, begin: float = 0.0) -> Self:
+        """The state at the beginning (s), before the first step."""
+        time, position, velocity = np.full(1, begin), state.position[None].copy(), state.velocity[None].copy()
+        forces = body_forces_at(system, time, position, velocity)
+        return cls(time, np.zeros(1), position, velocity, np.zeros((1, len(ENERGY_WORKS))), forces, begin)
+
+    @classmethod
+    def join(cls, chunks: Sequence[Self]) -> Self:
+        """One chunk of several successive ones."""
+        arrays = {name: np.concatenate([getattr(chunk, name) for chunk in chunks]) for name in _ROWS}
+        forces = BodyForces(*(np.concatenate(rows) for rows in zip(*(chunk.forces for chunk in chunks), strict=True)))
+        return cls(**arrays, forces=forces, reached=chunks[-1].reached)
+
+    def only(self, states: BoolArray | slice) -> Self:
+        """Some of the states."""
+        arrays = {name: getattr(self, name)[states] for name in _ROWS}
+        return replace(self, **arrays, forces=BodyForces(*(rows[states] for rows in self.forces)))
+
+    def around(self, instants: Instants, before: float) -> BoolArray:
+        """Which states are the ends of steps that hold output instants.
+
+        Parameters
+        ----------
+        instants
+            All of them.
+        before
+            Time of the state before the first of these, s.
+
+        Returns
+        -------
+        ndarray of bool, shape (k,)
+            Where a step ends on its only instant, its beginning is left out.
+        """
+        counts = instants.counts_until(np.append(before, self.time))
+        holds = np.diff(counts) > 0
+        inside = (np.diff(counts) > 1) | (holds & (instants[counts[1:] - 1] < self.time - SAME))
+        return np.asarray(holds | np.append(inside[1:], False))
+
+    def locate(self, instants: FloatArray) -> tuple[IntArray, FloatArray]:
+        """Find the states at which steps end that hold some instants.
+
+        Parameters
+        ----------
+        instants : ndarray, shape (m,)
+            s, ascending, not before the first state nor after the last one.
+
+        Returns
+        -------
+        end : ndarray of int, shape (m,)
+            Numbers of states.
+        part : ndarray, shape (m,)
+            Where in its step each instant lies: 1 at its end.
+        """
+        end = np.minimum(np.searchsorted(self.time, instants - SAME), len(self.time) - 1)
+        before = self.time[np.maximum(end - 1, 0)]
+        length = self.time[end] - before
+        part = np.divide(instants - before, length, out=np.ones(len(end)), where=length > 0.0)
+        return end, np.where(instants >= self.time[end] - SAME, 1.0, part)
+
+    def at(self, instants: FloatArray) -> tuple[FloatArray, FloatArray]:
+        """Position and velocity at some instants: cubic Hermite interpolation within the steps.
+
+        Parameters
+        ----------
+        instants : ndarray, shape (m,)
+            As for `locate`.
+
+        Returns
+        -------
+        position, velocity : ndarray, shape (m, n N + D)
+        """
+        end, part = self.locate(instants)
+        first, x = np.maximum(end - 1, 0), part[:, None]
+        step = (self.time[end] - self.time[first])[:, None]
+        before, after = self.position[first], self.position[end]
+        start, stop = self.velocity[first], self.velocity[end]
+        rest = 1.0 - x
+        rise = np.divide(after - before, step, out=np.zeros_like(before), where=step > 0.0)
+        position = before + step * x * (x * (3.0 - 2.0 * x) * rise + rest * (rest * start - x * stop))
+        velocity = 6.0 * x * rest * rise + rest * (1.0 - 3.0 * x) * start + x * (3.0 * x - 2.0) * stop
+        inside = x < 1.0
+        return np.where(inside, position, after), np.where(inside, velocity, stop)
+
+
+_ROWS = ("time", "step", "position", "velocity", "work")
+"""Attributes of a `Chunk` with one row for each state."""
+
+
+def interpolated(values: NDArray[Any], end: IntArray, part: FloatArray) -> NDArray[Any]:
+    """Interpolate linearly within steps what is seen at their ends: only there do the equations of motion hold.
+
+    Parameters
+    ----------
+    values : ndarray, shape (k, ...)
+        At successive states; of whole numbers, that of the nearer end is taken.
+    end, part : ndarray, shape (m,)
+        Result of `Chunk.locate`.
+
+    Returns
+    -------
+    ndarray, shape (m, ...)
+    """
+    if values.dtype.kind == "i":
+        return np.asarray(values[np.where(part < 0.5, np.maximum(end - 1, 0), end)])
+    result = values[end]
+    inside = np.flatnonzero(part < 1.0)
+    weight = part[inside].reshape(-1, *[1] * (values.ndim - 1))
+    result[inside] = weight * result[inside] + (1.0 - weight) * values[end[inside] - 1]
+    return result
+
+
+@dataclass
+class Statistics:
+    """What the solver did so far.
+
+    Attributes
+    ----------
+    steps : int
+        Accepted steps.
+    rejected_steps : int
+        Steps tried in vain; zero for standard integrators, which do not tell.
+    newton_iterations : int
+        Iterations of generalised-alpha.
+    evaluations : int
+        Evaluations of the equations of motion by standard integrators.
+    """
+
+    steps: int = 0
+    rejected_steps: int = 0
+    newton_iterations: int = 0
+    evaluations: int = 0
+
+
+@dataclass(frozen=True)
+class Task:
+    """An initial value problem.
+
+    Attributes
+    ----------
+    system : System
+        Belt, pulleys, supports.
+    start : State
+        State at the first output instant.
+    instants : Instants
+        Output instants, on which steps end where they can; the solver begins at the first and ends at the last one.
+    breakpoints : sequence of float
+        Instants between, s, on which a step must end because what drives the system has a kink or a jump there.
+    velocity_scale : float
+        Velocity that relative tolerances are relative to, m/s.
+    statistics : Statistics
+        Kept up to date by the solver.
+    """
+
+    system: System
+    start: State
+    instants: Instants
+    breakpoints: Sequence[float]
+    velocity_scale: float
+    statistics: Statistics
+
+    @property
+    def stops(self) -> list[float]:
+        """Breakpoints after the start, and the end, s."""
+        first, last = self.instants.begin, self.instants.end
+        return [*sorted({float(t) for t in self.breakpoints if first < t < last}), last]
+
+
+class Integrator(Protocol):
+    """A method of time integration, with its own control of steps."""
+
+    @property
+    def name(self) -> str:
+        """Name, for results and messages."""
+
+    def __call__(self, task: Task) -> Iterator[Chunk]:
+        """Integrate, handing out chunks as they come.
+
+        Parameters
+        ----------
+        task
+            The problem; its statistics are kept up to date.
+
+        Raises
+        ------
+        ConvergenceError
+            If the solver fails.
+        """
+
+
+def drive_task(drive: Drive, system: System, start: State, statistics: Statistics) -> Task:
+    """The initial value problem that a drive file describes.
+
+    Parameters
+    ----------
+    drive
+        The drive.
+    system
+        Its arrays.
+    start
+        State at the beginning.
+    statistics
+        Where the solver counts.
+
+    Returns
+    -------
+    Task
+        Outputs at multiples of the interval and at the end.
+    """
+    settings = drive.simulation
+    return Task(system, start, settings.instants, drive.breakpoints, velocity_scale(drive), statistics)
+
+
+def velocity_scale(drive: Drive) -> float:
+    """Velocity that local errors are measured by: the fastest rim that is driven, or what the strain can cause.
+
+    Parameters
+    ----------
+    drive
+        The drive.
+
+    Returns
+    -------
+    float
+        m/s; rims are driven by a prescribed speed, or by a motor up to its synchronous speed.  The second is strain at
+        rest times the speed of axial waves, the velocity of a belt end that is let go.
+    """
+    rim = fastest_rim(drive.pulleys, drive.radii, drive.simulation.end)
+    return max(rim, install(drive).strain * drive.belt.wave_speed)

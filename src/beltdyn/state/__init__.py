@@ -1,0 +1,1 @@
+"""States of a drive: rest, and steady running."""

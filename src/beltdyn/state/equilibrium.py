@@ -1,0 +1,92 @@
+"""Static equilibrium of a drive at rest."""
+
+from collections.abc import Mapping
+from typing import Any
+
+from beltdyn.errors import ModelError
+from beltdyn.model import Drive
+from beltdyn.observation.recording import Recording
+from beltdyn.results import StaticResult, mesh_error_attribute, static_result
+from beltdyn.solvers.progress import Report
+from beltdyn.solvers.trajectory import Chunk
+from beltdyn.state.installation import bring_to_rest, on_equal_elements
+from beltdyn.state.refinement import refine_at_rest
+from beltdyn.state.static import standing
+from beltdyn.state.staying import bring_to_stand, stand
+from beltdyn.state.steady import require_tolerance
+from beltdyn.system.arrays import System
+from beltdyn.system.state import State
+
+
+def equilibrium(drive: Drive, *, force_tolerance: float | None = None, progress: Report | None = None) -> StaticResult:
+    """Compute the static equilibrium of a drive at rest.
+
+    Parameters
+    ----------
+    drive
+        The drive.
+    force_tolerance
+        Tolerance of contact forces, relative to the largest on each pulley, to which a mesh graded towards the ends of
+        arcs is refined; by default simulation.force_tolerance. Without either the mesh has equal elements, as many as
+        the drive.
+    progress
+        Called repeatedly with a `Progress`.
+
+    Returns
+    -------
+    StaticResult
+        Shape of the belt, tensions, contact forces and hub loads. Its drive has the length, or the take-up, that gives
+        the installed tension.
+
+    Raises
+    ------
+    ModelError
+        If the tolerance is not between 0 and 1, or is given for an open belt.
+    ConvergenceError
+        If no equilibrium is found in which the belt touches every pulley.
+
+    Examples
+    --------
+    >>> rest = bd.equilibrium(drive)
+    >>> rest.dataset.span_tension.values.round().tolist()  # N
+    [27.0, 27.0]
+    """
+    tolerance = drive.simulation.force_tolerance if force_tolerance is None else force_tolerance
+    if tolerance is not None:
+        return _refined(drive, tolerance, progress)
+    given, drive = drive.text, on_equal_elements(drive)
+    rest = bring_to_rest(drive, progress)
+    said = {"drive_as_given": given}
+    return _seen(drive, rest.drive, standing(rest.system), rest.state, rest.unstable, progress, said)
+
+
+def _refined(drive: Drive, tolerance: float, progress: Report | None) -> StaticResult:
+    """The equilibrium on a graded mesh, as fine as contact forces need it."""
+    require_tolerance(tolerance)
+    if drive.ends:
+        raise ModelError(
+            "force_tolerance does not apply to an open belt, whose elements are equally long. Omit it, and "
+            "increase belt.elements."
+        )
+    unstable = bring_to_rest(drive, progress).unstable
+    rest, errors = refine_at_rest(stand(bring_to_stand(drive).drive), tolerance)
+    said = {"drive_as_given": drive.text} | {mesh_error_attribute(name): error for name, error in errors.items()}
+    return _seen(drive, rest.drive, rest.system, rest.state, unstable, progress, said)
+
+
+def _seen(
+    drive: Drive,
+    found: Drive,
+    system: System,
+    state: State,
+    unstable: tuple[str, ...],
+    progress: Report | None,
+    said: Mapping[str, Any],
+) -> StaticResult:
+    """A state as results, of a drive and of the one with the length that was found, with what is said of it."""
+    title, reason = f"{drive.title} at rest, in static equilibrium", "as at rest"
+    with Recording(drive, system, None, title, progress, mesh_frame_reason=reason) as recording:
+        recording.start(found, system, unstable)
+        recording.note(**said)
+        recording.take(Chunk.start(system, state), "equilibrium")
+    return static_result(recording.run())

@@ -1,0 +1,444 @@
+"""The belt at rest in its drive, and the length with which it has the tension that is asked for.
+
+The tension at rest is the mean of the span tensions in static equilibrium, on a mesh of equal elements: with contact,
+bending, weight and spring-loaded tensioners, without friction.
+"""
+
+from collections.abc import Callable
+from typing import NamedTuple, Protocol, TypeVar
+
+import numpy as np
+
+from beltdyn.arrays import FloatArray
+from beltdyn.errors import ConvergenceError, ModelError
+from beltdyn.model import Drive, Installation, describe, install
+from beltdyn.model import Path as BeltPath
+from beltdyn.model.tensioner_balance import balance_tensioners
+from beltdyn.observation.compilation import compile_kernels
+from beltdyn.parts.messages import listing
+from beltdyn.solvers.progress import Phase, Progress, Report
+from beltdyn.state.static import find_equilibrium, standing, tensioner_compliance
+from beltdyn.system.arrays import System
+from beltdyn.system.build import drive_system
+from beltdyn.system.observations import Observations
+from beltdyn.system.observe import observe
+from beltdyn.system.state import State, laid
+
+_DEEPEST_START = 0.1
+"""Depth of a belt from which equilibrium is sought, at most, over the smallest radius."""
+_STARTS = 1.0, 64.0, 1 / 64
+"""Stiffness of contact over the drive's own, from which equilibrium is followed, one after the other."""
+_LONGEST_RATIO, _SHORTEST_RATIO = 4.0, 1.1
+"""Of one stiffness on the way to the next."""
+_DEEPEST = 0.5
+"""Depth over radius, beyond which contact pushes a belt back the less the deeper it sinks: no balance is stable."""
+_SOUND = 0.1
+"""Depth over radius up to which contact may be soft."""
+_ACCURACY = 1e-6
+"""Of the tension that is asked for, relative."""
+_JUMP = 0.005
+"""Largest miss of the tension that is asked for, relative, where it jumps over the length of the belt."""
+_MOST_TRIALS = 60
+_LONGEST_CHANGE = 0.02
+"""Change of a belt's length from one trial to the next, over its length, at most."""
+_LEAST_CHANGE = 1e-7
+_SHORTER = 1e-5
+"""Part of its length by which a belt is shortened for the slope of its tension."""
+
+
+class Rest(NamedTuple):
+    """A drive at rest."""
+
+    drive: Drive
+    """With the length, or the take-up, that gives the tension asked for."""
+    system: System
+    """Its arrays."""
+    state: State
+    """Static equilibrium."""
+    seen: Observations
+    """What is seen there, one instant."""
+    unstable: tuple[str, ...] = ()
+    """Pulleys whose tensioners are in unstable equilibrium."""
+
+    @property
+    def tension(self) -> float:
+        """Mean of the span tensions, N."""
+        return float(self.seen.span_tension[0].mean())
+
+    @property
+    def installation(self) -> Installation:
+        """The computed values in place of the estimates of `beltdyn.model.install`."""
+        seen, drive = self.seen, self.drive
+        positions = self.state.position[self.state.position.size - self.system.tensioners.size :]
+        depths = np.array([np.median(depth) for depth in _depths(drive, seen)])
+        return describe(drive, seen.span_tension[0], depths, seen.hub_force[0], positions)
+
+
+class Tightened(Protocol):
+    """A drive at rest, of whatever mesh."""
+
+    @property
+    def drive(self) -> Drive:
+        """The drive."""
+
+    @property
+    def tension(self) -> float:
+        """Mean of the span tensions, N."""
+
+
+At = TypeVar("At", bound=Tightened)
+Found = TypeVar("Found")
+
+
+def bring_to_rest(drive: Drive, progress: Report | None = None) -> Rest:
+    """Find the static equilibrium of a drive with its installed tension, if given.
+
+    The closed form of `beltdyn.model.static_estimate`, which gives the initial length, neglects bending and weight. The
+    length, or the take-up if the length is given, follows from the tension at rest by the secant method.
+
+    Parameters
+    ----------
+    drive
+        The drive.
+    progress
+        Called with a `Progress` before compilation and before the search.
+
+    Returns
+    -------
+    Rest
+        Its drive is the given one, except for the belt length or the take-up.
+
+    Raises
+    ------
+    ConvergenceError
+        If there is no equilibrium in which the belt touches every pulley, or none with the required tension.
+
+    Examples
+    --------
+    >>> rest = bd.bring_to_rest(drive)
+    >>> rest._fields
+    ('drive', 'system', 'state', 'seen', 'unstable')
+    """
+    given, drive = drive, on_equal_elements(drive)
+    system = drive_system(drive)
+    _tell(drive, progress, "compiling")
+    compile_kernels(system, laid(system, drive.path))
+    _tell(drive, progress, "equilibrium")
+    rest = _at_rest(drive)
+    if drive.belt.installed_tension is not None:
+        rest = tighten(rest, drive.belt.installed_tension, _at_rest)
+    found = rest._replace(unstable=_unstable(rest))
+    if drive is given:
+        return found
+    belt = found.drive.belt.replace(elements=given.belt.elements)
+    return found._replace(drive=found.drive.replace(belt=belt, simulation=given.simulation))
+
+
+def on_equal_elements(drive: Drive) -> Drive:
+    """Give the drive on the travelling mesh, on which equilibrium is found.
+
+    Parameters
+    ----------
+    drive
+        The drive; a number of elements that it leaves open is chosen for that mesh.
+    """
+    if not drive.frame.stays:
+        return drive
+    return drive.replace(simulation=drive.simulation.replace(frame="travelling", force_tolerance=None))
+
+
+def _tell(drive: Drive, progress: Report | None, phase: Phase) -> None:
+    if progress is not None:
+        progress(Progress(0.0, drive.simulation.duration, 0.0, 0, phase))
+
+
+def _unstable(rest: Rest) -> tuple[str, ...]:
+    """Pulleys whose tensioners move against a force, or move most where several do so together."""
+    compliance = tensioner_compliance(rest.system, rest.state)
+    if not np.all(np.isfinite(compliance)):
+        return ()
+    arms = rest.system.bodies.reach[rest.system.bodies.size - len(compliance) :]
+    values, ways = np.linalg.eigh(compliance * np.outer(arms, arms))
+    most = [int(np.argmax(np.abs(way))) for value, way in zip(values, ways.T, strict=True) if value < 0.0]
+    return tuple(rest.drive.pulleys[rest.system.tensioners.pulley[number]].name for number in sorted(set(most)))
+
+
+def tighten(first: At, wanted: float, at_rest: Callable[[Drive], At]) -> At:
+    """Shorten the belt, or move its fixed tensioner, until the mean tension at rest is the one that is wanted.
+
+    Parameters
+    ----------
+    first
+        The drive at rest with the length that is estimated.
+    wanted
+        N.
+    at_rest
+        Brings a drive to rest.
+
+    Raises
+    ------
+    ConvergenceError
+        If the tension is not reached.
+    """
+    length = first.drive.belt_length
+    rest, done, slope = first, 0.0, _tension_over_length(first.drive)
+    sides: dict[bool, tuple[float, At]] = {}  # the nearest trials with too much and too little tension
+    for trial in range(_MOST_TRIALS):
+        missing = wanted - rest.tension
+        if abs(missing) <= _ACCURACY * wanted:
+            return rest
+        sides[missing > 0.0] = done, rest
+        change = float(np.clip(missing / slope, -_LONGEST_CHANGE * length, _LONGEST_CHANGE * length))
+        if len(sides) == 2:
+            (low, slack), (high, tight) = sides[True], sides[False]
+            if abs(high - low) < _LEAST_CHANGE * length:
+                return _beside_jump(slack, tight, wanted)
+            if trial % 2 or not min(low, high) < done + change < max(low, high):
+                change = 0.5 * (low + high) - done
+        ahead, change = _shortened(first.drive, rest, done, change, at_rest)
+        gained = ahead.tension - rest.tension
+        slope, rest, done = gained / change if gained * change > 0.0 else slope, ahead, done + change
+    if abs(rest.tension - first.tension) < abs(wanted - rest.tension):
+        raise ConvergenceError(
+            f"belt.installed_tension = {wanted:.5g} N cannot be set: the tensioner force gives "
+            f"{first.tension:.5g} N at any belt length. Give belt.length instead, near "
+            f"{length:.5g} m, and set the tension by tensioner.preload."
+        )
+    raise _out_of_reach(
+        first.drive,
+        f"the tension at rest is {rest.tension:.5g} N with a belt length of {rest.drive.belt_length:.6g} m and "
+        f"{first.tension:.5g} N with {length:.6g} "
+        f"m{', since tensioners hold it' if first.drive.carriers else ''}.",
+    )
+
+
+def _beside_jump(slack: At, tight: At, wanted: float) -> At:
+    """Of two states on both sides of a jump, as a node of the mesh meets a pulley, the nearer one.
+
+    Raises
+    ------
+    ConvergenceError
+        If the jump is larger than what meshes are taken for.
+    """
+    nearer = min(slack, tight, key=lambda one: abs(one.tension - wanted))
+    if abs(nearer.tension - wanted) > _JUMP * wanted:
+        raise _out_of_reach(
+            nearer.drive,
+            f"at rest the tension jumps from {slack.tension:.5g} to {tight.tension:.5g} N at a length of "
+            f"{nearer.drive.belt_length:.6g} m, where nodes of the mesh meet pulleys. Increase belt.elements.",
+        )
+    return nearer
+
+
+def _tension_over_length(drive: Drive) -> float:
+    """By how much a belt gets tighter with each metre that it is shorter by, as estimated, N/m.
+
+    Where tensioners yield, that is a small part of the belt's own stiffness over its length.
+    """
+    belt, length = drive.loaded_belt, drive.belt_length
+    shorter = belt.replace(length=(1.0 - _SHORTER) * length)
+    try:
+        ahead = balance_tensioners(drive.path, shorter, drive.completed.contact, drive.carriers)[0].tension
+    except ValueError:
+        ahead = drive.tension_at_rest
+    slope = (ahead - drive.tension_at_rest) / (_SHORTER * length)
+    return slope if slope > 0.0 else belt.axial_stiffness / length
+
+
+def _shortened(drive: Drive, rest: At, done: float, change: float, at_rest: Callable[[Drive], At]) -> tuple[At, float]:
+    """Shorten a belt some more, or by a part of it where all of it leads to no equilibrium; with what was done, m."""
+    while True:
+        try:
+            return at_rest(drive.tightened(done + change)), change
+        except (ConvergenceError, ModelError) as error:
+            change *= 0.5
+            if abs(change) < _LEAST_CHANGE * drive.belt_length:
+                slack = _as_long_as_its_path(rest, at_rest) if change < 0.0 else ""
+                raise _out_of_reach(drive, slack or str(error)) from error
+
+
+def _as_long_as_its_path(rest: At, at_rest: Callable[[Drive], At]) -> str:
+    """What tensions a belt that is as long as its path, or nothing if it is shorter.
+
+    Off the pulleys its bending stiffness spreads it, and its weight lets it sag: its own way is longer than the path.
+    """
+    drive, path = rest.drive, install(rest.drive).path
+    if drive.belt_length < (1.0 - _SHORTER) * path.length:
+        return ""
+    cause, remedy = "bending stiffness", "reduce belt.bending_stiffness"
+    if drive.gravity != (0.0, 0.0):
+        try:
+            bent = at_rest(drive.replace(gravity=(0.0, 0.0))).tension
+        except (ConvergenceError, ModelError):
+            bent = 0.0  # nothing but its weight holds it against the pulleys
+        if bent < 0.5 * rest.tension:
+            cause, remedy = "weight", "take a lighter belt"
+    return (
+        f"a belt of {drive.belt_length:.6g} m, as long as the path around the pulleys, still has {rest.tension:.5g} N, "
+        f"by its {cause}: increase the tension, or {remedy}."
+    )
+
+
+def _out_of_reach(drive: Drive, reason: str) -> ConvergenceError:
+    return ConvergenceError(
+        f"belt.installed_tension = {drive.belt.installed_tension:.5g} N cannot be reached with {drive.elements} "
+        f"elements: {reason} Change the tension, or give belt.length instead."
+    )
+
+
+def _at_rest(drive: Drive) -> Rest:
+    """Static equilibrium of a drive with the length that it has.
+
+    Where Newton's method does not get there from the laid belt, it follows the equilibria of stiffer or softer contact.
+    """
+    system, installation = drive_system(drive), install(drive)
+
+    def begun(start: float) -> Rest:
+        state, failures = _lying(drive, system, installation, start), list[ConvergenceError]()
+
+        def balance(factor: float) -> bool:
+            nonlocal state
+            try:
+                state = find_equilibrium(with_stiffer_contact(system, factor), state).state
+            except ConvergenceError as error:
+                failures.append(error)
+                return False
+            return True
+
+        if not follow(start, balance):
+            raise failures[0]
+        return looked_at(drive, system, state)
+
+    return from_starts(drive, installation, begun)
+
+
+def from_starts(drive: Drive, installation: Installation, begun: Callable[[float], Found]) -> Found:
+    """Find a drive at rest by way of contact as stiff as its own, or else of stiffer or softer contact.
+
+    Parameters
+    ----------
+    drive, installation
+        The drive, and what is estimated of it.
+    begun
+        Finds it, beginning with contact stiffer by a factor.
+
+    Raises
+    ------
+    ConvergenceError
+        That contact is too soft, if it is, and otherwise the first one that was raised.
+    """
+    failures = list[ConvergenceError]()
+    for start in _STARTS:
+        try:
+            return begun(start)
+        except ConvergenceError as error:
+            failures.append(error)
+    raise _sunk(drive, installation) or failures[0]
+
+
+def follow(start: float, balance: Callable[[float], bool]) -> bool:
+    """Follow equilibria from a stiffness of contact to the drive's own, in shorter steps where long ones fail.
+
+    Parameters
+    ----------
+    start
+        Stiffness of contact to begin with, over the drive's own.
+    balance
+        Finds the equilibrium with contact stiffer by a factor from the one that was found last; where it does not,
+        it returns False and keeps that one.
+
+    Returns
+    -------
+    bool
+        Whether the drive's own equilibrium was found.
+    """
+    found, ratio = start, _LONGEST_RATIO
+    if not balance(start):
+        return False
+    while found != 1.0 and ratio > _SHORTEST_RATIO:
+        ahead = max(found / ratio, 1.0) if found > 1.0 else min(found * ratio, 1.0)
+        if balance(ahead):
+            found = ahead
+        else:
+            ratio **= 0.5
+    return found == 1.0
+
+
+def _lying(drive: Drive, system: System, installation: Installation, factor: float) -> State:
+    """A belt that lies in its pulleys, as deep as in contact stiffer by a factor."""
+    return laid(system, drawn_in(drive, installation, factor), installation.tensioner_positions)
+
+
+def with_stiffer_contact(system: System, factor: float) -> System:
+    """The same system with contact stiffer by a factor."""
+    normal = system.law.normal
+    return system._replace(law=system.law._replace(normal=normal._replace(stiffness=factor * normal.stiffness)))
+
+
+def drawn_in(drive: Drive, installation: Installation, factor: float) -> BeltPath:
+    """The path of a belt that lies in its pulleys instead of on their rims, as deep as in contact stiffer by a factor.
+
+    On the rims themselves rounding decides which nodes touch, and on coarse meshes with contact at nodes the search
+    then finds no step that helps.  Rims drawn in by one depth leave spans and wrap angles as they are.
+    """
+    path = installation.path
+    depth = min(np.min(installation.penetrations) / factor, _DEEPEST_START * np.min(drive.radii))
+    return BeltPath(path.centers, path.radii - depth * np.sign(path.radii), path.ends)
+
+
+def looked_at(drive: Drive, system: System, state: State) -> Rest:
+    """An equilibrium in which the belt touches every pulley.
+
+    Raises
+    ------
+    ConvergenceError
+        If it does not: forces are in balance of a belt that has left a pulley, or lies behind its center, too.
+    """
+    seen = observe(standing(system), np.zeros(1), state.position[None], state.velocity[None])
+    depths = _depths(drive, seen)
+    for pulley, radius, wrap, depth in zip(
+        drive.pulleys, drive.radii, seen.wrap_angle[0], map(np.max, depths), strict=True
+    ):
+        if not wrap > 0.0:
+            raise ConvergenceError(
+                f'at rest the belt does not touch "{pulley.name}", but it must touch all pulleys. Move '
+                f'"{pulley.name}" towards the belt, or raise the tension.'
+            )
+        if depth > _DEEPEST * radius:
+            raise ConvergenceError(
+                f'at rest the belt sinks into "{pulley.name}" by {1e3 * depth:.2g} mm, more than {_DEEPEST:.0%} '
+                "of its radius. Omit contact.stiffness so that it is chosen, or increase it, or reduce the "
+                "tension."
+            )
+    known = np.isfinite(seen.span_tension[0])
+    short = [f"{start} to {end}" for (start, end), one in zip(drive.spans, known, strict=True) if not one]
+    if short:
+        raise ConvergenceError(
+            f"the span {listing(short)} is shorter than one element, so its tension is unknown. Increase "
+            "belt.elements, or move the pulleys apart."
+        )
+    return Rest(drive, system, state, seen)
+
+
+def _depths(drive: Drive, seen: Observations) -> list[FloatArray]:
+    """Penetrations of contact points on each pulley, m; zero where it is touched between points alone."""
+    places, touched, centers = seen.contact_position[0], seen.contact_pulley[0], seen.pulley_center[0]
+    depths = [
+        radius - np.linalg.norm(places[touched == number] - centers[number], axis=1)
+        for number, radius in enumerate(drive.radii)
+    ]
+    return [depth if depth.size else np.zeros(1) for depth in depths]
+
+
+def _sunk(drive: Drive, installation: Installation) -> ConvergenceError | None:
+    """Contact so soft that the belt sinks through a pulley, or away from others, if it is."""
+    parts = installation.penetrations / drive.radii
+    worst = int(np.argmax(parts))
+    if not parts[worst] > _SOUND:
+        return None
+    enough = drive.contact_stiffness * parts[worst] / _SOUND
+    return ConvergenceError(
+        f'no static equilibrium found. The contact is too soft: on "{drive.pulleys[worst].name}" the belt would sink '
+        f"by {parts[worst]:.0%} of the radius. Increase contact.stiffness from {drive.contact_stiffness:.2g} to "
+        f"{enough:.2g} N/m^2, reduce the tension, or use a larger pulley."
+    )

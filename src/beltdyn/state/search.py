@@ -1,0 +1,478 @@
+"""From a belt at rest to steady running: Newton's method along speed, steepness of friction and load.
+
+A belt of which every point slides leaves the speeds of pulleys open, so that friction rises gently with slip at first,
+under a small part of the loads.  Each way is gone in as long steps as Newton's method takes.
+"""
+
+from collections.abc import Callable, Iterable, Mapping, Sequence
+
+import numpy as np
+
+from beltdyn.arrays import FloatArray
+from beltdyn.errors import ConvergenceError
+from beltdyn.model import Drive
+from beltdyn.state.newton import FOUND, SteadyWork, find_steady, make_step, steady_work
+from beltdyn.state.slip_limit import GROSS, Passed, Setting, gross_slip, slip_limit
+from beltdyn.state.staying import TOLERANCE, Standing, anchor_at, transfer
+from beltdyn.system.arrays import System
+from beltdyn.system.build_staying import loses_in_bending, on_other_mesh, with_bending_loss
+from beltdyn.system.constant_drive import (
+    constant_drive,
+    drive_shafts,
+    dry_friction_of,
+    guess_hubs,
+    operating_point,
+    own_torque,
+    twists,
+    with_speeds_unknown,
+)
+from beltdyn.system.ring_matrix import clear, substitute
+from beltdyn.system.state import State
+
+# Continuation: from a solution to that of another problem in steps, each from a guess by those before
+
+_KNOWN = 3
+"""Solutions through which a parabola is laid."""
+_SHORTEST = 1e-3
+"""Part of the way, below which there is no going on."""
+
+Solution = tuple[float, FloatArray]
+"""Where on the way, and the unknowns there."""
+
+
+def go_on(
+    solve: Callable[[float, FloatArray], FloatArray | None], *passed: Solution, step: float = 1.0
+) -> FloatArray | None:
+    """Go on from 0 to 1.
+
+    Parameters
+    ----------
+    solve
+        Gives the unknowns at a place of the way, from a guess; None if there is no solution.
+    *passed
+        Solutions in the order in which they serve a guess, at least that at 0; it may be the only one.
+    step
+        The first one.
+
+    Returns
+    -------
+    ndarray or None
+        The unknowns at 1; None if the way ends before.
+    """
+    known, reached = list(passed), 0.0
+    while reached < 1.0:
+        ahead = min(1.0, reached + step)
+        found = solve(ahead, extrapolated(known[-_KNOWN:], ahead) if len(known) >= _KNOWN else known[-1][1])
+        if found is not None:
+            known.append((ahead, found))
+            reached, step = ahead, 2.0 * step if len(known) >= _KNOWN else step
+            continue
+        step = 0.5 * (ahead - reached)
+        if step < _SHORTEST:
+            return None
+    return known[-1][1]
+
+
+def extrapolated(known: Sequence[Solution], place: float) -> FloatArray:
+    """Value of the polynomial through solutions.
+
+    Parameters
+    ----------
+    known
+        Solutions at different places, as many as the polynomial has coefficients.
+    place
+        Where.
+    """
+    total = np.zeros_like(known[0][1])
+    for own, values in known:
+        others = [other for other, _ in known if other != own]
+        total += np.prod([(place - other) / (own - other) for other in others]) * values
+    return total
+
+
+_MOST = 25
+"""Iterations of a step."""
+_ON_THE_WAY = 1e-6
+"""Tolerance of solutions that only lead to others, over the smallest radius.  With 1e-5 Newton's method stops short of
+where no solution is any more, and what a drive transmits comes out 0.2 % too large."""
+_FIRST_LOAD = 0.05
+_SOFT = 0.05
+"""Length over which slow changes of the stretch are smoothed at first on another mesh, over that of the drive."""
+_SMOOTHINGS = 10.0, 100.0
+"""Of friction at first on another mesh, where the search fails without."""
+_BISECTIONS = 8
+"""Between two solutions, to learn at which load a pulley begins to slip as a whole."""
+_SHARP = 1.6
+"""Slip over the least gross one, up to which that solution shows what a pulley transmits."""
+_FIRST_SPEEDS = (1.0, 0.3, 0.1, 0.03, 0.01)
+_NEAR = 1e-3
+"""Part of the way to another push at which the tangent still tells the solution."""
+_GENTLE = 0.3
+"""Slip velocity at which friction is fully used at first, over the belt's speed, at least."""
+
+
+class SteadySearch:
+    """A drive on its way to steady running.
+
+    Parameters
+    ----------
+    drive, system, state
+        The drive on a staying mesh. The state is changed in place.
+    time
+        At which speeds, torques and schedules are taken, s.
+
+    Attributes
+    ----------
+    tolerance
+        Of the last step of a search, over the smallest radius.
+    """
+
+    def __init__(self, drive: Drive, system: System, state: State, time: float) -> None:
+        self.drive, self._time = drive, time
+        self.state, self.iterations, self.setting = state, 0, Setting()
+        self.tolerance = TOLERANCE
+        self._passed = list[Passed]()
+        self._held: int | None = None
+        self._supported: int | None = None
+        self._held_speed = self._support = 0.0
+        self._moments = np.zeros(system.pulleys.size)
+        self.constant, self._tensioners = constant_drive(system, time), system.tensioners
+        self._wanted = self.constant.profiles.segment.offset.copy()
+        self._prescribed = self.constant.bodies.unknown[self.constant.pulleys.shaft] < 0
+        self._hold(None)
+
+    def _hold(self, pulley: int | None) -> None:
+        """Hold the shaft of a pulley at a speed, or none beyond those that are prescribed."""
+        self._held = pulley
+        self._system = with_speeds_unknown(self.constant, () if pulley is None else (pulley,))
+        self._work = steady_work(self._system)
+
+    def running(self) -> State:
+        """The state that was found last, with the twists of hub chains."""
+        place = self.state.position.copy()
+        rims = slice(self.constant.first_body, place.size - self.constant.tensioners.size)
+        place[rims] = twists(self.constant, self._moments)
+        return State(place, self.state.velocity, np.zeros_like(place))
+
+    @property
+    def belt_parameter(self) -> float:
+        """Length of unstretched belt that passes in a second, m/s."""
+        return float(self.constant.frame.speed[0])
+
+    def unknowns(self) -> FloatArray:
+        """All that steady running consists of, as one vector: position, velocity, speed of the belt."""
+        return np.concatenate([self.state.position, self.state.velocity, self.constant.frame.speed])
+
+    def place(self, unknowns: FloatArray) -> None:
+        """Put the search in its place.
+
+        Parameters
+        ----------
+        unknowns
+            As from `unknowns`.
+        """
+        size = self.state.position.size
+        self.state.position[:], self.state.velocity[:] = unknowns[:size], unknowns[size : 2 * size]
+        self.constant.frame.speed[:] = unknowns[2 * size :]
+
+    def resume(self, tangent: SteadyWork | None = None) -> bool:
+        """Find steady running under the loads that are asked for from that under others; False if that fails.
+
+        Parameters
+        ----------
+        tangent
+            From `factorised`, of steady running that differs a little, on the same mesh. It serves as long as
+            corrections shrink well; otherwise it is overwritten.
+        """
+        if tangent is None:
+            return self._try(Setting())
+        self._work = tangent
+        return self._try(Setting(), factorised=True) or self._try(Setting())
+
+    def factorised(self) -> SteadyWork:
+        """The factorised tangent at the state, for small changes of the drive."""
+        system = self._at(self.setting)
+        drive_shafts(system, self.state.velocity)
+        anchor = anchor_at(self.state, False)
+        find_steady(system, self.state.at(0.0), anchor, 0.0, 0, False, self._work)
+        return self._work
+
+    def run(self, rest: Standing) -> None:
+        """Find steady running under the loads that are asked for.
+
+        Parameters
+        ----------
+        rest
+            The same drive at rest, on the same mesh.
+
+        Raises
+        ------
+        ModelError
+            If nothing drives.
+        ConvergenceError
+            If there is no steady running; it says how much the drive transmits.
+        """
+        speed, driver = operating_point(self.constant, self.drive.path.radii, self._prescribed)
+        if driver is not None:
+            self._held_speed = speed / float(self.drive.path.radii[driver])
+            self._hold(driver)
+        gentle = Setting(1.0, _FIRST_LOAD, self._gentle(speed, rest.tension))
+        if not self._run_up(rest.place, speed, gentle):
+            raise self._refusal()
+        if driver is not None:
+            self._release(driver)
+
+    def _run_up(self, place: FloatArray, speed: float, gentle: Setting) -> bool:
+        """Go from rest to the speeds and loads that are asked for; where that fails, without bending losses at first.
+
+        Where the belt bends over an idler of small wrap, its curvature nowhere settles, and hysteresis that turns its
+        sign there leaves Newton's method no way from a belt at rest.
+        """
+        bends_with_loss, passed = loses_in_bending(self._system), list[Passed]()
+        for bending_loss in (1.0, 0.0) if bends_with_loss else (1.0,):
+            first = gentle._replace(bending_loss=bending_loss)
+            targets = first, first._replace(smoothing=1.0), Setting(bending_loss=bending_loss), Setting()
+            if not any(self._start(place, speed, first._replace(speed=part)) for part in _FIRST_SPEEDS):
+                continue
+            self._passed = []
+            if all(self.setting == target or self._reach(target) for target in targets):
+                return True
+            passed = passed or self._passed
+        self._passed = passed
+        return False
+
+    def _refusal(self) -> ConvergenceError:
+        """Say why there is no steady running."""
+        passed = self._refined() or [self._here()]
+        reason = slip_limit(self.drive, self.constant, self._at(Setting()), passed)
+        return ConvergenceError(f"no steady running found at t = {self._time:g} s: {reason}")
+
+    def _refined(self) -> list[Passed]:
+        """What was passed on the way to the loads, with more between where a pulley begins to slip as a whole."""
+        passed = self._confirmed()
+        for _ in range(_BISECTIONS):
+            at, slip = gross_slip(self.drive, self.constant, passed)
+            if at == 0 or slip < _SHARP * GROSS:
+                break
+            before, after = passed[at - 1], passed[at]
+            middle, count = _between(before.setting, after.setting, 0.5), len(self._passed)
+            if not any(self._solve(middle, one.unknowns, 0.5) is not None for one in (before, after)):
+                break
+            passed[at:at] = self._passed[count:]
+        return passed
+
+    def _confirmed(self) -> list[Passed]:
+        """What was passed and is a solution by the tolerance of the search too, and further ones close to the last."""
+        passed, beyond = list(self._passed), list[Passed]()
+        while len(passed) > 1 and self._solve(passed[-1].setting, passed[-1].unknowns, 1.0) is None:
+            beyond.append(passed.pop())
+        if beyond and passed:
+            fails = beyond[-1].setting
+            for _ in range(_BISECTIONS):
+                middle = _between(passed[-1].setting, fails, 0.5)
+                if self._solve(middle, passed[-1].unknowns, 1.0) is None:
+                    fails = middle
+                else:
+                    passed.append(self._passed[-1])
+        return passed
+
+    def _here(self) -> Passed:
+        position, velocity = self.state.position.copy(), self.state.velocity.copy()
+        state = State(position, velocity, np.zeros_like(position))
+        return Passed(self.setting, state, self.belt_parameter, self.unknowns())
+
+    def move_to(self, lengths: FloatArray) -> None:
+        """Go on to another mesh of the same drive.
+
+        A small element has little between damping in proportion to the rate of its stretch and full hysteresis, and the
+        rate of a transferred curve is far off there. So damping comes first.
+
+        Parameters
+        ----------
+        lengths : ndarray, shape (elements,)
+            Reference lengths of its elements, m.
+
+        Raises
+        ------
+        ConvergenceError
+            If nothing is found there.
+        """
+        other = on_other_mesh(self.drive, self.constant, lengths)
+        self.state, self.constant = transfer(self.constant, self.state, other), other
+        self._hold(self._held)
+        target = self.setting
+        soft = target._replace(stretch_length=_SOFT if other.hysteresis.size else 1.0)
+        softer = soft._replace(bending_loss=0.0), *(soft._replace(bending_loss=0.0, smoothing=s) for s in _SMOOTHINGS)
+        if not any(self._try(first) and (first == target or self._reach(target)) for first in (soft, *softer)):
+            raise ConvergenceError(
+                f"steady running was found with fewer elements, but not with the {other.nodes} required by "
+                "force_tolerance. Increase force_tolerance."
+            )
+
+    def friction_band(self, known: Mapping[str, FloatArray] | None = None) -> dict[str, FloatArray]:
+        """Where dry friction holds tensioners at most, m or rad.
+
+        Parameters
+        ----------
+        known
+            What this has given for a neighbour, among others. The ends are then those by the tangent, times the
+            factors that were found there.
+
+        Returns
+        -------
+        dict of str to ndarray, shape (K,)
+            "tensioner_position_after_tensioning" and "tensioner_position_after_yielding", the ends of the band in which
+            they may stand: where the path had become longer before, and shorter. Nothing without friction. Beside them
+            "tensioner_factor_after_tensioning" and so on: ways to the ends over those by the tangent.
+        """
+        found, count = dict[str, FloatArray](), self.constant.tensioners.size
+        tensioners = slice(self.state.position.size - count, self.state.position.size)
+        here, ends = self.state.position[tensioners].copy(), list[tuple[FloatArray, FloatArray]]()
+        given = {
+            name: sense * dry_friction_of(self._tensioners, f"{name}_friction")
+            for name, sense in (("tensioning", -1.0), ("yielding", 1.0))
+        }
+        pushes = {name: push for name, push in given.items() if np.any(push)}
+        ways = self._pushed_by_tangent(pushes.values()) if pushes else []
+        for (name, push), way in zip(pushes.items(), ways, strict=True):
+            mark = f"tensioner_factor_after_{name}"
+            factor = None if known is None or mark not in known else np.atleast_1d(known[mark])
+            if factor is None:
+                end = self._pushed(push, way, ends)
+                if end is None:
+                    continue
+                ends.append((push, end))
+                moved = end[tensioners] - here
+                factor = np.divide(moved, way[tensioners], out=np.ones(count), where=way[tensioners] != 0.0)
+            found |= {f"tensioner_position_after_{name}": here + factor * way[tensioners], mark: factor}
+        return found
+
+    def _pushed(
+        self, push: FloatArray, way: FloatArray, ends: Sequence[tuple[FloatArray, FloatArray]]
+    ) -> FloatArray | None:
+        """Unknowns where tensioners are pushed, N or N m; None if the way there ends before.
+
+        The way there to first order, and ends that are known, each with its push, serve the guesses.
+        """
+        begin, moments, own = self.unknowns(), self._moments, self.constant.tensioners.push
+        given = own.copy()
+
+        def solve(part: float, guess: FloatArray) -> FloatArray | None:
+            own[:] = given + part * push
+            return self._solve(self.setting, guess, part)
+
+        parts = [(float(other @ push) / float(push @ push), other, end) for other, end in ends]
+        known = [(part, end) for part, other, end in parts if np.allclose(other, part * push)]
+        end = go_on(solve, *known, (0.0, begin), (_NEAR, begin + _NEAR * way), step=0.5)
+        own[:], self._moments = given, moments
+        self.place(begin)
+        return end
+
+    def _pushed_by_tangent(self, pushes: Iterable[FloatArray]) -> list[FloatArray]:
+        """By how much unknowns change where tensioners are pushed, N or N m, to first order."""
+        matrix, found, here = self.factorised().equations.matrix, list[FloatArray](), self.unknowns()
+        unknown = self._system.bodies.unknown[-self._system.tensioners.size :]
+        for push in pushes:
+            clear(matrix, False)
+            matrix.border_side[unknown] = push
+            substitute(matrix, True, self._work.ahead_node, self._work.ahead_border)
+            make_step(self._system, self.state.at(0.0), False, 1.0, self._work.ahead_node, self._work.ahead_border)
+            found.append(self.unknowns() - here)
+            self.place(here)
+        return found
+
+    def _solve(self, setting: Setting, guess: FloatArray, part: float) -> FloatArray | None:
+        """Steady running at a part of a way, from a guess; None, and all as it was, if it is not found."""
+        before = self.unknowns()
+        self.place(guess)
+        if self._try(setting, self.tolerance if part == 1.0 else _ON_THE_WAY):
+            return self.unknowns()
+        self.place(before)
+        return None
+
+    def _gentle(self, speed: float, tension: float) -> float:
+        """Smoothing with which friction is not fully used anywhere."""
+        pulleys = self._system.pulleys
+        limits = self._system.law.friction.saturation(tension / self.drive.radii, pulleys.friction, speed)
+        least = float(np.min(limits[pulleys.friction > 0.0], initial=np.inf))
+        return max(1.0, _GENTLE * abs(speed) / least)
+
+    def _start(self, place: FloatArray, speed: float, setting: Setting) -> bool:
+        """Begin at a setting, from a place at rest, with a belt of a speed (m/s) that sticks to all pulleys."""
+        state, running, path = self.state, setting.speed * speed, self.drive.path
+        state.position[:] = place
+        self.constant.frame.speed[0] = running * self.drive.belt_length / path.length
+        state.velocity[self._system.first_body :][: path.count] = running / path.radii
+        guess_hubs(self._at(setting), state.velocity)
+        return self._try(setting)
+
+    def _follow(self, target: Setting) -> None:
+        """Go on to another setting, or say why that is not possible."""
+        if not self._reach(target):
+            raise self._refusal()
+
+    def _reach(self, target: Setting) -> bool:
+        """Go on to another setting; False if the way ends before."""
+        begin = self.setting
+        return (
+            go_on(lambda part, guess: self._solve(_between(begin, target, part), guess, part), (0.0, self.unknowns()))
+            is not None
+        )
+
+    def _release(self, driver: int) -> None:
+        """Let a driver turn as its torque says."""
+        speed = float(self.state.velocity[self._system.first_body + self._system.pulleys.shaft[driver]])
+        reaction = float(self._work.equations.forces.shaft[driver])
+        self._hold(None)
+        own = own_torque(self._at(Setting()), self.state, driver, speed)
+        self._supported, self._support, self.setting = driver, reaction - own, Setting(support=1.0)
+        self._follow(Setting())
+
+    def _try(self, setting: Setting, tolerance: float | None = None, *, factorised: bool = False) -> bool:
+        """Look for steady running at a setting from the state that there is, which stays where that fails.
+
+        The first corrections are by the tangent that is factorised already, if it is.  The tolerance is that of the
+        search by default.
+        """
+        state, system = self.state, self._at(setting)
+        before = self.unknowns()
+        drive_shafts(system, state.velocity)
+        allowed = (self.tolerance if tolerance is None else tolerance) * float(np.min(self.drive.radii))
+        anchor = anchor_at(state, False)
+        status, iterations = find_steady(system, state.at(0.0), anchor, allowed, _MOST, factorised, self._work)
+        self.iterations += iterations
+        if status == FOUND:
+            self.setting, self._moments = setting, self._work.equations.forces.moment.copy()
+            if setting.smoothing == 1.0:
+                self._passed.append(self._here())
+            return True
+        self.place(before)
+        return False
+
+    def _at(self, setting: Setting) -> System:
+        """The system at a setting."""
+        system = self._system
+        offset, count, driven = system.profiles.segment.offset, system.pulleys.size, self._prescribed.copy()
+        offset[:] = self._wanted
+        if self._held is not None:
+            driven[self._held], offset[self._held] = True, self._held_speed
+        offset[:count] *= np.where(driven, setting.speed, setting.load)
+        offset[system.shaft_loads.table.schedule[:-1]] *= setting.load
+        if self._supported is not None:
+            offset[self._supported] += setting.support * self._support
+        friction, hysteresis = system.law.friction.smoothed(setting.smoothing), system.hysteresis.copy()
+        hysteresis["stretch_length"] *= setting.stretch_length
+        system = system._replace(law=system.law._replace(friction=friction), hysteresis=hysteresis)
+        return system if setting.bending_loss == 1.0 else with_bending_loss(system, setting.bending_loss)
+
+
+def _between(begin: Setting, end: Setting, part: float) -> Setting:
+    """A setting on the way from one to another, on which what smoothes changes by equal factors."""
+    if part == 1.0:
+        return end
+    even = Setting(*(a + part * (b - a) for a, b in zip(begin, end, strict=True)))
+    smooth = {
+        name: getattr(begin, name) ** (1.0 - part) * getattr(end, name) ** part
+        for name in ("smoothing", "stretch_length")
+    }
+    return even._replace(**smooth)

@@ -1,0 +1,341 @@
+"""What goes before a run and is not recorded: the drive runs at constant speeds, and its transients die."""
+
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass, replace
+from types import MappingProxyType
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from beltdyn.arrays import FloatArray
+from beltdyn.kernel import interpreted
+from beltdyn.machines.profiles.functions import go_on, profile_integral
+from beltdyn.model import Drive, Pulley
+from beltdyn.model.defaults import MOST
+from beltdyn.model.resolution import FINENESS
+from beltdyn.model.simulation import Instants
+from beltdyn.results import mesh_error_attribute
+from beltdyn.results.checks.ending import LEAST_WINDOWS, SETTLED, least_window
+from beltdyn.solvers.progress import Progress, Report
+from beltdyn.solvers.trajectory import Chunk, Integrator, Statistics, Task, drive_task
+from beltdyn.state.refinement import MeshRule, errors_at_rest, refine_at_rest, steady_from_rest
+from beltdyn.state.search import SteadySearch
+from beltdyn.state.staying import FINER, Standing, anchor_at, bring_to_stand, stand
+from beltdyn.system.arrays import System
+from beltdyn.system.build_machines import profile_arrays
+from beltdyn.system.build_staying import flowing_system, on_other_mesh
+from beltdyn.system.observe import observe_motion
+from beltdyn.system.state import State
+
+_WINDOWS = 20
+"""Windows in the longest time, at most."""
+_LAST = LEAST_WINDOWS - 1
+"""Changes from window to window that tell how transients die."""
+_SLOWEST = 0.9
+"""Largest part of a change that is taken to be left in the next one."""
+
+
+class Start(NamedTuple):
+    """Where a run begins."""
+
+    system: System
+    """Its arrays; the angles of prescribed pulleys go on from those that they have."""
+    state: State
+    attributes: dict[str, float | str]
+    """What is said of it, global attributes of the dataset."""
+
+
+class Settled(NamedTuple):
+    """What settling took."""
+
+    time: float
+    """s."""
+    left: float
+    """What is left of the start in the span tensions, over the largest mean one."""
+
+    @property
+    def attributes(self) -> dict[str, float | str]:
+        """What is said of it."""
+        return {"settling_time": self.time, "settling_left": self.left}
+
+
+@dataclass(frozen=True)
+class Settling:
+    """A run from rest to the first speed of a pulley, and there until the transients have died.
+
+    Means and standard deviations of the span tensions are taken over windows. How they change from window to
+    window, and how fast these changes get smaller, tells what is left of the start.
+
+    Attributes
+    ----------
+    pulley : int
+        Number of the pulley.
+    speed : float
+        Its first speed, rad/s.
+    lead : float
+        Time in which it is reached, s.
+    longest : float
+        Longest time at this speed, s.
+    """
+
+    pulley: int
+    speed: float
+    lead: float
+    longest: float
+
+    def __call__(
+        self, drive: Drive, system: System, state: State, integrator: Integrator, progress: Report | None, /
+    ) -> Start:
+        """Settle.
+
+        Parameters
+        ----------
+        drive
+            That of the run to come.
+        system
+            Its arrays.
+        state
+            At rest.
+        integrator
+            Method of time integration.
+        progress
+            Whom to tell.
+
+        Returns
+        -------
+        Start
+            The state at the end. Its attributes are ``settling_time`` (s, with the lead), and ``settling_left``: what
+            is left of the start in the span tensions, over the largest mean one.
+        """
+        before = self._before(drive)
+        slower = system._replace(profiles=profile_arrays(before.pulleys))
+        task = drive_task(drive, slower, state, Statistics())
+        window = self._window(drive.pulleys[self.pulley])
+        stops = self.lead + window * np.arange(1, np.ceil(self.longest / window) + 1)
+        instants = Instants(drive.simulation.output_interval, float(stops[-1]))
+        task = replace(task, instants=instants, breakpoints=(*before.breakpoints, *stops.tolist()))
+        end, said = settle(task, integrator, stops, drive.simulation.duration, progress)
+        return Start(with_angles(drive, system, slower, said.time), end, said.attributes)
+
+    def _before(self, drive: Drive) -> Drive:
+        """The drive that reaches the first speed and stays there."""
+        pulleys = list(drive.pulleys)
+        speed = {"kind": "cosine_ramp", "start": 0.0, "end": self.lead, "value": self.speed}
+        pulleys[self.pulley] = pulleys[self.pulley].replace(speed=speed)
+        return drive.replace(pulley=pulleys)
+
+    def _window(self, pulley: Pulley) -> float:
+        """Time over which means are taken, s."""
+        return float(min(max(least_window(pulley, self.speed), self.longest / _WINDOWS), self.longest))
+
+
+class _Left:
+    """What is left of the start, from the changes of the tensions."""
+
+    def __init__(self) -> None:
+        self._windows: list[FloatArray] = []
+
+    def take(self, time: FloatArray, tension: FloatArray) -> None:
+        """Add a window: times of states, shape (k,), s, and the tensions, shape (k, spans), N."""
+        weight = np.gradient(time) * np.sin(np.pi * (time - time[0]) / np.ptp(time)) ** 2
+        weight = (weight / weight.sum())[:, None]
+        tension = np.nan_to_num(tension)
+        mean = np.sum(weight * tension, axis=0)
+        deviation = np.sqrt(np.sum(weight * (tension - mean) ** 2, axis=0))
+        self._windows.append(np.stack([mean, deviation]))
+
+    @property
+    def known(self) -> bool:
+        """Whether there are windows enough to tell."""
+        return len(self._windows) > _LAST
+
+    @property
+    def part(self) -> float:
+        """What is left, over the largest mean tension; NaN of too few windows, or without tension.
+
+        Changes that fall by the factor r from window to window leave the sum r^2 + r^3 + ... = r^2 / (1 - r) of the
+        last but one.
+        """
+        scale = float(np.max(self._windows[-1][0])) if self.known else 0.0
+        if not scale > 0.0:
+            return float("nan")
+        changes = np.abs(np.diff(self._windows[-_LAST - 1 :], axis=0)).max(axis=(1, 2)) / scale
+        earlier, late = (float(np.max(half)) for half in np.split(changes, 2))
+        ratio = min((late / earlier) ** (2.0 / _LAST), _SLOWEST) if earlier > 0.0 else 0.0
+        return late * ratio**2 / (1.0 - ratio)
+
+
+def settle(
+    task: Task, integrator: Integrator, stops: FloatArray, duration: float, progress: Report | None
+) -> tuple[State, Settled]:
+    """Run until transients have died.
+
+    Parameters
+    ----------
+    task
+        The drive at constant speeds, whose steps end on the stops.
+    integrator
+        Method of time integration.
+    stops : ndarray, shape (k,)
+        Ends of the windows over which means are taken, s.
+    duration
+        Of the run to come, s.
+    progress
+        Whom to tell.
+
+    Returns
+    -------
+    state
+        At the last stop, or at the first one by which transients have died.
+    settled
+        What it took.
+    """
+    left = _Left()
+    for states in _between(integrator(task), stops):
+        if progress is not None:
+            progress(Progress(0.0, duration, 0.0, 0, "settling"))
+        last, shown = states.only(slice(-1, None)), np.arange(len(states.time)) == 0
+        seen = observe_motion(task.system, states.position, states.velocity, states.forces, shown)
+        left.take(states.time, seen.span_tension)
+        if left.known and left.part < SETTLED:
+            break
+    end = State(last.position[0], last.velocity[0], np.zeros_like(last.velocity[0]))
+    return end, Settled(float(last.time[0]), left.part)
+
+
+def with_angles(drive: Drive, system: System, before: System | None = None, time: float = 0.0) -> System:
+    """Arrays of a drive whose prescribed angles go on from what they were in another system.
+
+    Parameters
+    ----------
+    drive, system
+        The drive.
+    before
+        The other system; by default angles are zero at the beginning.
+    time
+        When the other system had the angles, s.
+    """
+    profiles = profile_arrays(drive.pulleys)
+    prescribed = [number for number, pulley in enumerate(drive.pulleys) if pulley.prescribed]
+    integral = interpreted(profile_integral)
+    angles = [0.0 if before is None else integral(before.profiles, number, time) for number in prescribed]
+    go_on(profiles, prescribed, drive.simulation.begin, angles)
+    return system._replace(profiles=profiles)
+
+
+def _between(chunks: Iterator[Chunk], stops: FloatArray) -> Iterator[Chunk]:
+    """The states from one of the stops to the next; the last one of each begins the next."""
+    waiting = list[Chunk]()
+    for chunk in chunks:
+        waiting += [chunk] if len(chunk.time) else []
+        at = float(stops[np.argmin(np.abs(stops - chunk.reached))])
+        if abs(at - chunk.reached) < 1e-9 * at:
+            yield Chunk.join(waiting)
+            waiting = [waiting[-1].only(slice(-1, None))]
+
+
+# Where a run on a staying mesh begins: at rest, or in the steady running of its first instant
+
+DIRECTION = "mesh_direction"
+"""Attribute of results on a staying mesh: the direction along which node 0 does not move, a unit vector."""
+
+
+class Beginning(NamedTuple):
+    """Where a run begins."""
+
+    drive: Drive
+    """With the length, or the take-up, that gives the installed tension."""
+    system: System
+    state: State
+    unstable: tuple[str, ...] = ()
+    """Names of the pulleys whose tensioners are not in stable balance at rest."""
+    attributes: Mapping[str, Any] = MappingProxyType({})
+    """What is said of it, global attributes of the dataset."""
+
+
+def begin_flowing(drive: Drive, progress: Report | None) -> Beginning:
+    """Find the state in which a run on a staying mesh begins, and the mesh.
+
+    Parameters
+    ----------
+    drive
+        The drive; `simulation.start` says whether it begins at rest or in steady running.
+    progress
+        Whom to tell.
+
+    Raises
+    ------
+    ModelError
+        If the drive cannot run steadily where it is to begin so.
+    ConvergenceError
+        If there is no such state.
+    """
+    if progress is not None:
+        progress(Progress(0.0, drive.simulation.duration, 0.0, 0, "equilibrium"))
+    meshed = _meshed(drive)
+    if drive.simulation.start == "steady":
+        meshed = _running(meshed, drive.simulation.force_tolerance)
+    system, direction = meshed.system, anchor_at(meshed.state, True).direction
+    flowing = with_angles(meshed.drive, flowing_system(system, direction))
+    errors = meshed.errors or {"peak pressure": float("nan")}  # not known
+    said = {mesh_error_attribute(name): error for name, error in errors.items()} | {DIRECTION: direction}
+    return Beginning(meshed.drive, flowing, with_passage(system, meshed.state, meshed.speed), attributes=said)
+
+
+class _Meshed(NamedTuple):
+    """A state on a staying mesh."""
+
+    rest: Standing
+    """The belt at rest on that mesh, or on one from which it was refined."""
+    system: System
+    state: State
+    speed: float
+    """Of the belt, m/s."""
+    errors: Mapping[str, float]
+    """Of the mesh, relative, as far as they are known."""
+
+    @property
+    def drive(self) -> Drive:
+        """With the length, or the take-up, that gives the installed tension."""
+        return self.rest.drive
+
+
+def _meshed(drive: Drive) -> _Meshed:
+    """The drive at rest, on a mesh as it asks for."""
+    settings, given = drive.simulation, drive.belt.elements
+    if settings.mesh == "uniform":
+        rest = bring_to_stand(drive, drive.elements)
+        errors = errors_at_rest(rest, drive.elements)
+    elif settings.force_tolerance is not None:
+        rest, errors = refine_at_rest(stand(bring_to_stand(drive).drive), settings.force_tolerance)
+    else:
+        rest = bring_to_stand(drive)
+        fineness = rest.fineness * (given or MOST) / rest.system.nodes
+        rest = stand(rest.drive, fineness=fineness if given else min(FINENESS, fineness))
+        errors = errors_at_rest(rest)
+    return _Meshed(rest, rest.system, rest.state, 0.0, errors)
+
+
+def _running(meshed: _Meshed, force_tolerance: float | None) -> _Meshed:
+    """Steady running at the beginning, on the same mesh, or on one that is refined up to a tolerance."""
+    rest, time = meshed.rest, meshed.drive.simulation.begin
+    if force_tolerance is None:
+        search, system, errors = SteadySearch(rest.drive, rest.system, rest.state, time), rest.system, meshed.errors
+        search.run(rest)
+    else:
+        search, rest, _, errors, _ = steady_from_rest(rest, time, _same_mesh, force_tolerance, bands=False)
+        system = on_other_mesh(rest.drive, rest.system, search.constant.length)
+    return meshed._replace(rest=rest, system=system, state=search.running(), speed=search.belt_parameter, errors=errors)
+
+
+def _same_mesh(rest: Standing) -> MeshRule:
+    """The rule of which the next finer mesh is that at rest, refined already."""
+    return MeshRule(rest.layer, rest.fineness / FINER)
+
+
+def with_passage(system: System, state: State, speed: float) -> State:
+    """Add the length of belt that has passed, zero, and its speed (m/s) to a state on a staying mesh."""
+    at = system.first_body + system.bodies.size - system.tensioners.size
+
+    vectors = zip((state.position, state.velocity, state.acceleration), (0.0, speed, 0.0), strict=True)
+    return State(*(np.insert(vector, at, value) for vector, value in vectors))

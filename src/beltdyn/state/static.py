@@ -1,0 +1,256 @@
+"""Static equilibrium of a belt: Newton's method, damped by the natural monotonicity test (section 5 of the paper).
+
+A belt is so much stiffer in tension than in bending that neither the energy nor the residual falls along a good path to
+equilibrium.  What must fall is the next correction as the present stiffness sees it (Deuflhard 2011, section 2.1):
+a step of length d is taken if |K^-1 r(q - d x)| <= (1 - d / 4) |x| with x = K^-1 r(q).  Where no length will do, or
+the stiffness is singular, a multiple of the mass matrix is added to the stiffness for a while.  A belt of many short
+links slides around its pulleys almost without resistance, which leaves steps that mean nothing; there the forces tell
+that the search is over.
+"""
+
+from dataclasses import dataclass
+from typing import Literal
+
+import numpy as np
+
+from beltdyn.arrays import FloatArray
+from beltdyn.errors import ConvergenceError
+from beltdyn.records import Records
+from beltdyn.solvers.engine import correct, linearise
+from beltdyn.system.arrays import Equations, Motion, System, TangentFactors
+from beltdyn.system.motion import new_equations, no_multipliers
+from beltdyn.system.state import State
+
+_TOLERANCE = 1e-11
+_FORCE_TOLERANCE = 1e-11
+"""Of nodal forces over E A alpha1."""
+_SMALLEST_SHIFT, _LARGEST_SHIFT = 1e-6, 1e12
+_SMALLEST_LENGTH = 1e-2
+
+
+@dataclass(frozen=True, eq=False)
+class Equilibrium:
+    """A static equilibrium with its iterates.
+
+    Parameters
+    ----------
+    state
+        At rest.
+    iterates : ndarray, shape (iterations + 1, N, 6)
+        Nodal coordinates from the start to the equilibrium.
+    norms : ndarray, shape (iterations,)
+        Energy norm of the steps, as a mean strain of the belt: sqrt(residual . step / (E A alpha1 L)).
+    """
+
+    state: State
+    iterates: FloatArray
+    norms: FloatArray
+
+    @property
+    def iterations(self) -> int:
+        """Number of iterations."""
+        return len(self.norms)
+
+
+def find_equilibrium(
+    system: System,
+    start: State,
+    *,
+    method: Literal["globalised", "newton"] = "globalised",
+    max_iterations: int = 500,
+) -> Equilibrium:
+    """Find a static equilibrium of a belt from an initial state.
+
+    Pulleys do not turn: the belt slides on them without friction, unless `start` gives them speeds, with which they rub
+    on the resting belt. Tensioners move. `tensioner_compliance` shows whether the equilibrium is stable.
+
+    Parameters
+    ----------
+    system
+        Belt, pulleys, supports.
+    start
+        Initial state; its belt must be at rest.
+    method
+        "globalised", or "newton" for the plain iteration of the paper.
+    max_iterations
+        Largest number of iterations, by default 500.
+
+    Returns
+    -------
+    Equilibrium
+        The state with its iterates.
+
+    Raises
+    ------
+    ConvergenceError
+        If the iteration does not converge, or the stiffness is singular.
+    """
+    search = _Search(system, start)
+    shift = 0.0
+    iterates, norms = [start.nodes(system).copy()], list[float]()
+    while len(norms) < max_iterations and shift < _LARGEST_SHIFT:
+        norm = search.linearise(shift)
+        converged = shift == 0.0 and norm < _TOLERANCE
+        if method == "newton" or converged:
+            search.step(1.0)
+        elif not search.step_naturally():
+            converged = search.force < _FORCE_TOLERANCE
+            if not converged:
+                shift = max(10.0 * shift, _SMALLEST_SHIFT)
+                continue
+        iterates.append(search.nodes.copy())
+        norms.append(norm)
+        if converged:
+            state = State(search.position.copy(), start.velocity.copy(), np.zeros_like(search.position))
+            return Equilibrium(state, np.array(iterates), np.array(norms))
+        shift = 0.1 * shift if shift > _SMALLEST_SHIFT else 0.0
+    last = f"relative movement {norms[-1]:.1e} after {len(norms)} iterations" if norms else "the search diverges"
+    raise ConvergenceError(
+        f"no static equilibrium found: {last}. Change the belt tension or length, omit contact.stiffness and "
+        "belt.elements so that they are chosen, or increase belt.elements."
+    )
+
+
+def standing(system: System) -> System:
+    """The same system with prescribed shafts that stand still, as static equilibrium has it.
+
+    Parameters
+    ----------
+    system
+        Belt, pulleys, supports.
+
+    Returns
+    -------
+    System
+        With prescribed speeds of zero.
+    """
+    segments, starts = system.profiles.segment.copy(), system.profiles.table["segment"]
+    for pulley in np.flatnonzero(system.bodies["unknown"][system.pulleys.shaft] < 0):
+        for name in ("offset", "slope", "amplitude"):
+            segments[name][starts[pulley] : starts[pulley + 1]] = 0.0
+    return system._replace(profiles=system.profiles._replace(segment=segments))
+
+
+def tensioner_compliance(system: System, state: State) -> FloatArray:
+    """How far tensioners in static equilibrium move by forces on them, while the belt stays in equilibrium.
+
+    The inverse of what elimination of the belt leaves of the stiffness. It is positive definite where the balance of
+    the tensioners is stable: the second variation of the energy, the belt following.
+
+    Parameters
+    ----------
+    system
+        Belt, pulleys, tensioners.
+    state
+        Static equilibrium.
+
+    Returns
+    -------
+    ndarray, shape (K, K)
+        m/N, rad/(N m), or 1/N; NaN where the stiffness is singular.
+    """
+    search, count = _Search(system, state), system.tensioners.size
+    search.linearise(0.0)
+    return np.array([search.answer_to_force(number) for number in range(count)]).reshape(count, count)
+
+
+class _Search:
+    """Belt and tensioners on their way to equilibrium, with the linearised equations where they stand."""
+
+    def __init__(self, system: System, start: State) -> None:
+        self._system = system._replace(bodies=only_tensioners(system))
+        self.position, self._velocity = start.position.copy(), start.velocity
+        self._multipliers = no_multipliers(system)
+        self._here: Equations = new_equations(self._system)
+        self._ahead: Equations = _with_sides_of_its_own(self._here)
+        self._length = float(np.sum(system.length))
+        self._time_scale = self._length**2 * system.element.section.mass / system.element.section.axial
+        self._scale = system.scale
+        self._reach = system.bodies.reach[system.bodies.size - system.tensioners.size :]
+
+    @property
+    def nodes(self) -> FloatArray:
+        """Nodal coordinates, shape (N, n)."""
+        return self.position[: self._system.first_body].reshape(self._system.nodes, -1)
+
+    @property
+    def force(self) -> float:
+        """Largest force out of balance where the equations were linearised last, over E A alpha1."""
+        nodes = np.abs(self._here.matrix.node_side / self._scale)
+        tensioners = np.abs(self._here.matrix.border_side[: self._reach.size] / self._reach)
+        return max(float(np.max(nodes)), float(np.max(tensioners, initial=0.0))) / self._system.element.section.axial
+
+    def linearise(self, shift: float) -> float:
+        """Linearise where the belt stands, with an inertial shift relative to axial waves; energy norm of the step.
+
+        It is nan where the stiffness is singular.
+        """
+        matrix, here = self._here.matrix, self._here
+        shift /= self._time_scale
+        factors = TangentFactors(by_position=1.0, by_acceleration=shift)
+        if not linearise(self._system, self._motion, self._multipliers, factors, here):
+            here.node_part[:] = np.nan
+        energy = abs(float(np.sum(matrix.node_side * here.node_part) + matrix.border_side @ here.border_part))
+        return float(np.sqrt(energy / (self._system.element.section.axial * self._length)))
+
+    def step(self, length: float) -> None:
+        """Take the step, or a part of it."""
+        nodes, border, count = self._system.first_body, self._here.border_part, self._reach.size
+        self.position[:nodes] -= length * self._here.node_part.ravel()
+        self.position[self.position.size - count :] -= length * border[:count]
+        if self._system.joint:
+            self._multipliers -= length * border[count:]
+
+    def step_naturally(self) -> bool:
+        """Take the longest of halved steps that passes the natural monotonicity test; False if there is none."""
+        size, length = self._size(self._here), 1.0
+        while np.isfinite(size) and length >= _SMALLEST_LENGTH:
+            self.step(length)
+            correct(self._system, self._motion, self._multipliers, self._ahead)
+            if self._size(self._ahead) <= (1.0 - 0.25 * length) * size:
+                return True
+            self.step(-length)
+            length *= 0.5
+        return False
+
+    def answer_to_force(self, number: int) -> FloatArray:
+        """How far tensioners move by a unit of force on one of them, from where the equations were linearised."""
+        tensioners = self._system.tensioners.copy()
+        tensioners["push"][number] += 1.0
+        correct(self._system._replace(tensioners=tensioners), self._motion, self._multipliers, self._ahead)
+        return np.asarray((self._here.border_part - self._ahead.border_part)[: tensioners.size])
+
+    @property
+    def _motion(self) -> Motion:
+        """Where the belt stands, the speeds of pulleys that rub it, and no acceleration."""
+        return Motion(0.0, self.position, self._velocity, np.zeros_like(self.position))
+
+    def _size(self, equations: Equations) -> float:
+        """Root mean square of a step of the nodes, or the largest step of a tensioner, m."""
+        nodes = float(np.sqrt(np.mean((equations.node_part * self._scale) ** 2)))
+        tensioners = np.abs(equations.border_part[: self._reach.size] * self._reach)
+        return float(np.max(tensioners, initial=nodes))
+
+
+def _with_sides_of_its_own(equations: Equations) -> Equations:
+    """Equations with the same tangent, but another right-hand side and solution."""
+    matrix, node_part, border_part = equations.matrix, equations.node_part, equations.border_part
+    return equations._replace(
+        matrix=matrix._replace(node_side=np.zeros_like(node_part), border_side=np.zeros_like(border_part)),
+        node_part=np.zeros_like(node_part),
+        border_part=np.zeros_like(border_part),
+    )
+
+
+def only_tensioners(system: System) -> Records:
+    """The bodies when nothing turns and tensioners move.
+
+    Parameters
+    ----------
+    system
+        Belt, pulleys, tensioners.
+    """
+    bodies, count = system.bodies.copy(), system.tensioners.size
+    bodies["unknown"] = -1
+    bodies["unknown"][bodies.size - count :] = np.arange(count)
+    return bodies

@@ -1,0 +1,277 @@
+"""A belt at rest on a staying mesh, and from one such mesh to another."""
+
+from functools import partial
+from typing import NamedTuple
+
+import numpy as np
+
+from beltdyn.arrays import FloatArray
+from beltdyn.errors import ConvergenceError
+from beltdyn.model import Drive, Installation, install
+from beltdyn.model.resolution import Arc, Laid, graded_mesh, layer_length, layer_lengths
+from beltdyn.state.installation import drawn_in, follow, from_starts, looked_at, tighten, with_stiffer_contact
+from beltdyn.state.newton import FOUND, find_steady, steady_work
+from beltdyn.state.static import only_tensioners
+from beltdyn.system.arrays import System
+from beltdyn.system.build_staying import staying_system
+from beltdyn.system.constant_drive import without_motion
+from beltdyn.system.discretization import nodal_coordinates, point_coordinates
+from beltdyn.system.frame import centreline_places, centreline_points
+from beltdyn.system.moving_center import pulley_center
+from beltdyn.system.state import State, at_rest
+from beltdyn.system.steady_assembly import Anchor
+
+TOLERANCE = 1e-9
+"""Of the last step of a search, over the smallest radius."""
+FIRST_FINENESS = 0.6
+"""Of the first mesh."""
+FINER = 1.4
+"""Elements of a mesh over those of the one before."""
+MOST_ELEMENTS = 1500
+_SETTLED = 1e-3
+"""Change of the tension at rest from one mesh to the next, relative, with which a mesh is fine enough for it."""
+_MOST = 60
+_SLOPE, _CURVATURE = slice(2, 4), slice(4, 6)
+"""First and second derivatives among the coordinates of a node."""
+_SAMPLES = 16
+"""Points of an element at which the ends of arcs are looked for."""
+
+
+class Standing(NamedTuple):
+    """A drive at rest, without friction, on a staying mesh."""
+
+    drive: Drive
+    system: System
+    state: State
+    place: FloatArray
+    """Position of that state, which may move on."""
+    tension: float
+    """Mean of the span tensions, N."""
+    layer: float
+    """Length of the layers at the ends of arcs, m."""
+    fineness: float
+    """Of its graded mesh."""
+
+
+def laid_state(laid: Laid, system: System, tensioners: FloatArray) -> State:
+    """The state of a system whose belt is laid on its path, with its tensioners (m or rad) where they are."""
+    along = laid.start + laid.stretch * point_coordinates(system)
+    slope, bend = laid.stretch * laid.path.tangent(along), laid.stretch**2 * laid.path.bend(along)
+    state = at_rest(system, nodal_coordinates(system, laid.path.position(along), slope, bend))
+    state.position[state.position.size - tensioners.size :] = tensioners
+    return state
+
+
+def anchor_at(state: State, at_rest: bool) -> Anchor:
+    """Hold node 0 where it is along the belt."""
+    slope = state.position[_SLOPE]
+    return Anchor(state.position[:2].copy(), slope / np.hypot(*slope), at_rest)
+
+
+def bring_to_stand(drive: Drive, elements: int | None = None) -> Standing:
+    """Find the equilibrium at rest, with the installed tension that was asked for if one was.
+
+    The length for that tension is found on a mesh that is fine enough for it.
+
+    Parameters
+    ----------
+    drive
+        The drive.
+    elements
+        Number of equal elements; by default the mesh is graded.
+
+    Raises
+    ------
+    ConvergenceError
+        If it is not found.
+    """
+    rest, wanted = stand(drive, elements), drive.belt.installed_tension
+    if wanted is None:
+        return rest
+    change = np.inf
+    while elements is None and change > _SETTLED and rest.system.nodes < MOST_ELEMENTS:
+        finer = stand(drive, fineness=FINER * rest.fineness)
+        change, rest = abs(finer.tension / rest.tension - 1.0), finer
+    return tighten(rest, wanted, partial(stand_like, like=rest))
+
+
+def stand(drive: Drive, elements: int | None = None, *, fineness: float = FIRST_FINENESS) -> Standing:
+    """Find the equilibrium at rest, without friction, of a drive with the length that it has.
+
+    Where Newton's method does not get there from the laid belt, it follows the equilibria of stiffer or softer contact.
+
+    Parameters
+    ----------
+    drive
+        The drive.
+    elements
+        Number of equal elements; by default the mesh is graded.
+    fineness
+        Of a graded mesh.
+
+    Raises
+    ------
+    ConvergenceError
+        If it is not found.
+    """
+    installation = install(drive)
+    layer = layer_length(*layer_lengths(drive, installation.tension))
+    span = installation.path.longest_span
+    if elements is not None:
+        lengths = np.full(elements, drive.belt_length / elements)
+    else:
+        arcs = Laid.on(installation.path, drive.belt_length, span).arcs()
+        lengths = graded_mesh(drive.belt_length, arcs, layer, fineness)
+    system = staying_system(drive, lengths)
+    state, tension = _from_laid(drive, system, installation)
+    return Standing(drive, system, state, state.position.copy(), tension, layer, fineness)
+
+
+def _from_laid(drive: Drive, system: System, installation: Installation) -> tuple[State, float]:
+    """Equilibrium from the belt laid on its path; see `_balanced`."""
+    return from_starts(
+        drive,
+        installation,
+        lambda start: _balanced(drive, system, _lying(drive, system, installation, start), start),
+    )
+
+
+def _balanced(drive: Drive, system: System, state: State, start: float = 1.0) -> tuple[State, float]:
+    """Equilibrium from a state nearby, in contact stiffer by a factor; also the mean tension of its spans, N."""
+    if not follow(start, partial(_balance, drive, system, state, anchor_at(state, True))):
+        raise _no_rest(system)
+    return state, looked_at(drive, system, state).tension
+
+
+def stand_like(drive: Drive, like: Standing) -> Standing:
+    """Find the equilibrium of a drive that differs a little, in the length of its belt, from that of the other.
+
+    Parameters
+    ----------
+    drive
+        The drive.
+    like
+        The other one, of which the mesh is taken in proportion: another mesh would have other errors.
+
+    Raises
+    ------
+    ConvergenceError
+        If it is not found from there.
+    """
+    nodes, bodies = np.split(like.place, [like.system.first_body])
+    system, state = carried(drive, like.drive, like.system.length, nodes)
+    state.position[system.first_body :] += bodies
+    try:
+        state, tension = _balanced(drive, system, state)
+    except ConvergenceError:
+        state, tension = _from_laid(drive, system, install(drive))
+    return like._replace(drive=drive, system=system, state=state, place=state.position.copy(), tension=tension)
+
+
+def _no_rest(system: System) -> ConvergenceError:
+    return ConvergenceError(
+        f"no static equilibrium found with {system.nodes} elements. Check tension and penetration with `beltdyn "
+        "check`; change the belt tension or length, or omit contact.stiffness so that it is chosen."
+    )
+
+
+def carried(drive: Drive, other: Drive, lengths: FloatArray, nodes: FloatArray) -> tuple[System, State]:
+    """The mesh of a drive that differs a little from another one, and a state near to that of the other one.
+
+    Arcs keep their nodes: the mesh changes as the path does, and places and slopes as those of a belt laid on it.
+
+    Parameters
+    ----------
+    drive, other
+        The drives.
+    lengths : ndarray, shape (N,)
+        Those of the elements of the other one, m.
+    nodes : ndarray, shape (6 N,)
+        Its nodal coordinates.
+
+    Returns
+    -------
+    system, state
+        A state without speeds, its bodies moved from zero by as much as tensioners move at rest.
+    """
+    before, after = install(other), install(drive)
+    span = before.path.longest_span
+    here, there = Laid.on(before.path, other.belt_length, span), Laid.on(after.path, drive.belt_length, span)
+    moved = np.interp(np.append(0.0, np.cumsum(lengths)), here.marks(), there.marks())
+    new = staying_system(drive, np.diff(moved))
+    state = laid_state(there, new, after.tensioner_positions)
+    state.position[:] -= laid_state(here, new._replace(length=lengths), before.tensioner_positions).position
+    state.nodes(new)[:, _CURVATURE] = 0.0  # it jumps at the ends of arcs, where nodes may be
+    state.position[: nodes.size] += nodes
+    return new, state
+
+
+def _balance(drive: Drive, system: System, state: State, anchor: Anchor, factor: float) -> bool:
+    """Bring a state to equilibrium with contact stiffer by a factor; if that fails, False, and the state as it was."""
+    still, begun = without_friction(with_stiffer_contact(system, factor)), state.position.copy()
+    tolerance = TOLERANCE * float(np.min(drive.radii))
+    found = find_steady(still, state.at(0.0), anchor, tolerance, _MOST, False, steady_work(still))[0] == FOUND
+    if not found:
+        state.position[:] = begun
+    return found
+
+
+def without_friction(system: System) -> System:
+    """The same system with a belt that slides without friction on pulleys that stand still, as do tensioners."""
+    pulleys = system.pulleys.copy()
+    pulleys["friction"] = 0.0
+    tensioners = without_motion(system.tensioners)
+    return system._replace(pulleys=pulleys, bodies=only_tensioners(system), tensioners=tensioners)
+
+
+def _lying(drive: Drive, system: System, installation: Installation, factor: float) -> State:
+    """A belt that lies in its pulleys instead of on their rims, as deep as in contact stiffer by a factor."""
+    laid = Laid.on(drawn_in(drive, installation, factor), drive.belt_length, installation.path.longest_span)
+    return laid_state(laid, system, installation.tensioner_positions)
+
+
+def found_arcs(system: System, state: State) -> list[Arc]:
+    """Where the belt touches pulleys, in the order in which they follow each other along the belt.
+
+    Parameters
+    ----------
+    system, state
+        Where the belt is.
+    """
+    ends = np.cumsum(system.length)
+    parts = np.arange(_SAMPLES) / _SAMPLES
+    along = ((ends - system.length)[:, None] + system.length[:, None] * parts).ravel()
+    places = centreline_places(system, state.position, along)
+    found = list[Arc]()
+    for depth, radius in zip(depths(system, state, places), system.rims.radius, strict=True):
+        touching = np.flatnonzero(depth >= 0.0)
+        if touching.size:
+            first, last = int(touching[0]), int(touching[-1])
+            start = along[first] - _beyond(along, depth, first, first - 1)
+            end = along[last] - _beyond(along, depth, last, last + 1)
+            found.append(Arc(float(start), float(end), float(radius)))
+    return sorted(found)
+
+
+def depths(system: System, state: State, places: FloatArray) -> FloatArray:
+    """How deep places (k, 2) lie within each pulley, m, negative outside, shape (P, k)."""
+    centers = np.array(system.pulleys.center)
+    for carried in np.flatnonzero(system.pulleys.carrier >= 0).tolist():
+        centers[carried] = pulley_center(system, carried, state.position)
+    away = np.hypot(*(places[:, axis] - centers[:, axis, None] for axis in range(2)))
+    return np.asarray(system.rims.radius[:, None] - away)
+
+
+def _beyond(along: FloatArray, depth: FloatArray, inner: int, outer: int) -> float:
+    """Way from a point inside a pulley to its rim against the way to a neighbour outside, m."""
+    return float((along[inner] - along[outer]) * depth[inner] / (depth[inner] - depth[outer]))
+
+
+def transfer(system: System, state: State, other: System) -> State:
+    """The same curve and motion on another mesh."""
+    place, slope, bend = centreline_points(system, state.position, point_coordinates(other))
+    moved = at_rest(other, nodal_coordinates(other, place, slope, bend))
+    for mine, given in zip((moved.position, moved.velocity), (state.position, state.velocity), strict=True):
+        mine[other.first_body :] = given[system.first_body :]
+    other.frame.speed[:] = system.frame.speed
+    return moved

@@ -1,0 +1,1 @@
+"""Motion over time: runs, run-ups, the simulator, checkpoints."""

@@ -1,0 +1,231 @@
+"""Initial state of a run: at rest, laid, in steady running, or from an earlier run."""
+
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from beltdyn.arrays import FloatArray
+from beltdyn.errors import ModelError
+from beltdyn.model import Drive
+from beltdyn.model.simulation import EarlierRun, Frame, Instants
+from beltdyn.observation.compilation import compile_kernels
+from beltdyn.solvers.generalized_alpha import GeneralizedAlpha
+from beltdyn.solvers.progress import Report
+from beltdyn.solvers.trajectory import Integrator, Statistics, drive_task
+from beltdyn.state.installation import Rest, bring_to_rest
+from beltdyn.state.search import SteadySearch
+from beltdyn.state.settling import Beginning, Start, begin_flowing, settle, with_angles
+from beltdyn.state.staying import stand
+from beltdyn.state.steady import require_steady_start
+from beltdyn.system.arrays import System
+from beltdyn.system.build import drive_system
+from beltdyn.system.build_staying import flowing_system, staying_system
+from beltdyn.system.constant_drive import constant_drive
+from beltdyn.system.discretization import curve_lengths, nodal_coordinates, point_coordinates
+from beltdyn.system.frame import centreline_points
+from beltdyn.system.state import State, at_rest, laid
+from beltdyn.transient.earlier_run import begin_from, with_instant
+
+# Where a run on the travelling mesh begins in steady running
+
+_NEAR = 1e-6
+"""Distance over which rates of nodal coordinates are found, over the length of the belt."""
+_WINDOWS = 4
+"""Windows of means in a turn of the belt, about."""
+_TURNS = 5
+"""Longest way on which the belt settles, in turns of it."""
+
+
+def steady_state_on(rest: Rest) -> State:
+    """Steady running at the beginning of a run, as near as the travelling mesh comes to it.
+
+    Parameters
+    ----------
+    rest
+        The drive at rest on that mesh.
+
+    Raises
+    ------
+    ConvergenceError
+        If there is no steady running.
+    """
+    standing = stand(rest.drive)
+    search = SteadySearch(rest.drive, standing.system, standing.state, rest.drive.simulation.begin)
+    search.run(standing)
+    return taken_over(search, rest.system)
+
+
+def taken_over(search: SteadySearch, system: System) -> State:
+    """The curve and motion of steady running on the nodes of another mesh, which travels with the belt.
+
+    Parameters
+    ----------
+    search
+        In steady running.
+    system
+        The same drive on the other mesh.
+
+    Returns
+    -------
+    State
+        The belt coordinate of the other mesh begins where that of the first one does, in the middle of a span.
+    """
+    found, given, length = search.running(), search.constant, search.drive.belt_length
+
+    def nodes(ahead: float) -> FloatArray:
+        along = (point_coordinates(system) + ahead) % length
+        return nodal_coordinates(system, *centreline_points(given, found.position, along))
+
+    state, way = at_rest(system, nodes(0.0)), _NEAR * length
+    rates = search.belt_parameter * (nodes(way) - nodes(-way)) / (2.0 * way)
+    state.velocity[: system.first_body] = rates.ravel()
+    for mine, other in ((state.position, found.position), (state.velocity, found.velocity)):
+        mine[system.first_body :] = other[given.first_body :]
+    return state
+
+
+@dataclass(frozen=True)
+class Held:
+    """A run at the speeds and loads of the beginning, until nothing but the ripple of the mesh is left."""
+
+    def __call__(
+        self, drive: Drive, system: System, state: State, integrator: Integrator, progress: Report | None, /
+    ) -> Start:
+        """Settle.
+
+        Parameters
+        ----------
+        drive, system
+            Those of the run to come.
+        state
+            From `steady_state_on`.
+        integrator
+            Method of time integration.
+        progress
+            Whom to tell.
+        """
+        held = constant_drive(system, drive.simulation.begin)._replace(tensioners=system.tensioners)
+        stops = np.arange(1.0, _WINDOWS * _TURNS + 1.0) * _window(drive, system, state)
+        task = drive_task(drive, held, state, Statistics())
+        instants = Instants(drive.simulation.output_interval, float(stops[-1]))
+        task = replace(task, instants=instants, breakpoints=stops.tolist())
+        end, settled = settle(task, integrator, stops, drive.simulation.duration, progress)
+        return Start(with_angles(drive, system, held, settled.time), end, settled.attributes)
+
+
+def _window(drive: Drive, system: System, state: State) -> float:
+    """Time in which a whole number of elements pass, about a part of a turn of the belt, s."""
+    elements = curve_lengths(system).size
+    passing = max(elements // _WINDOWS, 1) / elements
+    speeds = np.abs(state.velocity[system.first_body :][: system.pulleys.size] * drive.rolling_radii)
+    return float(passing * drive.path.length / speeds.max())
+
+
+Begin = Callable[[Drive, System, State, Integrator, Report | None], Start]
+"""``begin(drive, system, state, integrator, progress) -> Start``, from the drive and its state at rest."""
+
+
+def settled(drive: Drive, integrator: Integrator) -> tuple[Drive, Frame]:
+    """The drive with the instant and the mesh of the earlier run in which it begins, and its mesh with the reason.
+
+    Where the drive leaves the mesh open, it is that of an earlier run, and travels where the integrator needs it.
+
+    Raises
+    ------
+    ModelError
+        If there is no such run, or it has no such state.
+    """
+    begun = with_instant(drive)
+    if begun.simulation.frame != drive.simulation.frame:
+        return begun, begun.frame._replace(reason="as in the run it continues")
+    if drive.simulation.frame is None and drive.frame.stays and not isinstance(integrator, GeneralizedAlpha):
+        moved = begun.replace(simulation=begun.simulation.replace(frame="travelling"))
+        return moved, moved.frame._replace(reason=f"since the integrator is {integrator.name}")
+    return begun, begun.frame
+
+
+def compile_ahead(drive: Drive) -> None:
+    """Compile the kernels of a run once, before several processes need them."""
+    if drive.frame.stays:
+        lengths = np.full(drive.elements, drive.belt_length / drive.elements)
+        system = flowing_system(staying_system(drive, lengths), np.array([1.0, 0.0]))
+    else:
+        system = drive_system(drive)
+    compile_kernels(system, laid(system, drive.path))
+
+
+def mesh_of(drive: Drive, integrator: Integrator, progress: Report | None = None) -> Beginning:
+    """The mesh of a run, with the state on it where the mesh is found by that.
+
+    Parameters
+    ----------
+    drive, integrator, progress
+        As for `simulate`; from `settled`.
+
+    Raises
+    ------
+    ModelError, ConvergenceError
+        As `simulate`.
+    """
+    settings = drive.simulation
+    staying = drive.frame.stays
+    if staying and not isinstance(integrator, GeneralizedAlpha):
+        raise ModelError(
+            f'the integrator "{integrator.name}" does not support simulation.frame = "staying". Omit the '
+            'integrator, or set simulation.frame = "travelling".'
+        )
+    if settings.start == "steady":
+        require_steady_start(drive)
+    if isinstance(settings.start, EarlierRun):
+        return begin_from(drive)
+    if staying:
+        return begin_flowing(drive, progress)
+    system = drive_system(drive)
+    return Beginning(drive, system, laid(system, drive.path))
+
+
+def begin_on(
+    mesh: Beginning, integrator: Integrator, progress: Report | None = None, begin: Begin | None = None
+) -> Beginning:
+    """The state in which a run begins.
+
+    Parameters
+    ----------
+    mesh
+        From `mesh_of`.
+    integrator, progress
+        As for `simulate`.
+    begin
+        Goes on from there to the state with which an analysis begins; by default, a travelling mesh settles in
+        steady running if it begins so.
+
+    Raises
+    ------
+    ModelError, ConvergenceError
+        As `simulate`.
+    """
+    settings = mesh.drive.simulation
+    if mesh.drive.frame.stays or isinstance(settings.start, EarlierRun):
+        found = mesh
+    else:
+        found = _travelling(mesh, progress)
+        begin = begin or (Held() if settings.start == "steady" else None)
+    if begin is None:
+        return found
+    system, state, said = begin(found.drive, found.system, found.state, integrator, progress)
+    return found._replace(system=system, state=state, attributes={**found.attributes, **said})
+
+
+def _travelling(mesh: Beginning, progress: Report | None) -> Beginning:
+    """The state in which a run on the travelling mesh begins."""
+    drive = mesh.drive
+    start = drive.simulation.start
+    if drive.belt.installed_tension is None and start == "laid":
+        return mesh
+    rest = bring_to_rest(drive, progress)
+    if start == "steady":
+        state = steady_state_on(rest)
+    else:
+        state = rest.state if start == "equilibrium" else laid(rest.system, rest.drive.path)
+    return Beginning(rest.drive, rest.system, state, rest.unstable)

@@ -1,0 +1,254 @@
+"""Runs that start from a recorded state of an earlier run."""
+
+from collections.abc import Iterator, Mapping
+from contextlib import contextmanager
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from beltdyn.errors import ModelError
+from beltdyn.machines.profiles.functions import go_on
+from beltdyn.model import Drive, loads
+from beltdyn.model.simulation import EarlierRun
+from beltdyn.parts.quantity import number_in
+from beltdyn.parts.text_file import entry_name, shorten
+from beltdyn.results import Run, open_run
+from beltdyn.results.schema import runs_steadily
+from beltdyn.state.settling import DIRECTION, Beginning
+from beltdyn.system.arrays import System
+from beltdyn.system.build import drive_system
+from beltdyn.system.build_staying import flowing_system, staying_system
+from beltdyn.system.discretization import point_coordinates
+from beltdyn.system.state import State, at_rest
+from beltdyn.transient.checkpoint import is_checkpoint
+
+_SAME = 1e-6
+"""Distance of instants that count as one, over the time between them."""
+_FREE = frozenset({"name", "description", "limits", "simulation", "steady"})
+"""Groups of a drive file in which drives may differ of which one begins in a state of the other."""
+_FREE_OF_PULLEYS = frozenset({"speed", "harmonics", "torque", "load", "inertia", "mass", "friction"})
+
+
+def instant_of(run: Run, at: float | str | None, name: str = "at") -> float:
+    """The instant at which the belt was recorded that is asked for, s.
+
+    Parameters
+    ----------
+    run
+        A run over time.
+    at
+        Such as "0.5 s", or in s; the last one by default.
+    name
+        What a message calls it.
+
+    Raises
+    ------
+    ModelError
+        If the belt was not recorded then.
+    """
+    run.require_output()
+    run.require("nodal_velocities")
+    run.require("body_velocity")
+    times = run.dataset["field_time"].values
+    if at is None:
+        return float(times[-1])
+    wanted = number_in(name, at, "s")
+    nearest = float(times[np.argmin(np.abs(times - wanted))])
+    step = float(np.diff(times).min()) if times.size > 1 else max(abs(nearest), 1.0)
+    if not abs(nearest - wanted) <= _SAME * step:
+        every = f", every {step:.6g} s," if times.size > 1 else ""
+        raise ModelError(
+            f"{name} = {wanted:g} s is not an output along the belt of this run: it has outputs from "
+            f"{times[0]:.6g} to {times[-1]:.6g} s{every} the nearest at {nearest:.8g} s. Use that one, or run "
+            "the drive again with another simulation.field_interval."
+        )
+    return nearest
+
+
+def staying_mesh(drive: Drive, run: Run) -> System:
+    """The arrays of a drive over time on the mesh of a run that stays, with a belt that does not flow."""
+    lengths = np.diff(run.dataset["node_coordinate"].values, append=drive.belt_length)
+    return staying_system(drive, lengths)
+
+
+def recorded_state(run: Run, time: float, system: System) -> State:
+    """The state of a run.
+
+    Parameters
+    ----------
+    run
+        A run over time.
+    time
+        From `instant_of`, s.
+    system
+        Arrays of the same belt and bodies on the same mesh.
+
+    Returns
+    -------
+    State
+        Without accelerations.
+    """
+    seen = run.fields_at(time)
+    state, first = at_rest(system, seen["nodal_coordinates"].values), system.first_body
+    state.position[first:] = seen["body_position"].values
+    state.velocity[:first] = seen["nodal_velocities"].values.ravel()
+    state.velocity[first:] = seen["body_velocity"].values
+    return state
+
+
+def with_instant(drive: Drive) -> Drive:
+    """The drive with the instant of the earlier run in which it begins, and its mesh; any other drive as it is.
+
+    Parameters
+    ----------
+    drive
+        The drive; without an instant, the run begins in the last state that was recorded.
+
+    Raises
+    ------
+    ModelError
+        If there is no such run, or it has no such state.
+    """
+    start = drive.simulation.start
+    if not isinstance(start, EarlierRun):
+        return drive
+    with _opened(start) as run:
+        start = start.replace(time=instant_of(run, start.time, "time"))
+        frame = drive.simulation.frame or run.drive.frame.name
+    return drive.replace(simulation=drive.simulation.replace(start=start, frame=frame))
+
+
+def begin_from(drive: Drive) -> Beginning:
+    """Begin in the state of an earlier run, on its mesh.
+
+    Parameters
+    ----------
+    drive
+        From `with_instant`.
+
+    Returns
+    -------
+    Beginning
+        With the belt, contact and tensioners of the earlier run, whose length is known. Angles of prescribed shafts go
+        on from those that they had.
+
+    Raises
+    ------
+    ModelError
+        If there is no such run, or it is one of another belt, on other pulleys or on another mesh.
+    """
+    start = drive.simulation.start
+    assert isinstance(start, EarlierRun)
+    assert start.time is not None
+    with _opened(start) as run:
+        drive = _as_installed(drive, run)
+        attributes: dict[str, Any] = {}
+        if drive.frame.stays:
+            direction = np.array(run.dataset.attrs[DIRECTION], dtype=float)
+            attributes = {DIRECTION: direction}
+            system = flowing_system(staying_mesh(drive, run), direction)
+        else:
+            system = drive_system(drive)
+        _require_same_mesh(system, run)
+        state = recorded_state(run, start.time, system)
+    shafts = [number for number, pulley in enumerate(drive.pulleys) if pulley.prescribed]
+    angles = state.position[system.first_body + system.pulleys.shaft[shafts]]
+    go_on(system.profiles, shafts, drive.simulation.begin, angles.tolist())
+    return Beginning(drive, system, state, attributes=attributes)
+
+
+@contextmanager
+def _opened(start: EarlierRun) -> Iterator[Run]:
+    """The earlier run; what is wrong with it is told of the key."""
+    if is_checkpoint(Path(start.file)):
+        results = Path(start.file).with_suffix(".nc")
+        raise ModelError(
+            f"simulation.start: {start.file} is a checkpoint, which can only resume its own run: beltdyn run --resume "
+            f"{results}. To start another run from a state of that one, give its result file, {results}."
+        )
+    try:
+        run = open_run(Path(start.file))
+        try:
+            if runs_steadily(run.dataset):
+                raise ModelError(
+                    f'{start.file} holds steady running, not a run over time. Set start = "steady", which computes it.'
+                )
+            yield run
+        finally:
+            run.dataset.close()
+    except ModelError as error:
+        raise ModelError(f"simulation.start: {error}") from error
+
+
+def _as_installed(drive: Drive, run: Run) -> Drive:
+    """The drive with the belt, the contact and the tensioners of the earlier run, in which its length was found.
+
+    Raises
+    ------
+    ModelError
+        If it differs from the drive of that run in more than it may.
+    """
+    given = run.dataset.attrs.get("drive_as_given")
+    earlier = loads(given) if given is not None else run.drive
+    found = _difference(_fixed(drive), _fixed(earlier))
+    if found is not None and _difference(_fixed(drive), _fixed(run.drive)) is not None:
+        path, mine, theirs = found
+        raise ModelError(
+            f"{path} is {mine} in this drive but {theirs} in that of {run.path}. Belt, contact, mesh, frame, "
+            "tensioners and pulley positions must be the same; speeds, torques, loads, inertia and pulley "
+            "friction may differ. Make it the same, or choose another simulation.start."
+        )
+    installed = run.drive
+    return drive.replace(belt=installed.belt, contact=installed.contact, tensioner=installed.tensioners)
+
+
+def _fixed(drive: Drive) -> dict[str, Any]:
+    """What must agree of a drive, as in its file."""
+    data = {key: value for key, value in drive.data.items() if key not in _FREE}
+    data["pulley"] = [
+        {key: value for key, value in pulley.items() if key not in _FREE_OF_PULLEYS} for pulley in data["pulley"]
+    ]
+    data["belt"]["discretization"] = drive.element_kind.name
+    return {"simulation": {"frame": drive.frame.name, "joint": drive.simulation.joint}} | data
+
+
+def _difference(mine: Any, other: Any, path: str = "") -> tuple[str, str, str] | None:
+    """The first key that differs, with both values in words."""
+    if isinstance(mine, Mapping) and isinstance(other, Mapping):
+        places = [(f"{path}.{key}" if path else key, mine.get(key), other.get(key)) for key in {**mine, **other}]
+    elif isinstance(mine, list) and isinstance(other, list) and len(mine) == len(other):
+        names = [entry_name(one) or str(number) for number, one in enumerate(mine, 1)]
+        places = [(f"{path}[{name}]", a, b) for name, a, b in zip(names, mine, other, strict=True)]
+    else:
+        return None if mine == other else (path, _shown(mine), _shown(other))
+    found = (_difference(a, b, place) for place, a, b in places)
+    return next((one for one in found if one is not None), None)
+
+
+def _shown(value: Any) -> str:
+    if value is None:
+        return "not given"
+    return f"a list of {len(value)}" if isinstance(value, list) else shorten(value)
+
+
+def _require_same_mesh(system: System, run: Run) -> None:
+    """Make sure that nodes and bodies of a drive are those of the earlier run.
+
+    Raises
+    ------
+    ModelError
+        If not.
+    """
+    theirs, mine = run.dataset["node_coordinate"].values, point_coordinates(system)
+    if mine.shape != theirs.shape or not np.allclose(mine, theirs, rtol=0.0, atol=1e-9 * float(theirs[-1])):
+        raise ModelError(
+            f"this drive has {mine.size} nodes, but that of {run.path} has {theirs.size}, or at other "
+            f"positions. Set belt.elements = {run.drive.elements} in both."
+        )
+    if system.bodies.size != run.dataset.sizes["body"]:
+        raise ModelError(
+            f"this drive has {system.bodies.size} bodies and controllers beside the belt, but that of "
+            f"{run.path} has {run.dataset.sizes['body']}: {', '.join(run.dataset['body'].values)}. Loads with "
+            "controllers, such as servo motors, must be the same."
+        )

@@ -1,0 +1,246 @@
+"""Simulation of a drive over time."""
+
+from collections.abc import Callable, Mapping
+from pathlib import Path
+from typing import get_args
+
+from beltdyn.errors import ConvergenceError, ModelError
+from beltdyn.model import Drive, Simulation
+from beltdyn.model.drive import has_functions
+from beltdyn.observation.compilation import compile_kernels
+from beltdyn.observation.observer import Arrays
+from beltdyn.observation.recording import Recording
+from beltdyn.parts.messages import listing
+from beltdyn.parts.quantity import number_in
+from beltdyn.results import Run, require_room
+from beltdyn.results.checks.mesh import COARSE_SETTINGS
+from beltdyn.results.summary import FAILURE, VALUES, coarse_settings, ends_steadily, steady_losses, steady_values
+from beltdyn.solvers.generalized_alpha import AlphaIntegration, GeneralizedAlpha
+from beltdyn.solvers.progress import Report
+from beltdyn.solvers.standard import Name, StandardIntegrator
+from beltdyn.solvers.trajectory import Integrator, drive_task
+from beltdyn.state.steady import require_steady, steady_state
+from beltdyn.transient.beginning import Begin, begin_on, mesh_of, settled
+from beltdyn.transient.checkpoint import Keeper, checkpoint_file, read_checkpoint
+from beltdyn.transient.earlier_run import with_instant
+
+CHECKPOINT = 60.0
+"""Computing time between two checkpoints of a run, s."""
+
+
+def simulate(
+    drive: Drive,
+    output: Path | str | None = None,
+    progress: Report | None = None,
+    overwrite: bool = False,
+    integrator: Integrator | None = None,
+    *,
+    compare_steady: bool = False,
+    checkpoint: float | str = CHECKPOINT,
+    resume: bool = False,
+) -> Run:
+    """Simulate a drive over time.
+
+    Parameters
+    ----------
+    drive
+        The drive.
+    output
+        Result file (NetCDF4), written during the simulation; without it the results stay in memory.
+    progress
+        Called repeatedly with a `Progress`.
+    overwrite
+        Overwrite any regular file, not only earlier results.
+    integrator
+        Method of time integration; by default `simulation.integrator` of the drive. `Stepwise` makes an integrator from
+        a one-step method.
+    compare_steady
+        Also compute the steady running under the speeds and loads at the end, and compare the run with it.
+    checkpoint
+        Computing time between two checkpoints, such as "10 min", or in s: an interrupted or killed run can resume from
+        the last one. They are stored beside the result file with the ending ``.checkpoint``, and removed at the end.
+    resume
+        Resume the run in the result file, with the same steps and results as without the interruption. On the command
+        line the result file may be given instead of the drive file.
+
+    Returns
+    -------
+    Run
+        Its status is "completed", or "interrupted" after Ctrl-C. Its drive has the length, or the take-up, that gives
+        the installed tension.
+
+    Raises
+    ------
+    ModelError
+        If the result file cannot be written, is being written by another run, or would replace a file that is not a
+        result; the disk is too small; or an integrator is not installed.
+    SimulationError
+        If the simulation fails (`ConvergenceError`) or the disk is full (`OutputError`); the results so far are kept in
+        the file, with the status "failed".
+
+    Examples
+    --------
+    >>> short = drive.replace(simulation=drive.simulation.replace(duration=0.01))
+    >>> run = bd.simulate(short)
+    >>> run.status, run.outputs
+    ('completed', 11)
+    """
+    every = number_in("checkpoint", checkpoint, "s")
+    if not every > 0.0:
+        raise ModelError(f"checkpoint = {every:g} s must be above zero. Increase it, or omit it.")
+    if resume:
+        return _resume(drive, output, progress, every)
+    return record_run(drive, output, progress, overwrite, integrator, compare_steady=compare_steady, checkpoint=every)
+
+
+def record_run(
+    drive: Drive,
+    output: Path | str | None,
+    progress: Report | None,
+    overwrite: bool,
+    integrator: Integrator | None = None,
+    *,
+    begin: Begin | None = None,
+    watch: Callable[[Arrays], None] | None = None,
+    compare_steady: bool = False,
+    checkpoint: float = CHECKPOINT,
+    **attributes: str,
+) -> Run:
+    """Simulate a drive over time, for an analysis that says something of its own about the run.
+
+    Parameters
+    ----------
+    drive, output, progress, overwrite, integrator
+        As for `simulate`.
+    begin
+        Finds the state to begin with from that at rest.
+    watch
+        Is given all outputs, and may end the run by an error.
+    compare_steady, checkpoint
+        As for `simulate`.
+    **attributes
+        Global attributes of the dataset.
+
+    Returns
+    -------
+    Run
+        As `simulate` gives it.
+    """
+    require_room(drive, Path(output) if output is not None else None)
+    given = drive
+    if compare_steady:
+        require_steady(drive)
+    integrator = integrator or choose_integrator(drive)
+    drive, frame = settled(drive, integrator)
+    mesh = mesh_of(drive, integrator, progress)
+    title = f"{drive.title}, {drive.simulation.duration:g} s"
+    about = {**attributes, **mesh.attributes, "mesh_frame_reason": frame.reason}
+    with Recording(drive, mesh.system, output, title, progress, overwrite, **about) as recording:
+        recording.prepare()
+        found = begin_on(mesh, integrator, progress, begin)
+        recording.integrator, recording.watch = integrator.name, watch
+        recording.start(found.drive, found.system, found.unstable)
+        recording.note(**found.attributes)
+        task = drive_task(found.drive, found.system, found.state, recording.statistics)
+        if isinstance(integrator, GeneralizedAlpha) and not has_functions(given):
+            keeper = Keeper(Path(output) if output is not None else None, checkpoint, given, compare_steady)
+            _integrate(integrator.begin(task), recording, keeper)
+        else:
+            for chunk in integrator(task):
+                recording.take(chunk)
+        _end(recording, given, compare_steady)
+    return recording.run()
+
+
+def _integrate(integration: AlphaIntegration, recording: Recording, keeper: Keeper) -> None:
+    """Record an integration to its end, with checkpoints on the way."""
+    for chunk in integration.chunks():
+        recording.take(chunk)
+        keeper.look(recording, integration)
+    keeper.remove()
+
+
+def _end(recording: Recording, given: Drive, compare_steady: bool) -> None:
+    """What is looked for when a run is complete."""
+    recording.check()
+    if compare_steady:
+        recording.note(**_steady_running(given))
+    coarse = coarse_settings(given)
+    if coarse and not given.ends and ends_steadily(recording.run()):
+        recording.note(**_steady_losses(given), **{COARSE_SETTINGS: listing(coarse)})
+
+
+def _resume(drive: Drive, output: Path | str | None, progress: Report | None, checkpoint: float) -> Run:
+    """Go on with a run from its checkpoint."""
+    if output is None:
+        raise ModelError("resume continues a run in its result file, but none is given. Give it as output.")
+    path = Path(output)
+    if drive.simulation.integrator != GeneralizedAlpha.name or has_functions(drive):
+        why = (
+            'has a load of kind "function", which cannot be stored in a file'
+            if has_functions(drive)
+            else f'has simulation.integrator = "{drive.simulation.integrator}", whose state is not stored'
+        )
+        raise ModelError(
+            f"this drive {why}, so its runs write no checkpoints and cannot be resumed. Start another run where "
+            f'this one ended with simulation.start = {{ file = "{path}" }}, or run it again.'
+        )
+    point = read_checkpoint(checkpoint_file(path))
+    if drive not in (point.drive, point.recording["_drive"]):
+        raise ModelError(
+            f"{checkpoint_file(path)} belongs to another drive than the given one. Give the drive file with "
+            "which the run started, or run this one from the beginning, without resume."
+        )
+    with Recording.resumed(point.recording, path, progress) as recording:
+        compile_kernels(point.integration.task.system, point.integration.task.start)
+        keeper = Keeper(path, checkpoint, point.drive, point.compare_steady, resumes=True)
+        _integrate(point.integration, recording, keeper)
+        _end(recording, point.drive, point.compare_steady)
+    return recording.run()
+
+
+def _steady_running(drive: Drive) -> dict[str, object]:
+    """Attributes that tell of the steady running under the speeds and loads at the end, or why there is none."""
+    try:
+        return {VALUES: steady_values(steady_state(with_instant(drive)))}
+    except (ConvergenceError, ModelError) as error:
+        return {FAILURE: str(error)}
+
+
+def _steady_losses(drive: Drive) -> dict[str, object]:
+    """Attributes that tell of losses and slip in steady running at the end; none where there is no steady running."""
+    try:
+        return dict(steady_losses(steady_state(with_instant(drive))))
+    except (ConvergenceError, ModelError):
+        return {}
+
+
+def choose_integrator(drive: Drive) -> Integrator:
+    """The integrator that a drive file asks for.
+
+    Parameters
+    ----------
+    drive
+        The drive.
+
+    Returns
+    -------
+    Integrator
+        `GeneralizedAlpha` or a `StandardIntegrator`.
+    """
+    return INTEGRATORS[drive.simulation.integrator](drive.simulation)
+
+
+def _generalized_alpha(settings: Simulation) -> Integrator:
+    return GeneralizedAlpha(settings.spectral_radius, settings.rtol, settings.max_step)
+
+
+def _standard(name: Name) -> Callable[[Simulation], Integrator]:
+    return lambda settings: StandardIntegrator(name, settings.rtol, settings.max_step)
+
+
+INTEGRATORS: Mapping[str, Callable[[Simulation], Integrator]] = {
+    "generalized_alpha": _generalized_alpha,
+    **{name: _standard(name) for name in get_args(Name)},
+}
+"""What each name of an integrator in a drive file stands for."""

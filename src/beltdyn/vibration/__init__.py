@@ -1,0 +1,1 @@
+"""Small vibrations about a state: modes, Campbell diagram, forced response."""

@@ -1,0 +1,334 @@
+"""Modes of a drive about rest, steady running or a state of a run: frequency, damping and shape."""
+
+from collections.abc import Callable
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from beltdyn.arrays import BoolArray, ComplexArray, IntArray
+from beltdyn.errors import ConvergenceError, ModelError
+from beltdyn.model import Drive
+from beltdyn.parts.quantity import RPM, numbers_in
+from beltdyn.points.changed_drive import at_speed, driver_of, held_at, sense_of
+from beltdyn.results import Result, Run, Variable, build_result
+from beltdyn.results.schema import AXIS_NAMES, COORDINATES, runs_steadily
+from beltdyn.solvers.eigenvalues import LIGHT, MOST_SWINGING, lightly_damped, pencil, swinging, swings
+from beltdyn.solvers.progress import Report
+from beltdyn.state.steady import steady_state
+from beltdyn.transient.earlier_run import instant_of
+from beltdyn.vibration.mode_shapes import Points, Shapes, Shares, belt_points, part_names, shapes_of, shares_of
+from beltdyn.vibration.small_motions import (
+    SmallMotions,
+    about_instant,
+    about_rest,
+    about_steady,
+    dry_tensioners,
+    require_mesh_that_stays,
+)
+
+# Modes of small motions about a state, with sliding and with stuck tensioners, as a result
+
+SLIDING: str = "sliding"
+STUCK: str = "stuck"
+"""Whether tensioners with dry friction move in a mode, without it, or are held by it."""
+FIRST_STUCK = MOST_SWINGING + 2
+"""Number of the first mode with stuck tensioners, however many there are with sliding ones."""
+_GROUPS = (f"lightly damped (damping ratio below {LIGHT:g})", f"heavily damped ({LIGHT:g} or above: barely resonates)")
+_GROWS = 1e-6
+"""Growth rate of a mode that grows by itself, over its angular frequency."""
+_MODE = ("mode",)
+
+VARIABLES = {
+    "frequency": Variable(_MODE, "Hz", "Frequency"),
+    "damping_ratio": Variable(_MODE, "1", "Damping ratio"),
+    "damping": Variable(_MODE, "1", "Damping class", "str"),
+    "growth_rate": Variable(_MODE, "1/s", "Growth rate, negative for decaying modes"),
+    "kind": Variable(_MODE, "1", "Kind, by shares of kinetic energy", "str"),
+    "moving_parts": Variable(_MODE, "1", "Parts with most of the energy", "str"),
+    "dry_tensioners": Variable(_MODE, "1", "Tensioners with dry friction", "str"),
+    "span_share": Variable((*_MODE, "span"), "1", "Share of kinetic energy, transverse motion of the span"),
+    "pulley_share": Variable((*_MODE, "pulley"), "1", "Share of kinetic energy, rotation of the pulley"),
+    "belt_share": Variable((*_MODE, "whole"), "1", "Share of kinetic energy, longitudinal motion of the belt"),
+    "tensioner_share": Variable((*_MODE, "tensioner"), "1", "Share of kinetic energy, tensioner"),
+    "belt_shape": Variable((*_MODE, "part", "point"), "1", "Displacement of the belt to its left"),
+    "rim_shape": Variable((*_MODE, "part", "pulley"), "1", "Displacement of the rim, counter-clockwise"),
+    "tensioner_shape": Variable((*_MODE, "part", "tensioner"), "1", "Displacement of the tensioned pulley"),
+    "point_position": Variable(("point", "axis"), "m", "Position of the belt points"),
+    "point_normal": Variable(("point", "axis"), "1", "Unit vector to the left of the belt"),
+    "point_span": Variable(("point",), "1", "Number of the span, or of that behind the arc", "int64"),
+}
+"""What is known of modes; shapes are real and imaginary parts, over the largest displacement of the mode."""
+
+_COORDINATES = {
+    "mode": Variable(_MODE, "1", "Mode", "int64"),
+    "part": Variable(("part",), "1", "Real or imaginary part", "str"),
+    "axis": COORDINATES["axis"],
+    "pulley": COORDINATES["pulley"],
+    "span": COORDINATES["span"],
+    "tensioner": COORDINATES["tensioner"],
+    "point_coordinate": Variable(("point",), "m", "Belt coordinate of the point, unstretched"),
+}
+
+
+class _Found(NamedTuple):
+    """Modes of a drive with tensioners that slide or stick."""
+
+    values: ComplexArray
+    shapes: Shapes
+    shares: Shares
+    dry: str
+
+
+def modes_about(motions: SmallMotions, count: int) -> Result:
+    """Find the modes of small motions about a state, with sliding and with stuck tensioners.
+
+    Parameters
+    ----------
+    motions
+        The drive about the state.
+    count
+        How many lightly damped modes to give, from the lowest frequency on.
+    """
+    points, dry = belt_points(motions), dry_tensioners(motions.drive)
+    found = [_find(motions, points, count, SLIDING if dry.size else "")]
+    if dry.size:
+        found.append(_find(motions.with_stuck(dry), points, count, STUCK))
+    return _result(motions, points, found)
+
+
+def eigenmodes(
+    motions: SmallMotions, count: int, *, counted: Callable[[ComplexArray], BoolArray] = swings
+) -> tuple[ComplexArray, ComplexArray]:
+    """Modes of a drive about a state, from the lowest frequency on.
+
+    Parameters
+    ----------
+    motions
+        The drive about the state.
+    count
+        How many of those that are counted, at most.
+    counted
+        As for `swinging`.
+
+    Returns
+    -------
+    values : ndarray, shape (k,)
+        Growth rate and angular frequency, 1/s.
+    coordinates : ndarray, shape (n, k)
+        Unknowns of the eigenvectors.
+
+    Raises
+    ------
+    ConvergenceError
+        If nothing swings.
+    """
+    given = pencil(motions.stiffness, motions.damping, motions.mass, motions.free)
+    values, vectors = swinging(given, count, counted=counted)
+    if not values.size:
+        raise ConvergenceError("the drive has no oscillating mode. Check its masses, stiffnesses and damping.")
+    return values, given.coordinates(values, vectors)
+
+
+def _find(motions: SmallMotions, points: Points, count: int, dry: str) -> _Found:
+    """Modes of a drive about a state."""
+    values, coordinates = eigenmodes(motions, count, counted=lightly_damped)
+    shapes = shapes_of(motions, points, coordinates)
+    return _Found(values, shapes, shares_of(motions, points, values, coordinates), dry)
+
+
+def _result(motions: SmallMotions, points: Points, found: list[_Found]) -> Result:
+    """Modes as a result: lightly damped ones first, of these those with sliding tensioners."""
+    drive, values = motions.drive, np.concatenate([one.values for one in found])
+    shapes = Shapes(*(np.concatenate(parts) for parts in zip(*(one.shapes for one in found), strict=True)))
+    shares = Shares(*(np.concatenate(parts) for parts in zip(*(one.shares for one in found), strict=True)))
+    each, names = [shares.of(number) for number in range(values.size)], part_names(drive)
+    light = lightly_damped(values)
+    firsts = (1, FIRST_STUCK)[: len(found)]
+    numbers = np.concatenate([first + np.arange(one.values.size) for first, one in zip(firsts, found, strict=True)])
+    tensioners = [one.pulley for one in drive.moving_tensioners]
+    arrays: dict[str, ArrayLike] = {
+        "frequency": values.imag / (2.0 * np.pi),
+        "damping_ratio": -values.real / np.abs(values),
+        "damping": [_GROUPS[0 if one else 1] for one in light],
+        "growth_rate": values.real,
+        "kind": [one.kind for one in each],
+        "moving_parts": [one.parts(names) for one in each],
+        "dry_tensioners": [one.dry for one in found for _ in one.values],
+        "span_share": shares.span,
+        "pulley_share": shares.pulley,
+        "belt_share": shares.belt[:, None],
+        "tensioner_share": shares.tensioner,
+        "belt_shape": _parts(shapes.belt),
+        "rim_shape": _parts(shapes.rims),
+        "tensioner_shape": _parts(shapes.tensioners),
+        "point_position": points.place,
+        "point_normal": points.normal,
+        "point_span": points.span,
+    }
+    labels: dict[str, ArrayLike] = {
+        "mode": numbers,
+        "part": ["real", "imaginary"],
+        "axis": list(AXIS_NAMES),
+        "pulley": [one.name for one in drive.pulleys],
+        "span": ["-".join(span) for span in drive.spans],
+        "tensioner": tensioners,
+        "point_coordinate": points.along,
+    }
+    absent = {*(() if tensioners else ("tensioner",)), *(() if found[0].dry else ("dry_tensioners",))}
+    made = build_result(
+        "modes",
+        drive,
+        {name: (one, arrays[name]) for name, one in VARIABLES.items() if absent.isdisjoint((name, *one.dims))},
+        {name: (one, labels[name]) for name, one in _COORDINATES.items() if name not in absent},
+        list(_warnings(numbers, values)),
+    )
+    ordered = made.dataset.isel(mode=np.argsort(~light, kind="stable")).assign_attrs(
+        tables_by="damping", mesh_elements=motions.system.nodes
+    )
+    return Result(ordered, drive)
+
+
+def _parts(shape: ComplexArray) -> ArrayLike:
+    """Real and imaginary parts along a second axis."""
+    return np.stack([shape.real, shape.imag], axis=1)
+
+
+def _warnings(numbers: IntArray, values: ComplexArray) -> list[str]:
+    """What grows by itself."""
+    growing = [(number, one.real) for number, one in zip(numbers, values, strict=True) if one.real > _GROWS * one.imag]
+    if not growing:
+        return []
+    named = ", ".join(f"{number} ({rate:.3g} 1/s)" for number, rate in growing)
+    return [
+        f"unstable modes: {named}. The drive does not remain in this state. Add damping, or simulate it over "
+        "time with `beltdyn run`."
+    ]
+
+
+REST: str = "rest"
+STEADY: str = "steady"
+
+
+def modes(
+    drive: Drive | Run,
+    *,
+    about: str | Run = STEADY,
+    speed: str | None = None,
+    pulley: str | None = None,
+    at: float | str | None = None,
+    count: int = 12,
+    force_tolerance: float | None = None,
+    progress: Report | None = None,
+) -> Result:
+    """Compute the modes of a drive: frequency, damping ratio and shape.
+
+    Small vibrations about a steady state: at rest with a belt that sticks to its pulleys, or in steady running with its
+    creep and sliding. Pulleys of prescribed speed do not vibrate. For tensioners with dry friction modes are given
+    twice: with tensioners sliding without friction, and with stuck tensioners.
+
+    Modes are numbered by frequency, those with stuck tensioners from 101. Modes with a damping ratio below 0.5 come
+    first, then those that barely resonate, such as tensioner motions damped by belt creep.
+
+    Parameters
+    ----------
+    drive
+        The drive, or a run, which gives the drive and `about`.
+    about
+        "steady" or "rest"; or the result of `steady_state`, or of a run over time on a staying mesh, whose drive is
+        then used. The state of a run at an instant is treated as a steady state.
+    speed
+        Speed of the driver, such as "800 rpm", in place of its motor; by default that of the drive file.
+    pulley
+        The pulley whose speed is prescribed by `speed`; by default the driver.
+    at
+        Instant at which loads and schedules are evaluated, such as "0.5 s", or in s; by default the end of the
+        simulation. For a run over time an instant of its outputs along the belt, by default the last.
+    count
+        Number of lightly damped modes, from the lowest frequency, up to 99. Heavily damped modes in between are
+        included, up to 99 modes in total.
+    force_tolerance
+        Tolerance of contact forces, relative to the largest on each pulley, to which the mesh of steady running is
+        refined; by default that of the drive, 0.01.
+    progress
+        Called repeatedly with a `Progress`.
+
+    Returns
+    -------
+    Result
+        Variables along ``mode``.
+
+    Raises
+    ------
+    ModelError
+        If the belt is open, the drive cannot run steadily, or options are incompatible.
+    ConvergenceError
+        If there is no such state, or no oscillating mode.
+
+    Examples
+    --------
+    >>> found = bd.modes(drive, about="rest", count=3)
+    >>> found.dataset.frequency.values.round(1).tolist()  # Hz
+    [9.2, 21.0, 21.0]
+    >>> found.dataset.kind.values.tolist()
+    ['rotational', 'span', 'span']
+    """
+    given = drive.drive_as_given if isinstance(drive, Run) else drive.text
+    if isinstance(drive, Run):
+        if about != STEADY:
+            raise ModelError("about cannot be given with a run, which is itself the state. Omit about.")
+        about, drive = drive, drive.drive
+    _require_sense(about, speed, pulley, at, count)
+    if isinstance(about, Run) and not runs_steadily(about.dataset):
+        require_mesh_that_stays(about)
+        drive, instant = about.drive, instant_of(about, at)
+        motions, state = about_instant(about, instant), f"in its run at t = {instant:.6g} s"
+    elif isinstance(about, Run):
+        motions, state = about_steady(about), _running(about)
+    elif about == REST:
+        motions, state = about_rest(drive), "at rest"
+    else:
+        held = drive if speed is None else _at_speed(drive, speed, pulley, at)
+        run = steady_state(held, at=at, force_tolerance=force_tolerance, progress=progress)
+        motions, state = about_steady(run), _running(run)
+    result = modes_about(motions, count)
+    told = {"title": f"Modes of {drive.title}, {state}", "drive_as_given": given}
+    return Result(result.dataset.assign_attrs(told), result.drive)
+
+
+def _require_sense(about: str | Run, speed: str | None, pulley: str | None, at: float | str | None, count: int) -> None:
+    """Make sure that the options make sense."""
+    if count < 1:
+        raise ModelError(f"count = {count} must be 1 or more.")
+    if count > MOST_SWINGING:
+        raise ModelError(f"count = {count} exceeds the limit of {MOST_SWINGING} modes. Give fewer.")
+    if not isinstance(about, Run) and about not in (REST, STEADY):
+        raise ModelError(
+            f'about = {about!r} is not a state. Give "{REST}", "{STEADY}", or a result of `steady_state` or `simulate`.'
+        )
+    if isinstance(about, Run) and not runs_steadily(about.dataset):
+        if speed is not None or pulley is not None:
+            raise ModelError(
+                "speed and pulley cannot be given with a run over time, which has its own speeds. Omit them."
+            )
+    elif about != STEADY and any(one is not None for one in (speed, pulley, at)):
+        raise ModelError(f'speed, pulley and at require about = "{STEADY}". Omit them.')
+    if pulley is not None and speed is None:
+        raise ModelError(f"pulley = {pulley!r} needs a speed to prescribe. Give speed.")
+
+
+def _at_speed(drive: Drive, speed: str, pulley: str | None, at: float | str | None) -> Drive:
+    """The drive with a pulley at a speed."""
+    values = numbers_in("speed", speed, "rad/s", 2)
+    if values.size > 1:
+        raise ModelError(f'speed = {speed!r} must be a single speed, such as "800 rpm".')
+    held = held_at(drive, at)
+    number = driver_of(held) if pulley is None else held.number_of(pulley)
+    return at_speed(held, number, sense_of(held, number) * float(values[0]))
+
+
+def _running(run: Run) -> str:
+    """The state of steady running in words."""
+    driver = run.drive.reference
+    name, speed = run.drive.pulleys[driver].name, float(run.dataset["pulley_speed"][-1, driver])
+    return f"in steady running with {name} at {RPM * speed:.4g} rpm"

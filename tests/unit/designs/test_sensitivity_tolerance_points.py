@@ -1,0 +1,50 @@
+"""Monte Carlo on tolerances against the spread by derivatives."""
+
+import pytest
+
+from beltdyn.designs.sensitivity import require_points, sensitivity
+from beltdyn.errors import ModelError
+from beltdyn.model import Drive, dumps, loads
+from beltdyn.results import Result
+from validation.published.cases import better, loaded_two_pulley
+
+COUNT = 32
+
+
+@pytest.fixture(scope="module")
+def toleranced() -> Drive:
+    drive = better(loaded_two_pulley())
+    text = dumps(drive.replace(belt=drive.belt.replace(length=None, installed_tension=600.0)))
+    assert text.count("installed_tension = 600.0") == text.count("friction = 1.2") == 1
+    return loads(
+        text.replace("installed_tension = 600.0", 'installed_tension = "600 ± 12 N"').replace(
+            "friction = 1.2", 'friction = "1.2 ± 3 %"'
+        )
+    )
+
+
+@pytest.fixture(scope="module")
+def found(toleranced: Drive) -> Result:
+    numbers = "belt.installed_tension, contact.friction"
+    return sensitivity(toleranced, of="hub_load, least_slip_safety, largest_tension", numbers=numbers, sobol=COUNT)
+
+
+def test_both_spreads_agree(found: Result) -> None:
+    """Randomised Sobol points of two numbers have a deviation within a few per cent of the true one."""
+    values = found.dataset
+    assert values.spread_of_points.values == pytest.approx(values.spread.values, rel=0.06)
+    assert values.mean_of_points.values == pytest.approx(values["value"].values, rel=2e-3)
+
+
+def test_a_hub_carries_the_tension_twice(found: Result) -> None:
+    """Straight spans: dH = 2 dT; friction takes no part in it."""
+    spread = float(found.dataset.spread.sel(result="hub_load[driven]"))
+    assert spread == pytest.approx(2.0 * 12.0, rel=0.02)
+
+
+def test_points_need_tolerances_and_a_power_of_two(toleranced: Drive) -> None:
+    with pytest.raises(ModelError, match="sobol = 12 must be a power of two"):
+        require_points(12)
+    without = better(loaded_two_pulley())
+    with pytest.raises(ModelError, match="the drive file has none"):
+        sensitivity(without, sobol=4)

@@ -1,0 +1,266 @@
+"""A study: files that grow as points finish, and go on where they were."""
+
+import csv
+import os
+import signal
+import subprocess
+import sys
+import time
+from collections.abc import Mapping
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from beltdyn.designs import point_work
+from beltdyn.designs.study import study
+from beltdyn.designs.worker import ThisProcess
+from beltdyn.errors import ModelError
+from beltdyn.model import Drive, ParameterStudy
+from beltdyn.results import Result, open_result
+from beltdyn.solvers.progress import Progress
+from beltdyn.state.equilibrium import equilibrium
+
+STUDY = """
+drive = "drive.toml"
+analysis = "static"
+results = ["hub_load", "tension"]
+
+[[number]]
+path = "belt.width"
+values = "10, 12, 14 mm"
+
+[[number]]
+path = "pulley[driver].radius"
+values = [0.081, 0.0815, -1.0]
+"""
+
+
+@pytest.fixture
+def study_file(tmp_path: Path, drive_file: Path) -> Path:
+    """Of nine points of which three fail."""
+    file = tmp_path / "study.toml"
+    text = STUDY.replace("-1.0", "0.08")  # the belt would hang slack
+    file.write_text(text, encoding="utf-8")
+    return file
+
+
+def rows_of(path: Path) -> list[dict[str, str]]:
+    with path.open(encoding="utf-8", newline="") as file:
+        return list(csv.DictReader(file))
+
+
+def counted(monkeypatch: pytest.MonkeyPatch) -> list[Mapping[str, object]]:
+    """Notes the points that are computed from now on."""
+    computed: list[Mapping[str, object]] = []
+    inner = point_work._analysed
+
+    def analysed(work: point_work.PointWork, point: int, changes: Mapping[str, object]) -> Result:
+        computed.append(changes)
+        return inner(work, point, changes)
+
+    monkeypatch.setattr(point_work, "_analysed", analysed)
+    return computed
+
+
+def test_points_are_those_of_single_analyses(study_file: Path, drive: Drive) -> None:
+    found = study(study_file, jobs=1).dataset
+    assert found.sizes["point"] == 9
+    one = equilibrium(drive.with_({"belt.width": 0.012, "pulley[driver].radius": 0.0815}))
+    place = int(np.flatnonzero((found["belt.width"] == 0.012) & (found["pulley[driver].radius"] == 0.0815))[0])
+    assert float(found["hub_load[driven]"][place]) == float(one.dataset["hub_load"][1])
+    assert found["hub_load[driven]"].attrs["units"] == "N"
+    assert found["belt.width"].attrs["units"] == "m"
+    failed = found["failure"].values != ""
+    assert failed.sum() == 3
+    assert np.isnan(found["tension"].values[failed]).all()
+    assert np.isfinite(found["tension"].values[~failed]).all()
+    assert np.unique(found["pulley[driver].radius"].values[failed]).tolist() == [0.08]
+
+
+def test_files_hold_all_points_and_are_read_again(study_file: Path, tmp_path: Path) -> None:
+    result = study(study_file, output=tmp_path / "s.nc", jobs=1)
+    rows = rows_of(tmp_path / "s.csv")
+    assert [row["point"] for row in rows] == [str(number) for number in range(1, 10)]
+    assert [row["tension [N]"] for row in rows][:2] == [repr(float(one)) for one in result.dataset["tension"][:2]]
+    assert rows[2]["tension [N]"] == ""
+    assert rows[2]["failure"]
+    opened = open_result(tmp_path / "s.nc")
+    assert opened.kind == "study"
+    assert opened.status == "completed"
+    assert opened.dataset["tension"].equals(result.dataset["tension"])
+    assert opened.warnings[0] == "3 of 9 points failed."
+
+
+def test_nothing_is_computed_twice(study_file: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    first = study(study_file, output=tmp_path / "s.nc", jobs=1)
+    computed = counted(monkeypatch)
+    again = study(study_file, output=tmp_path / "s.nc", jobs=1)
+    assert computed == []
+    assert again.dataset["tension"].equals(first.dataset["tension"])
+    study_file.write_text(study_file.read_text(encoding="utf-8").replace("14 mm", "14, 16 mm"), encoding="utf-8")
+    more = study(study_file, output=tmp_path / "s.nc", jobs=1)
+    assert [one["belt.width"] for one in computed] == [0.016] * 3
+    assert int(more.dataset.attrs["done"]) == 12
+    study(study_file, output=tmp_path / "s.nc", jobs=1, retry=True)
+    assert len(computed) == 3 + 4
+
+
+@pytest.mark.parametrize("row", [1, 4, 9])
+def test_a_damaged_row_is_computed_again(
+    row: int, study_file: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """A digit that has changed on the disk never becomes a result."""
+    first = study(study_file, output=tmp_path / "s.nc", jobs=1)
+    lines = (tmp_path / "s.csv").read_text(encoding="utf-8").splitlines(keepends=True)
+    place = lines[row].rindex("0.")
+    lines[row] = lines[row][: place + 2] + chr(ord(lines[row][place + 2]) ^ 1) + lines[row][place + 3 :]
+    (tmp_path / "s.csv").write_text("".join(lines), encoding="utf-8")
+    computed = counted(monkeypatch)
+    again = study(study_file, output=tmp_path / "s.nc", jobs=1)
+    assert len(computed) == 1
+    assert again.dataset["tension"].equals(first.dataset["tension"])
+
+
+def test_rows_under_a_damaged_head_are_refused(study_file: Path, tmp_path: Path) -> None:
+    study(study_file, output=tmp_path / "s.nc", jobs=1)
+    text = (tmp_path / "s.csv").read_text(encoding="utf-8")
+    (tmp_path / "s.csv").write_text(text.replace("tension [N]", "tensiom [N]", 1), encoding="utf-8")
+    with pytest.raises(ModelError, match="is damaged: no row has its checksum"):
+        study(study_file, output=tmp_path / "s.nc", jobs=1)
+
+
+def test_a_row_that_was_cut_off_is_computed_again(
+    study_file: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    first = study(study_file, output=tmp_path / "s.nc", jobs=1)
+    text = (tmp_path / "s.csv").read_text(encoding="utf-8")
+    (tmp_path / "s.csv").write_text(text[: text.rindex("\n", 0, -1) - 30], encoding="utf-8")
+    computed = counted(monkeypatch)
+    again = study(study_file, output=tmp_path / "s.nc", jobs=1)
+    assert len(computed) == 2
+    assert again.dataset["tension"].equals(first.dataset["tension"])
+    assert len(rows_of(tmp_path / "s.csv")) == 9
+
+
+@pytest.mark.parametrize(
+    ("before", "after", "said"),
+    [
+        ('["hub_load", "tension"]', '["tension"]', "another drive, analysis or list of results"),
+        ("10, 12, 14 mm", "10, 12 mm", "no longer in the study"),
+        ('path = "belt.width"', 'path = "belt.thickness"', "holds no points of this study"),
+    ],
+)
+def test_points_of_another_study_are_not_lost(
+    study_file: Path, tmp_path: Path, before: str, after: str, said: str
+) -> None:
+    study(study_file, output=tmp_path / "s.nc", jobs=1)
+    kept = (tmp_path / "s.csv").read_bytes()
+    study_file.write_text(study_file.read_text(encoding="utf-8").replace(before, after), encoding="utf-8")
+    with pytest.raises(ModelError, match=said):
+        study(study_file, output=tmp_path / "s.nc", jobs=1)
+    assert (tmp_path / "s.csv").read_bytes() == kept
+    assert study(study_file, output=tmp_path / "s.nc", jobs=1, overwrite=True).status == "completed"
+
+
+def test_an_interruption_keeps_points_and_goes_on(study_file: Path, tmp_path: Path) -> None:
+    def stop(progress: Progress) -> None:
+        if progress.phase == "points" and progress.time >= 4.0:
+            raise KeyboardInterrupt
+
+    stopped = study(study_file, output=tmp_path / "s.nc", jobs=1, progress=stop)
+    assert stopped.status == "interrupted"
+    done = len(rows_of(tmp_path / "s.csv"))
+    assert 4 <= done < 9
+    assert open_result(tmp_path / "s.nc").status == "interrupted"
+    told: list[Progress] = []
+    assert study(study_file, output=tmp_path / "s.nc", jobs=1, progress=told.append).status == "completed"
+    assert next(one.time for one in told if one.phase == "points") > done
+    assert told[-1].time == told[-1].duration == 9.0
+
+
+def test_a_study_waits_for_workers_and_says_so(study_file: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    class Late(ThisProcess):
+        asked = 0
+
+        @property
+        def slots(self) -> int:  # type: ignore[override]
+            self.asked += 1
+            return int(self.asked > 6)
+
+    monkeypatch.setitem(study.__globals__, "workers_of", lambda jobs, scheduler: Late())
+    told: list[Progress] = []
+    found = study(study_file, progress=told.append).dataset
+    phases = [one.phase for one in told]
+    assert phases[1] == "no workers"
+    assert phases[-1] == "points"
+    assert phases == sorted(phases, key=("compiling", "no workers", "points").index)
+    assert np.isfinite(found["tension"]).sum() == 6
+
+
+@pytest.mark.slow
+def test_a_study_that_is_killed_goes_on(study_file: Path, tmp_path: Path) -> None:
+    """With processes of its own, which end with it."""
+    text = study_file.read_text(encoding="utf-8").replace("10, 12, 14 mm", "10..14 mm")
+    study_file.write_text(text.replace('values = "10..14 mm"', 'values = "10..14 mm"\nsteps = 60'), encoding="utf-8")
+    program = f"import beltdyn as bd; bd.study({str(study_file)!r}, output={str(tmp_path / 's.nc')!r}, jobs=2)"
+    process = subprocess.Popen([sys.executable, "-c", program])
+    rows = tmp_path / "s.csv"
+    while process.poll() is None and (not rows.exists() or rows.read_text(encoding="utf-8").count("\n") < 10):
+        time.sleep(0.02)
+    os.kill(process.pid, signal.SIGKILL)
+    process.wait()
+    before = rows.read_text(encoding="utf-8").count("\n") - 1
+    assert 9 <= before < 180
+    result = study(study_file, output=tmp_path / "s.nc", jobs=1)
+    assert result.status == "completed"
+    points = [row["point"] for row in rows_of(rows)]
+    assert sorted(points, key=int) == [str(number) for number in range(1, 181)]
+
+
+def test_files_of_points_are_kept_where_asked_for(study_file: Path, tmp_path: Path) -> None:
+    study_file.write_text("keep_files = true\n" + study_file.read_text(encoding="utf-8"), encoding="utf-8")
+    with pytest.raises(ModelError, match="needs a result file"):
+        study(study_file, jobs=1)
+    study(study_file, output=tmp_path / "s.nc", jobs=1)
+    kept = sorted((tmp_path / "s-points").glob("*.nc"))
+    assert [one.name for one in kept] == [f"{number:06d}.nc" for number in (1, 2, 4, 5, 7, 8)]
+    assert open_result(kept[3]).drive.belt.width == 0.012
+
+
+@pytest.mark.parametrize(
+    ("changes", "said"),
+    [
+        ({"results": ["hub_laod"]}, 'Did you mean "hub_load"'),
+        ({"options": {"att": 1.0}}, "att is not an option"),
+        ({"analysis": "traction", "options": {"slop": "1 %"}}, "slop is not an option"),
+        ({"analysis": "sweep"}, '"sweep" needs pulley'),
+    ],
+)
+def test_what_does_not_fit_is_told(drive: Drive, changes: dict[str, object], said: str) -> None:
+    given = {"analysis": "static", "number": [{"path": "belt.width", "values": [0.01]}]} | changes
+    with pytest.raises(ModelError, match=said):
+        study(ParameterStudy(**given), drive, jobs=1)
+
+
+def test_a_study_needs_a_drive(drive: Drive) -> None:
+    given = ParameterStudy(number=[{"path": "belt.width", "values": [0.01]}])
+    with pytest.raises(ModelError, match="names no drive"):
+        study(given)
+
+
+def test_modes_and_steady_running_are_studied_alike(drive: Drive) -> None:
+    numbers = [{"path": "belt.width", "values": [0.01, 0.02]}]
+    found = study(
+        ParameterStudy(number=numbers, analysis="modes", results=["frequency"], options={"count": 3}), drive, jobs=1
+    )
+    assert [name for name in found.dataset.data_vars if str(name).startswith("frequency[")] == [
+        "frequency[1]",
+        "frequency[2]",
+        "frequency[3]",
+    ]
+    steady = study(ParameterStudy(number=numbers, analysis="steady", results=["hub_load[driven]"]), drive, jobs=1)
+    assert steady.dataset["hub_load[driven]"].values[1] == pytest.approx(
+        2.0 * steady.dataset["hub_load[driven]"].values[0],
+        rel=0.1,  # but for the centrifugal tension
+    )

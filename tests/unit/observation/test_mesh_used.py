@@ -1,0 +1,97 @@
+"""Results name the mesh and the elements that they are from, whatever analysis and elements a drive asks for."""
+
+from collections.abc import Callable, Mapping
+from typing import Any
+
+import pytest
+
+from beltdyn import equilibrium, modes, simulate, steady_state
+from beltdyn.elements import ELEMENTS
+from beltdyn.model import Drive
+from beltdyn.results import Result
+from beltdyn.show.sheet import Facts, sheet
+
+Change = Callable[..., Drive]
+ASKED = (None, *ELEMENTS)
+QUICK = (None, "truss")
+"""Elements that other tests have compiled."""
+FLOWING: Mapping[str, Callable[[Drive], Result]] = {
+    "steady": lambda drive: steady_state(drive, at=1.0),
+    "modes": lambda drive: modes(drive, about="rest", count=2),
+}
+"""Analyses about rest or steady running, on a mesh that stays."""
+SLOW = [pytest.param(one, marks=() if one in QUICK else pytest.mark.slow) for one in ASKED]
+
+
+@pytest.fixture
+def asked(change: Change) -> Callable[[str | None], Drive]:
+    """The paper's drive with its mesh left open and elements of a kind, or of none."""
+
+    def drive(kind: str | None) -> Drive:
+        data: dict[str, Any] = change().model_dump(by_alias=True, exclude_none=True)
+        del data["simulation"]["frame"]
+        return Drive(**data | {"belt": data["belt"] | ({"discretization": kind} if kind else {})})
+
+    return drive
+
+
+def mesh_of(result: Result) -> tuple[str, str, str]:
+    """Frame, elements and what is unused, as the attributes say, of elements that the coordinates are those of."""
+    said = result.dataset.attrs
+    if "coordinate" in result.dataset.coords:
+        assert tuple(result.dataset["coordinate"].values) == ELEMENTS[said["mesh_element"]].coordinates
+        assert ELEMENTS[said["mesh_element"]].curves * said["mesh_elements"] == result.dataset.sizes["element"]
+    facts = dict(fact for part in sheet(result).parts if isinstance(part, Facts) for fact in part.facts)
+    assert facts["mesh"].startswith(f"{said['mesh_elements']} {said['mesh_element']} elements, {said['mesh_frame']}")
+    assert ("not used" in facts) == bool(said["mesh_unused"])
+    return said["mesh_frame"], said["mesh_element"], said["mesh_unused"]
+
+
+@pytest.mark.parametrize("kind", ASKED)
+@pytest.mark.parametrize("analysis", FLOWING)
+def test_analyses_about_rest_and_steady_running_have_a_mesh_that_stays(
+    asked: Callable[[str | None], Drive], analysis: str, kind: str | None
+) -> None:
+    """What elements the drive asks for in runs, they say that these are not used."""
+    unused = "" if kind in (None, "quintic") else f'belt.discretization = "{kind}"'
+    assert mesh_of(FLOWING[analysis](asked(kind))) == ("staying", "quintic", unused)
+
+
+@pytest.mark.parametrize("kind", SLOW)
+def test_rest_on_equal_elements_has_those_that_are_asked_for(
+    asked: Callable[[str | None], Drive], kind: str | None
+) -> None:
+    assert mesh_of(equilibrium(asked(kind))) == ("travelling", kind or "ancf", "")
+
+
+@pytest.mark.parametrize("kind", SLOW)
+def test_a_run_has_the_mesh_that_its_elements_need(asked: Callable[[str | None], Drive], kind: str | None) -> None:
+    stays = kind in (None, "quintic")
+    run = simulate(asked(kind))
+    assert mesh_of(run) == ("staying" if stays else "travelling", kind or "quintic", "")
+    assert run.dataset.attrs["mesh_frame_reason"] == ("" if stays else f'since belt.discretization = "{kind}"')
+
+
+def test_a_mesh_that_is_to_stay_tells_of_elements_that_it_does_not_have(change: Change) -> None:
+    run = simulate(change(belt={"discretization": "truss"}, simulation={"frame": "staying"}))
+    assert mesh_of(run) == ("staying", "quintic", 'belt.discretization = "truss"')
+    assert run.dataset.attrs["mesh_frame_reason"] == "as given"
+
+
+def test_other_integrators_take_a_mesh_that_travels(asked: Callable[[str | None], Drive]) -> None:
+    drive = asked(None)
+    other = drive.replace(simulation=drive.simulation.replace(integrator="cvode"))
+    run = simulate(other)
+    assert mesh_of(run) == ("travelling", "ancf", "")
+    assert run.dataset.attrs["mesh_frame_reason"] == 'since simulation.integrator = "cvode"'
+
+
+def test_a_run_goes_on_on_the_mesh_of_that_in_which_it_begins(change: Change, tmp_path: Any) -> None:
+    """Though the drive leaves its mesh open."""
+    before = simulate(change(), tmp_path / "before.nc")
+    start = {"file": str(before.path)}
+    data = change(simulation={"start": start}).model_dump(by_alias=True, exclude_none=True)
+    del data["simulation"]["frame"]
+    run = simulate(Drive(**data))
+    assert mesh_of(run) == ("travelling", "ancf", "")
+    assert run.dataset.attrs["mesh_frame_reason"] == "as in the run it continues"

@@ -1,0 +1,74 @@
+"""Duty tables: what they hold, and means weighted by durations."""
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from beltdyn.errors import ModelError
+from beltdyn.model import Drive
+from beltdyn.points.duty import duty, read_duty
+from validation.published.cases import better, loaded_two_pulley
+
+TABLE = "duration [min], driver speed [rpm], load, driven torque [N m]\n# comment\n2, 1000, 1, -20\n1, 600, 1, -40\n"
+
+
+@pytest.fixture
+def table(tmp_path: Path) -> Path:
+    file = tmp_path / "duty.csv"
+    file.write_text(TABLE, encoding="utf-8")
+    return file
+
+
+def test_columns_in_si_units(table: Path) -> None:
+    columns = read_duty(table)
+    assert [(one.what, one.pulley) for one in columns] == [
+        ("duration", ""),
+        ("speed", "driver"),
+        ("load", ""),
+        ("torque", "driven"),
+    ]
+    assert columns[0].values == [120.0, 60.0]
+    np.testing.assert_allclose(columns[1].values, np.array([1000.0, 600.0]) * np.pi / 30.0)
+
+
+def test_means(table: Path) -> None:
+    drive: Drive = better(loaded_two_pulley())
+    found = duty(drive, table=table).dataset
+    np.testing.assert_allclose(found.shaft_torque.sel(pulley="driven"), [-20.0, -40.0])
+    np.testing.assert_allclose(found.pulley_speed.sel(pulley="driver"), np.array([1000.0, 600.0]) * np.pi / 30.0)
+    np.testing.assert_allclose(found.duration, [120.0, 60.0])
+    weights = np.array([2.0, 1.0]) / 3.0
+    assert float(found.mean_power_in) == pytest.approx(weights @ found.power_in.values)
+    assert float(found.mean_efficiency) == pytest.approx(
+        (weights @ found.power_out.values) / (weights @ found.power_in.values)
+    )
+    np.testing.assert_allclose(found.mean_hub_load, weights @ found.hub_load.values)
+    load, turns = found.hub_load.values[:, 0], weights * found.pulley_speed.values[:, 0]
+    cubic = (turns @ load**3 / turns.sum()) ** (1.0 / 3.0)
+    assert float(found.equivalent_hub_load[0]) == pytest.approx(cubic)
+
+
+@pytest.mark.parametrize(
+    ("text", "words"),
+    [
+        ("duration [s]\n", "has no rows"),
+        ("load\n1\n", 'needs one column "duration'),
+        ("duration [s]\n-1\n", 'needs one column "duration'),
+        ("duration [s], wind\n1, 2\n", 'the heading "wind" must be'),
+        ("duration [s], speed [rpm]\n1, 2\n", 'the heading "speed" must be'),
+        ("duration [s], load\n1\n", "line 2: 1 cells but 2 headings"),
+        ("duration [s], load\n1, many\n", 'line 2: "many"'),
+        ("duration [s], driver speed [m]\n1, 2\n", "must be in units of rad/s"),
+    ],
+)
+def test_what_is_no_duty_table(tmp_path: Path, text: str, words: str) -> None:
+    file = tmp_path / "duty.csv"
+    file.write_text(text, encoding="utf-8")
+    with pytest.raises(ModelError, match=words):
+        read_duty(file)
+
+
+def test_a_file_that_is_not_there(tmp_path: Path) -> None:
+    with pytest.raises(ModelError, match="cannot be read"):
+        read_duty(tmp_path / "none.csv")

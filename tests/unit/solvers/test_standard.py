@@ -1,0 +1,61 @@
+"""SUNDIALS and SciPy behind the same call: every instant once, breakpoints, failure, a missing package."""
+
+import sys
+from collections.abc import Callable
+from typing import get_args
+
+import numpy as np
+import pytest
+
+from beltdyn.arrays import FloatArray
+from beltdyn.elements.ancf.element import Ancf
+from beltdyn.errors import ConvergenceError, ModelError
+from beltdyn.solvers.standard import Name, StandardIntegrator
+from beltdyn.solvers.trajectory import Chunk, Task
+from beltdyn.stretch import Green
+from beltdyn.system.arrays import System
+
+Spin = Callable[..., Task]
+INTERVAL = 0.025
+TIMES: FloatArray = INTERVAL * np.arange(21, dtype=np.float64)
+NAMES = get_args(Name)
+
+
+@pytest.mark.parametrize("name", NAMES)
+@pytest.mark.parametrize("breakpoints", [(), (0.1, 0.2001)], ids=["smooth", "breakpoints"])
+def test_hands_out_every_instant_once(spin: Spin, name: Name, breakpoints: tuple[float, ...]) -> None:
+    task = spin(INTERVAL, breakpoints)
+    chunks = list(StandardIntegrator(name, 1e-3)(task))
+    joined = Chunk.join(chunks)
+    position, velocity = joined.at(TIMES)
+    assert np.all(np.diff(joined.time) > 0.0)
+    for instant in TIMES:  # the solver's own interpolation
+        assert np.min(np.abs(joined.time - instant)) < 1e-11
+    allowed = 1e-3 / 0.1  # the tolerance of 1e-4 m/s at a radius of 0.1 m, for some steps
+    np.testing.assert_allclose(velocity[:, -1], 5.0 * TIMES, atol=allowed)
+    np.testing.assert_allclose(position[:, -1], 2.5 * TIMES**2, atol=allowed)
+    np.testing.assert_allclose(joined.work[:, 1], 5.0 * joined.time**2, atol=5 * allowed)
+    assert chunks[-1].reached == TIMES[-1]
+    assert task.statistics.evaluations > task.statistics.steps > 0
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_longest_step(spin: Spin, name: Name) -> None:
+    task = spin(INTERVAL)
+    list(StandardIntegrator(name, 1e-3, max_step=5e-3)(task))
+    assert task.statistics.steps >= 100
+
+
+@pytest.mark.parametrize("name", NAMES)
+@pytest.mark.filterwarnings("ignore::RuntimeWarning")  # SciPy's, of the nan that is meant
+def test_failure_names_the_integrator_and_a_remedy(spin: Spin, spinning: System, name: Name) -> None:
+    element = spinning.element
+    broken = spinning._replace(element=Ancf(element.section._replace(stretch=Green(np.nan)), element.elastic))
+    with pytest.raises(ConvergenceError, match=f"integrator {name} fails.*generalized_alpha"):
+        list(StandardIntegrator(name, 1e-3)(spin(INTERVAL, system=broken)))
+
+
+def test_a_missing_package_is_named(spin: Spin, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setitem(sys.modules, "sksundae", None)
+    with pytest.raises(ModelError, match="scikit-sundae"):
+        list(StandardIntegrator("cvode", 1e-3)(spin(INTERVAL)))

@@ -1,0 +1,48 @@
+"""One way of finding where a run begins: a run and a simulator begin in the same state."""
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from beltdyn.errors import ModelError
+from beltdyn.model import Drive
+from beltdyn.solvers.generalized_alpha import GeneralizedAlpha
+from beltdyn.transient.beginning import begin_on, mesh_of
+from beltdyn.transient.simulate import choose_integrator, simulate
+from beltdyn.transient.simulator import Simulator
+
+
+@pytest.mark.parametrize("frame", ["travelling", "staying"])
+@pytest.mark.parametrize("start", ["laid", "equilibrium", "earlier"])
+def test_a_run_and_a_simulator_begin_alike(drive: Drive, frame: str, start: str, tmp_path: Path) -> None:
+    if (frame, start) == ("staying", "laid"):
+        start = "equilibrium"
+    given = drive.with_({"simulation.frame": frame, "simulation.start": "equilibrium", "simulation.duration": 2e-3})
+    if start == "earlier":
+        simulate(given, tmp_path / "run.nc").dataset.close()
+        given = given.with_({"simulation.start": {"file": str(tmp_path / "run.nc")}})
+    else:
+        given = given.with_({"simulation.start": start})
+    first, outputs = simulate(given).dataset.isel(time=0), Simulator(given).outputs()
+    for name in ("driver", "driven"):
+        assert outputs[f"pulley_angle[{name}]"] == float(first.pulley_angle.sel(pulley=name))
+        load = float(np.hypot(*first.hub_force.sel(pulley=name)))
+        assert outputs[f"hub_load[{name}]"] == pytest.approx(load, rel=1e-12)
+
+
+def test_the_mesh_that_travels_needs_no_search_where_the_belt_is_laid(drive: Drive) -> None:
+    integrator = choose_integrator(drive)
+    laid = drive.with_({"simulation.start": "laid"})
+    mesh = mesh_of(laid, integrator)
+    assert begin_on(mesh, integrator) is mesh
+    rest = begin_on(mesh_of(drive.with_({"simulation.start": "equilibrium"}), integrator), integrator)
+    assert not np.array_equal(rest.state.position, mesh.state.position)
+
+
+def test_other_integrators_know_no_flow(drive: Drive) -> None:
+    staying = drive.with_({"simulation.frame": "staying", "simulation.start": "equilibrium"})
+    method = choose_integrator(drive.with_({"simulation.integrator": "bdf"}))
+    assert not isinstance(method, GeneralizedAlpha)
+    with pytest.raises(ModelError, match=r'does not support simulation\.frame = "staying"'):
+        mesh_of(staying, method)

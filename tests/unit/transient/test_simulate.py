@@ -1,0 +1,120 @@
+"""Whole runs: status, outputs, interruption, failure, memory against file, static equilibrium."""
+
+from collections.abc import Callable
+from pathlib import Path
+
+import numpy as np
+import pytest
+import xarray as xr
+
+from beltdyn import equilibrium, open_run, simulate
+from beltdyn.errors import ConvergenceError, ModelError
+from beltdyn.model import Drive
+from beltdyn.solvers.progress import Progress
+
+Change = Callable[..., Drive]
+INTEGRATORS = ["generalized_alpha", "cvode", "ida", "bdf", "radau"]
+
+
+@pytest.mark.parametrize("integrator", INTEGRATORS)
+@pytest.mark.parametrize("start", ["laid", "equilibrium"])
+def test_outputs_lie_exactly_where_they_are_wanted(change: Change, integrator: str, start: str) -> None:
+    """The duration is no multiple of the interval."""
+    settings = {"integrator": integrator, "start": start, "duration": 5e-4, "output_interval": 1.5e-4}
+    run = simulate(change(simulation=settings))
+    assert run.status == "completed"
+    np.testing.assert_array_equal(run.dataset.time, [*(1.5e-4 * np.arange(4)), 5e-4])
+    assert run.dataset.attrs["integrator"] == integrator
+
+
+@pytest.fixture(scope="module")
+def thrown(change: Change) -> Callable[[float], xr.Dataset]:
+    """The laid belt springs into its pulleys for a millisecond, in some hundred steps; recorded at intervals."""
+    settings = {"start": "laid", "duration": 1e-3}
+
+    def record(interval: float) -> xr.Dataset:
+        every = {"output_interval": interval, "field_interval": interval}
+        return simulate(change(simulation=settings | every)).dataset
+
+    return record
+
+
+def test_dense_output_costs_no_steps(thrown: Callable[[float], xr.Dataset]) -> None:
+    sparse, dense = (thrown(interval).attrs["steps"] for interval in (1e-3, 1e-7))
+    assert sparse > 50
+    assert dense == pytest.approx(sparse, rel=0.05)
+
+
+def test_dense_output_agrees_with_sparse_output(thrown: Callable[[float], xr.Dataset]) -> None:
+    """Even where a step holds more outputs than are handed out at once."""
+    sparse, dense = thrown(1e-4), thrown(1e-7)
+    assert dense.sizes["time"] == 10_001
+    allowed = 1e-3 * 3.0 * 1e-3  # rtol times the velocity of the recoil times the duration
+    np.testing.assert_allclose(dense.node_position[::1000], sparse.node_position, atol=allowed)
+    jumps = np.abs(np.diff(dense.node_position, axis=0)).max()
+    assert jumps < 2.0 * np.abs(dense.nodal_velocities[..., :2]).max() * 1e-7  # no output is extrapolated
+
+
+def test_file_and_memory_hold_the_same(change: Change, tmp_path: Path) -> None:
+    memory, file = simulate(change()), simulate(change(), tmp_path / "run.nc")
+    assert file.path == tmp_path / "run.nc"
+    assert memory.path is None
+    xr.testing.assert_equal(memory.dataset, open_run(tmp_path / "run.nc").dataset.load())
+    times = {"created", "wall_time", "cpu_time", "compile_time", "start_time", "check_time"}
+    assert times <= memory.dataset.attrs.keys() == file.dataset.attrs.keys()
+    for name in memory.dataset.attrs.keys() - times:
+        assert memory.dataset.attrs[name] == file.dataset.attrs[name]
+
+
+@pytest.mark.parametrize("integrator", INTEGRATORS)
+def test_interruption_keeps_what_was_computed(change: Change, tmp_path: Path, integrator: str) -> None:
+    def interrupt(progress: Progress) -> None:
+        if progress.outputs_written >= 3:
+            raise KeyboardInterrupt
+
+    settings = {"integrator": integrator, "duration": 0.5, "output_interval": 1e-4}
+    run = simulate(change(simulation=settings), tmp_path / "run.nc", interrupt)
+    kept = open_run(tmp_path / "run.nc")
+    assert run.status == kept.status == "interrupted"
+    assert 3 <= kept.dataset.sizes["time"] < 1000
+    np.testing.assert_array_equal(kept.dataset.time, 1e-4 * np.arange(kept.dataset.sizes["time"]))
+
+
+def test_failure_keeps_what_was_computed(failing: Drive, tmp_path: Path) -> None:
+    with pytest.raises(ConvergenceError, match=r"fails at t = 0\.002.*node \d.*Try more elements"):
+        simulate(failing, tmp_path / "run.nc")
+    kept = open_run(tmp_path / "run.nc")
+    assert kept.status == "failed"
+    np.testing.assert_allclose(kept.dataset.time, [0.0, 1e-3, 2e-3])
+
+
+def test_nothing_is_computed_for_a_file_that_cannot_be_written(change: Change, tmp_path: Path) -> None:
+    told: list[Progress] = []
+    with pytest.raises(ModelError):
+        simulate(change(), tmp_path / "missing" / "run.nc", told.append)
+    assert told == []
+
+
+def test_equilibrium_is_the_start_of_a_simulation(change: Change) -> None:
+    static, moving = equilibrium(change()).dataset, simulate(change()).dataset
+    np.testing.assert_array_equal(static.nodal_coordinates, moving.nodal_coordinates[0])
+    np.testing.assert_allclose(static.hub_force.sum("pulley"), 0.0, atol=1e-6)  # of 50 N; Newton's tolerance
+
+
+@pytest.mark.parametrize("joint", ["shared_node", "multipliers"])
+def test_a_drive_at_rest_in_equilibrium_stays_there(drive: Drive, change: Change, joint: str) -> None:
+    run = simulate(change(simulation={"joint": joint, "duration": 0.04, "output_interval": 0.01})).dataset
+    moved = np.abs(run.node_position - run.node_position[0]).max()
+    assert moved < 1e-9  # rounding; the driver starts after 50 ms
+
+
+@pytest.mark.parametrize("integrator", INTEGRATORS)
+def test_settings_reach_the_integrator(change: Change, integrator: str) -> None:
+    """A belt that springs into its pulleys takes more steps for less error; no step is above the longest."""
+
+    def steps(duration: float, **settings: float | str) -> int:
+        settings |= {"integrator": integrator, "duration": duration, "output_interval": duration}
+        return int(simulate(change(simulation=settings)).dataset.attrs["steps"])
+
+    assert steps(2e-4, start="laid", rtol=1e-4) > 2 * steps(2e-4, start="laid", rtol=1e-2)
+    assert steps(5e-3, max_step=1e-4) >= 50 > steps(5e-3)
