@@ -74,7 +74,7 @@ def test_a_traction_curve_names_the_pulley_that_slips(drive: Drive) -> None:
     (words,) = [text.get_text() for text in ax.texts]
     assert words == "driven slips\nat 0.75 N·m"
     circle = ax.lines[-1]
-    assert (float(circle.get_xdata()[0]), float(circle.get_ydata()[0])) == pytest.approx((0.75, 77.5))  # type: ignore[index]
+    assert (float(circle.get_xdata()[0]), float(circle.get_ydata()[0])) == pytest.approx((0.75, 77.5))  # type: ignore[index, arg-type]
     table.dataset["sliding_arc"][:] = 0.0
     table.dataset["wrap_angle"][:] = 1.0
     assert not plot.traction_curve(table).texts
