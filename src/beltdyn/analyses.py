@@ -53,18 +53,7 @@ class Analysis(NamedTuple):
         return "progress" in signature(self.function).parameters
 
     def result_file(self, drive_file: Path) -> Path:
-        """The default result file of a drive file.
-
-        Parameters
-        ----------
-        drive_file : Path
-            Such as ``drive.toml``.
-
-        Returns
-        -------
-        Path
-            ``drive.nc`` of a run, and ``drive-NAME.nc`` of other analyses.
-        """
+        """The default result file of a drive file."""
         return drive_file.with_name(f"{drive_file.stem}{'' if self.name == RUN else f'-{self.name}'}.nc")
 
     def write(self, drive: Any, path: Path, progress: Any = None, overwrite: bool = False, **options: Any) -> Any:
@@ -72,24 +61,6 @@ class Analysis(NamedTuple):
 
         A function with a parameter ``output`` writes there while it computes, and takes ``overwrite`` too; results of
         other functions are saved at the end. A function with a parameter ``progress`` reports it.
-
-        Parameters
-        ----------
-        drive : Drive
-            The drive.
-        path : Path
-            The result file.
-        progress : callable, optional
-            Called now and then with a `beltdyn.Progress`.
-        overwrite : bool
-            Replace any regular file, not only results.
-        **options
-            Those of the function.
-
-        Returns
-        -------
-        Result
-            The result of the function.
         """
         function = self.function
         shared = {"output": path, "progress": progress, "overwrite": overwrite}

@@ -18,30 +18,12 @@ Records = np.recarray[Any, Any]
 
 @cache
 def record(**fields: str | np.dtype[np.void]) -> np.dtype[np.void]:
-    """Kind of the rows of a table.
-
-    Parameters
-    ----------
-    **fields : str or dtype
-        Type of each field as NumPy writes it, "f8", "i8" or "(4,2)f8"; or the kind of a row within the row.
-    """
+    """Kind of the rows of a table."""
     return np.dtype(list(fields.items()), align=True)
 
 
 def records(kind: np.dtype[np.void], /, **columns: ArrayLike) -> Records:
-    """Make a table of rows of a kind; fields that are not given are zero.
-
-    Parameters
-    ----------
-    kind
-        Names and types of the fields.
-    **columns : array_like
-        Values of the fields, row by row.
-
-    Returns
-    -------
-    recarray
-    """
+    """Make a table of rows of a kind; fields that are not given are zero."""
     table: Records = np.zeros(len(np.asarray(next(iter(columns.values())))), kind).view(np.recarray)
     for name, values in columns.items():
         table[name] = values
@@ -49,30 +31,14 @@ def records(kind: np.dtype[np.void], /, **columns: ArrayLike) -> Records:
 
 
 def row(kind: np.dtype[np.void], /, **values: Any) -> np.record:
-    """Make one row of a kind; fields that are not given are zero.
-
-    Parameters
-    ----------
-    kind
-        Names and types of the fields.
-    **values
-        Values of the fields, as for `fill`.
-    """
+    """Make one row of a kind; fields that are not given are zero."""
     made = blank(kind)
     fill(made, values)
     return made
 
 
 def fill(given: np.record, values: Mapping[str, Any]) -> None:
-    """Set fields of a row.
-
-    Parameters
-    ----------
-    given
-        The row, changed in place.
-    values
-        Values by the names of the fields; those of a row within the row are a mapping again.
-    """
+    """Set fields of a row."""
     for name, value in values.items():
         if isinstance(value, Mapping):
             fill(given[name], value)

@@ -64,13 +64,7 @@ class Option(NamedTuple):
         return _SUFFIXES.get(self.name, every) if self.kind is Path else ()
 
     def read(self, text: str) -> str | int | float:
-        """Parse typed text, or the name of a chosen file.
-
-        Raises
-        ------
-        ModelError
-            If it is no number, and should be one.
-        """
+        """Parse typed text, or the name of a chosen file."""
         if self.kind in (str, Path):
             return text
         try:

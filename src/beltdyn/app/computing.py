@@ -33,14 +33,7 @@ PREPARING = "compiling kernels (once per machine, up to a minute)"
 
 
 def tell_of_compilation(tell: Callable[[bool], None]) -> None:
-    """Report compilation of this process from now on.
-
-    Parameters
-    ----------
-    tell : callable
-        Is called with True when compilation begins, and with False when it ends. Kernels that come from the disk are
-        not told of.
-    """
+    """Report compilation of this process from now on."""
     from numba.core.event import Event, Listener, register
 
     class Teller(Listener):  # type: ignore[misc]
@@ -135,13 +128,7 @@ def prepare() -> None:
 
 
 def begin(compiles: SharedEvent) -> None:
-    """Initialise the computing process.
-
-    Parameters
-    ----------
-    compiles : multiprocessing Event
-        Is set while it compiles kernels.
-    """
+    """Initialise the computing process."""
     global _compiles
     prepare()
     _compiles = compiles
@@ -153,15 +140,7 @@ def _tell_by(flag: SharedEvent) -> None:
 
 
 def compile_ahead(asked: Asked, compiles: SharedEvent) -> None:
-    """Load or compile the kernels of steady running and modes in advance.
-
-    Parameters
-    ----------
-    asked : Asked
-        A question about a drive at rest.
-    compiles : multiprocessing Event
-        Is set while kernels are compiled.
-    """
+    """Load or compile the kernels of steady running and modes in advance."""
     prepare()
     _tell_by(compiles)
     for what in ("running", "modes"):
@@ -277,11 +256,6 @@ class Calculator:
 
         What a drive at rest needs is loaded by the process that answers; running and modes are left to one of their
         own, which begins when the drive is at rest.
-
-        Parameters
-        ----------
-        asked : Asked
-            A question about a drive at rest.
         """
         pool = self._process()
 
@@ -301,18 +275,7 @@ class Calculator:
         return self._pool
 
     async def ask(self, asked: Asked) -> Answer:
-        """Compute the numbers of a tab.
-
-        Parameters
-        ----------
-        asked : Asked
-            The question.
-
-        Returns
-        -------
-        Answer
-            Of a process that ended before it was done, as for want of memory, it says so; the next one is asked anew.
-        """
+        """Compute the numbers of a tab."""
         try:
             return await asyncio.get_running_loop().run_in_executor(self._process(), answer, asked)
         except BrokenProcessPool:

@@ -42,22 +42,7 @@ class Draft(NamedTuple):
 
 
 def draft(data: Mapping[str, Any], folder: Path, *, only_laid_out: bool = False) -> Draft:
-    """Check a drive file.
-
-    Parameters
-    ----------
-    data : mapping
-        What it holds.
-    folder : Path
-        Where relative paths in it start; files outside are not read.
-    only_laid_out : bool
-        Whether the path of the belt is all that is wanted, as while a pulley is dragged: a tenth of the work. What is
-        wrong with the state of the belt on it is not found then.
-
-    Returns
-    -------
-    Draft
-    """
+    """Check a drive file."""
     outside = [
         Told(
             location,

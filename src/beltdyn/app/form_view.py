@@ -46,19 +46,7 @@ class Row(NamedTuple):
 
 
 def rows(data: Mapping[str, Any], location: Location, opened: Set[Location], depth: int = 0) -> Iterator[Row]:
-    """List the rows of a group.
-
-    Parameters
-    ----------
-    data : mapping
-        The drive file.
-    location : tuple
-        Where the group stands.
-    opened : set
-        Groups of which all keys are shown.
-    depth : int
-        How deep it stands.
-    """
+    """List the rows of a group."""
     listed = fields(data, location)
     for one in listed:
         if one.first or location in opened:

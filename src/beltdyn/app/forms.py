@@ -104,19 +104,7 @@ def _number_or_text(text: str) -> int | float | str:
 
 
 def fields(data: Mapping[str, Any], location: Location) -> list[Field]:
-    """List the keys of a group of the drive file, those shown by default first.
-
-    Parameters
-    ----------
-    data : mapping
-        The drive file.
-    location : tuple
-        Where the group stands; empty for the drive itself, of which the keys that are no groups are listed.
-
-    Returns
-    -------
-    list of Field
-    """
+    """List the keys of a group of the drive file, those shown by default first."""
     locations, group = ErrorLocation(Drive, data), value_at(data, location)
     group = group if isinstance(group, Mapping) else {}
     tagged = _tagged(locations, data, location)

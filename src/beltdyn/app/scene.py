@@ -69,20 +69,7 @@ def groups(data: Mapping[str, Any], key: str) -> list[Mapping[str, Any]]:
 
 
 def scene(draft: Draft, *, settled: bool = True) -> dict[str, Any]:
-    """The drawing of the canvas.
-
-    Parameters
-    ----------
-    draft : Draft
-        The drive file.
-    settled : bool
-        Whether to find where springs hold tensioners, which is half of the work; not while something is dragged.
-
-    Returns
-    -------
-    dict
-        Ready for JSON: lengths in mm, y down.
-    """
+    """The drawing of the canvas."""
     drive, found = draft.drive, circles(draft.data)
     complete = len(found) == len(groups(draft.data, "pulley"))
     path = drive.path if drive is not None else sketched(found) if complete else None

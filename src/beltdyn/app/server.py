@@ -138,24 +138,7 @@ _NAMES = (_HOST, "localhost")
 
 
 def serve(workspace: Workspace, port: int, show: bool, tell: Callable[[str], None]) -> None:
-    """Serve the page until Ctrl-C.
-
-    Parameters
-    ----------
-    workspace : Workspace
-        The folder, and the drive file that a new tab opens.
-    port : int
-        The port; zero for one that is free.
-    show : bool
-        Open the browser.
-    tell : callable
-        Is given the address once the server answers.
-
-    Raises
-    ------
-    ModelError
-        If the port is taken.
-    """
+    """Serve the page until Ctrl-C."""
     with _listening(port) as listening:
         port, token = listening.getsockname()[1], new_token()
         address = f"http://{_HOST}:{port}/{token}/"

@@ -80,25 +80,13 @@ class Document:
         return changed_data(self.data, edits)
 
     def apply(self, edits: Sequence[Edit]) -> None:
-        """Apply edits as a single undo step.
-
-        Raises
-        ------
-        LookupError
-            If a location leads nowhere.
-        """
+        """Apply edits as a single undo step."""
         data = self.preview(edits)
         if data != self.data:
             self._append(State(self._text_with(edits, data), data))
 
     def replace(self, text: str) -> None:
-        """Replace the text, as an undo step.
-
-        Raises
-        ------
-        ValueError
-            If it is not TOML.
-        """
+        """Replace the text, as an undo step."""
         if text != self.text:
             self._append(State(text, parse_toml(text)))
 
@@ -215,16 +203,7 @@ class Session:
             self.selected = None
 
     def edits_of(self, action: object, arguments: Mapping[str, object]) -> list[Edit]:
-        """Edits of an action reported by the canvas; empty if it is meaningless.
-
-        Parameters
-        ----------
-        action : object
-            "move", "size", "nudge" and "grow" (by a step), "flip", "remove", "earlier" or "later" of a pulley; "pivot",
-            "nudge_pivot" or "direction" of a tensioner; or "add".
-        arguments : mapping
-            The number of the pulley or tensioner, and numbers in m.
-        """
+        """Edits of an action reported by the canvas; empty if it is meaningless."""
         to = {key: value for key in ("x", "y", "radius") if (value := _metres(arguments.get(key))) is not None}
         number, data = arguments.get("number"), self.document.data
         number = number if isinstance(number, int) and not isinstance(number, bool) else -1
@@ -266,13 +245,7 @@ class Session:
         return None
 
     def start(self, text: str, name: str | None = None) -> None:
-        """Start from the text of a drive file.
-
-        Raises
-        ------
-        ModelError
-            If it is not TOML.
-        """
+        """Start from the text of a drive file."""
         try:
             self.document = Document(text)
         except ValueError as error:
@@ -284,13 +257,7 @@ class Session:
         self.start(self.workspace.folder.read(name), name)
 
     def save(self, name: str | None = None) -> str:
-        """Save the drive file, by default under its name, and return its path.
-
-        Raises
-        ------
-        ModelError
-            If there is another file of this name, or it cannot be written.
-        """
+        """Save the drive file, by default under its name, and return its path."""
         target = name or self.name
         if target is None:
             raise ModelError("the drive has no file yet. Give a file name.")

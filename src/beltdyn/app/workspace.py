@@ -56,18 +56,7 @@ class Folder:
         return sorted(found[:_MOST_FILES], key=lambda name: (name.count("/"), name))
 
     def path(self, name: str) -> Path:
-        """The path of a file by its name.
-
-        Parameters
-        ----------
-        name : str
-            Relative to the folder; `.toml` is added where it is missing.
-
-        Raises
-        ------
-        ModelError
-            If it is none of a drive file in the folder.
-        """
+        """The path of a file by its name."""
         name = name.strip()
         named = name if name.endswith(_SUFFIX) else f"{name}{_SUFFIX}"
         hidden = any(part.startswith(".") for part in Path(named).parts)
@@ -76,13 +65,7 @@ class Folder:
         return (self.root / named).resolve()
 
     def read(self, name: str) -> str:
-        """Read a drive file.
-
-        Raises
-        ------
-        ModelError
-            If it cannot be read.
-        """
+        """Read a drive file."""
         path = self.path(name)
         try:
             return read_text(path, LONGEST_TOML)
@@ -92,27 +75,7 @@ class Folder:
             raise ModelError(f"{path} cannot be read: {reason(error)}. Check the path.") from error
 
     def write(self, name: str, text: str, known: str | None = None) -> Path:
-        """Write a drive file.
-
-        Parameters
-        ----------
-        name : str
-            Its name.
-        text : str
-            What it shall hold.
-        known : str, optional
-            What the page knows that it holds; a file that is there and holds something else is kept.
-
-        Returns
-        -------
-        Path
-            The file.
-
-        Raises
-        ------
-        ModelError
-            If it cannot be written, or holds something else.
-        """
+        """Write a drive file."""
         path = self.path(name)
         if path.exists() and (known is None or self.read(name) != known):
             changed = "already exists" if known is None else "was changed by another program"

@@ -59,20 +59,7 @@ NO_CONTACT_TANGENT: Final = ContactFactors(0.0, 0.0, 0.0, 0.0, 0.0, False)
 
 
 def contact_record(count: int, vectors: int) -> np.dtype[np.void]:
-    """Kind of the record of results and scratch arrays of `contact_force`.
-
-    Parameters
-    ----------
-    count
-        Number of control points of a curve.
-    vectors
-        Number of vectors v from which they are made.
-
-    Returns
-    -------
-    dtype
-        The lengths are part of the kind, so that the compiler knows them.
-    """
+    """Kind of the record of results and scratch arrays of `contact_force`."""
     return record(
         force=f"({vectors},2)f8",  # forces on the vectors, N
         xx=f"({vectors},{vectors})f8",  # derivative of the x force on vector a with respect to the x of vector b, N/m

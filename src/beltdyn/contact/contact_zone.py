@@ -37,20 +37,7 @@ class Circle(NamedTuple):
 
 
 def zone_record(count: int) -> np.dtype[np.void]:
-    """Kind of the scratch record of `touching_intervals` for curves with a number of control points.
-
-    Parameters
-    ----------
-    count
-        Number of control points p + 1.
-
-    Returns
-    -------
-    dtype
-        `pieces` is a stack of pieces of the element that are not yet searched, the leftmost last: the Bernstein
-        coefficients of the overlap, and where the piece ends.  `intervals` has room for all intervals that a polynomial
-        of degree 2 p can have, and for all that sampling finds.
-    """
+    """Kind of the scratch record of `touching_intervals` for curves with a number of control points."""
     most = max(count, _SAMPLES // 2) + 1
     return record(
         pieces=f"({_HALVINGS + 1},{2 * count})f8",

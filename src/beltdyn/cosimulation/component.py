@@ -48,18 +48,7 @@ class ComponentState(NamedTuple):
 
     @classmethod
     def from_bytes(cls, data: bytes) -> "ComponentState":
-        """The state of some bytes.
-
-        Parameters
-        ----------
-        data : bytes
-            From `to_bytes`.
-
-        Raises
-        ------
-        ModelError
-            If they are damaged, or no state.
-        """
+        """The state of some bytes."""
         try:
             found = _PACKING.unpack(data)
         except ModelError as error:
@@ -108,18 +97,7 @@ class Component:
         return cls(load(folder / DRIVE_FILE), Interface.read(folder))
 
     def begin(self, progress: Report | None = None) -> None:
-        """Find the state at the beginning, and compile what steps need where that is not on the disk yet.
-
-        Parameters
-        ----------
-        progress : callable, optional
-            Called with a `Progress` meanwhile.
-
-        Raises
-        ------
-        ModelError, ConvergenceError
-            As `Simulator`; the component has not begun then.
-        """
+        """Find the state at the beginning, and compile what steps need where that is not on the disk yet."""
         self._simulator = None
         simulator = Simulator(self.drive.with_({TOLERANCE: self.tolerance}), progress)
         start = simulator.save()
@@ -148,23 +126,7 @@ class Component:
         return self._outputs[name]
 
     def step(self, time: float, size: float) -> None:
-        """Simulate a step of the host.
-
-        Parameters
-        ----------
-        time : float
-            Where it begins by the clock of the host, s: the first step begins where the drive does.
-        size : float
-            Its length, s.
-
-        Raises
-        ------
-        ModelError
-            If it does not begin where the last one ended, is not above zero, ends after the stop, or an input cannot
-            be set.
-        ConvergenceError
-            If the simulation fails.
-        """
+        """Simulate a step of the host."""
         before = self.state()
         try:
             self._step(time, size)

@@ -122,11 +122,6 @@ def inputs_of(drive: Drive) -> dict[str, Input]:
 
     That is the speed of each pulley whose speed is prescribed, the torque of each other one, and the coordinates of
     the center of each pulley that no tensioner with a spring carries.
-
-    Parameters
-    ----------
-    drive : Drive
-        The drive.
     """
     made = [_input(pulley, drive.simulation.begin) for pulley in drive.pulleys]
     sprung = {one.pulley for one in drive.moving_tensioners}
@@ -149,20 +144,7 @@ def _input(pulley: Pulley, begin: float) -> Input:
 
 
 def choose_inputs(drive: Drive, names: Sequence[str] | None) -> tuple[Input, ...]:
-    """The inputs of some names.
-
-    Parameters
-    ----------
-    drive : Drive
-        The drive.
-    names : sequence of str, optional
-        By default all speeds and torques that the drive file gives.
-
-    Raises
-    ------
-    ModelError
-        If a name is not that of an input.
-    """
+    """The inputs of some names."""
     known = inputs_of(drive)
     if names is None:
         given = {pulley.name for pulley in drive.pulleys if pulley.speed or pulley.torque}
@@ -172,20 +154,7 @@ def choose_inputs(drive: Drive, names: Sequence[str] | None) -> tuple[Input, ...
 
 
 def choose_outputs(drive: Drive, names: Sequence[str] | None) -> tuple[Output, ...]:
-    """The outputs of some names.
-
-    Parameters
-    ----------
-    drive : Drive
-        The drive.
-    names : sequence of str, optional
-        Such names, or those before the brackets, as ``pulley_speed`` for that of all pulleys; by default all.
-
-    Raises
-    ------
-    ModelError
-        If a name is not that of an output.
-    """
+    """The outputs of some names."""
     families: dict[str, list[str]] = {}
     for name in output_names(drive):
         families.setdefault(name.partition("[")[0], []).append(name)

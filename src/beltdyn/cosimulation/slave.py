@@ -31,13 +31,6 @@ def complete_description(root: Element, interface: Interface) -> None:
     """Add names, units, meanings, the experiment and dependencies to a model description of either standard.
 
     Outputs belong to the end of the last step, whatever has been set since then: they depend on no inputs.
-
-    Parameters
-    ----------
-    root : Element
-        ``fmiModelDescription``, changed in place.
-    interface : Interface
-        What it describes.
     """
     root.set("modelName", interface.title)
     root.set("description", f"{interface.title}: a belt drive")
@@ -191,15 +184,7 @@ class DriveSlave:
         self._attempt(self.component.begin)
 
     def advance(self, time: float, size: float) -> bool:
-        """Simulate a step, and tell whether it has succeeded; if not, the host is told why.
-
-        Parameters
-        ----------
-        time : float
-            Begin of the step by the clock of the host, s.
-        size : float
-            Its length, s.
-        """
+        """Simulate a step, and tell whether it has succeeded; if not, the host is told why."""
         if self._refused:
             reason, self._refused = self._refused, ""
             self._tell(f"the step was not made because a variable could not be set before it: {reason}", _ERROR)

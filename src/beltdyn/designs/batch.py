@@ -63,29 +63,7 @@ def analyse_all(
     finish: Callable[[Run], None] | None = None,
     **options: Any,
 ) -> dict[Path, Ending]:
-    """Analyse several drives in parallel, each in its own process.
-
-    Parameters
-    ----------
-    analysis : Analysis
-        The analysis.
-    drives : mapping
-        Result file -> drive, or a run where the analysis takes one in place of it.
-    progress, jobs, overwrite, finish
-        As for `simulate_all`.
-    **options
-        Those of the analysis.
-
-    Returns
-    -------
-    dict
-        Result file -> `Ending` of its analysis, in the order of `drives`.
-
-    Raises
-    ------
-    ModelError
-        If a load is a Python function; nothing is computed then.
-    """
+    """Analyse several drives in parallel, each in its own process."""
     endings: dict[Path, Ending] = {}
     files = {Path(file): drive for file, drive in drives.items()}
     for file, drive in files.items():

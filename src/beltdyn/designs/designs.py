@@ -45,22 +45,7 @@ class SmallChanges:
             self._tightening = (shorter - longer) / (2.0 * change)
 
     def drive(self, path: str, value: float) -> Drive:
-        """The drive with another value of a number.
-
-        Parameters
-        ----------
-        path
-            Of the number.
-        value
-            Near to that which the drive has.
-
-        Raises
-        ------
-        ModelError
-            If there is no such drive.
-        ConvergenceError
-            If no static equilibrium is found.
-        """
+        """The drive with another value of a number."""
         wanted, drive = self._rest.tension, self._rest.drive
         if path == "belt.installed_tension":
             wanted *= value / float(self._given.belt.installed_tension or value)
@@ -105,20 +90,7 @@ class Free:
 
 
 def free_number(drive: Drive, given: FreeNumber) -> Free:
-    """A number of a study in SI units.
-
-    Parameters
-    ----------
-    drive
-        The drive, which has its start.
-    given
-        As the study gives it.
-
-    Raises
-    ------
-    ModelError
-        If the path leads to no number, or the bounds are none or do not hold the start between them.
-    """
+    """A number of a study in SI units."""
     path, start = given.path, value_at(drive, given.path)
     if isinstance(start, bool) or not isinstance(start, float):
         told = "is not given in the drive file" if start is None else f"= {start!r} is not a continuous number"
@@ -152,15 +124,7 @@ class Design:
     """Path -> change of the unknowns of each state by a unit of the number; filled where derivatives are found."""
 
     def ahead(self, point: int, changes: Mapping[str, float]) -> FloatArray:
-        """By how much the unknowns of another design differ at an operating point, to first order.
-
-        Parameters
-        ----------
-        point
-            Number of the operating point.
-        changes
-            Of the other design.
-        """
+        """By how much the unknowns of another design differ at an operating point, to first order."""
         tangents = self.tangents[point]
         ways = {path: value - self.changes[path] for path, value in changes.items() if path in tangents}
         return np.asarray(sum((way * tangents[path] for path, way in ways.items()), np.zeros(1)))
@@ -208,16 +172,7 @@ class Designs:
         """Derivatives that were not found, and why."""
 
     def find(self, changes: Mapping[str, float], near: Design | None = None) -> Design:
-        """Find a design in steady running at all operating points.
-
-        Parameters
-        ----------
-        changes
-            Path -> number.
-        near
-            A design from whose states those of this one are followed; by default, and where that fails, each operating
-            point begins at that before it.
-        """
+        """Find a design in steady running at all operating points."""
         states: list[FoundState] = []
         where = ""
 
@@ -242,13 +197,7 @@ class Designs:
         return Design(changes, "", values, self._given(changes), rest, tuple(states), blank)
 
     def refined(self, design: Design) -> Design:
-        """The same design on meshes that are made for it, where those on which it was found are too coarse.
-
-        Parameters
-        ----------
-        design
-            One that runs.
-        """
+        """The same design on meshes that are made for it, where those on which it was found are too coarse."""
         if self._at_rest:
             return design
         assert design.rest is not None

@@ -63,22 +63,10 @@ class StateModes(Protocol):
     """Modes of a state."""
 
     def first(self, count: int) -> list[Mode]:
-        """The lowest modes, at most so many, with sliding tensioners; then those with stuck ones, if any stick.
-
-        Parameters
-        ----------
-        count
-            How many.
-        """
+        """The lowest modes, at most so many, with sliding tensioners; then those with stuck ones, if any stick."""
 
     def like(self, mode: Mode) -> Mode:
-        """The mode of this state which is like one of the state from which modes are followed.
-
-        Parameters
-        ----------
-        mode
-            One of the modes found there.
-        """
+        """The mode of this state which is like one of the state from which modes are followed."""
 
 
 class FoundModes:
@@ -96,13 +84,7 @@ class FoundModes:
         self._known = dict[int, list[_Lowest]]()
 
     def variants(self, motions: SmallMotions) -> list[SmallMotions]:
-        """Small motions with sliding tensioners, and with stuck ones if dry friction may hold some.
-
-        Parameters
-        ----------
-        motions
-            About this state, or about one nearby.
-        """
+        """Small motions with sliding tensioners, and with stuck ones if dry friction may hold some."""
         return [motions, motions.with_stuck(self._dry)] if self._dry.size else [motions]
 
     def first(self, count: int) -> list[Mode]:
@@ -114,13 +96,7 @@ class FoundModes:
         return mode
 
     def lowest(self, count: int) -> "list[_Lowest]":
-        """The lowest modes of each of the variants, with their eigenvectors.
-
-        Parameters
-        ----------
-        count
-            How many, at most.
-        """
+        """The lowest modes of each of the variants, with their eigenvectors."""
         if count not in self._known:
             self._known[count] = [
                 _Lowest(motions, count, first) for first, motions in zip((1, FIRST_STUCK), self._motions, strict=False)
@@ -184,15 +160,7 @@ class _Lowest:
         ]
 
     def near(self, number: int, motions: SmallMotions) -> complex:
-        """An eigenvalue of a state nearby, 1/s; those that are alike change by their mean.
-
-        Parameters
-        ----------
-        number
-            Counted from zero.
-        motions
-            About that state.
-        """
+        """An eigenvalue of a state nearby, 1/s; those that are alike change by their mean."""
         group = self._group(self._members[number])
         ahead = _between(group.left, motions, group.value, group.right)
         change = np.trace(np.linalg.solve(group.slope, ahead - group.here)) / len(group.members)
@@ -278,27 +246,10 @@ class FoundState(ABC):
 
     @abstractmethod
     def neighbour(self, drive: Drive) -> "FoundState":
-        """The state of a drive that differs a little, on the same mesh.
-
-        Parameters
-        ----------
-        drive
-            The other drive.
-
-        Raises
-        ------
-        ConvergenceError
-            If it is not found from this one.
-        """
+        """The state of a drive that differs a little, on the same mesh."""
 
     def value(self, name: str) -> float:
-        """A result by its name; NaN where there is no such value.
-
-        Parameters
-        ----------
-        name
-            Such as "hub_load[driven]", "frequency[a-b]" of a span, or "mode_frequency[2]".
-        """
+        """A result by its name; NaN where there is no such value."""
         variable, label = variable_and_label(name)
         if variable not in OF_MODES:
             return float(self.values.get(name, np.nan))
@@ -308,13 +259,7 @@ class FoundState(ABC):
         return mode.frequency if variable.endswith("frequency") else mode.damping_ratio
 
     def shared_modes(self, names: Sequence[str]) -> list[str]:
-        """Names of results of modes that share their eigenvalue with others, so that their derivatives are means.
-
-        Parameters
-        ----------
-        names
-            Of results.
-        """
+        """Names of results of modes that share their eigenvalue with others, so that their derivatives are means."""
         found = list[str]()
         for name in names:
             variable, label = variable_and_label(name)

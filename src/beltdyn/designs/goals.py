@@ -95,22 +95,7 @@ class Aims:
 
 
 def aims_of(study: OptimizationStudy, drive: Drive, points: Sequence[OperatingPoint]) -> Aims:
-    """Read goal and limits of a study.
-
-    Parameters
-    ----------
-    study
-        The study.
-    drive
-        The drive, with constant speeds and torques.
-    points
-        The operating points.
-
-    Raises
-    ------
-    ModelError
-        If a result or its unit is not known, or an order is of no pulley or speed.
-    """
+    """Read goal and limits of a study."""
     watched: dict[str, Watched] = {}
     known, limits = names_of(drive), list[Limit]()
 

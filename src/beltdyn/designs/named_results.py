@@ -31,38 +31,18 @@ AT_REST |= OWN
 
 
 def name_of(variable: str, label: str = "") -> str:
-    """The name of a scalar result.
-
-    Parameters
-    ----------
-    variable
-        Name of the variable.
-    label
-        What it belongs to, such as a pulley; nothing for a result of the whole drive.
-    """
+    """The name of a scalar result."""
     return f"{variable}[{label}]" if label else variable
 
 
 def variable_and_label(name: str) -> tuple[str, str]:
-    """Variable and label of a scalar result; the reverse of `name_of`.
-
-    Parameters
-    ----------
-    name
-        Such as "pulley_slip[driven]".
-    """
+    """Variable and label of a scalar result; the reverse of `name_of`."""
     variable, _, label = name.removesuffix("]").partition("[")
     return variable, label
 
 
 def need_bands(names: Iterable[str]) -> bool:
-    """Whether results are among those that dry friction of tensioners makes of its own.
-
-    Parameters
-    ----------
-    names
-        Of results.
-    """
+    """Whether results are among those that dry friction of tensioners makes of its own."""
     return any(name.startswith("tensioner_position_after") for name in names)
 
 
@@ -72,13 +52,7 @@ def listed(text: str) -> list[str]:
 
 
 def values_of(run: Run) -> dict[str, float]:
-    """All scalar results of steady running by their names.
-
-    Parameters
-    ----------
-    run
-        Steady running.
-    """
+    """All scalar results of steady running by their names."""
     found = dict[str, float]()
     labels = labels_of(run.drive)
     for name, values in values_by_name(run, means_of(run)).items():
@@ -90,15 +64,7 @@ def values_of(run: Run) -> dict[str, float]:
 
 
 def names_of(drive: Drive, *, at_rest: bool = False) -> list[str]:
-    """Names of the scalar results of a drive, and of its modes; of some there may be no value.
-
-    Parameters
-    ----------
-    drive
-        The drive.
-    at_rest
-        Whether results are those at rest, in place of steady running.
-    """
+    """Names of the scalar results of a drive, and of its modes; of some there may be no value."""
     labels, found = labels_of(drive) | {"mode": _numbers_of_modes(drive)}, list[str]()
     for name, variable in ((AT_REST if at_rest else VARIABLES) | OF_MODES).items():
         if variable.dtype != "str" and len(variable.dims) < 2:
@@ -113,22 +79,7 @@ def _numbers_of_modes(drive: Drive) -> list[str]:
 
 
 def names_in(known: Mapping[str, float] | Sequence[str], of: str, key: str = "of") -> list[str]:
-    """The names of results that a text asks for.
-
-    Parameters
-    ----------
-    known
-        Names that there are.
-    of
-        Names with commas between; "hub_load" stands for those of all pulleys, "all" for all results.
-    key
-        What the text is, for messages.
-
-    Raises
-    ------
-    ModelError
-        If there is no such result.
-    """
+    """The names of results that a text asks for."""
     if of == "all":
         return list(known)
     found = list[str]()
@@ -142,15 +93,7 @@ def names_in(known: Mapping[str, float] | Sequence[str], of: str, key: str = "of
 
 
 def unit_of(name: str, drive: Drive) -> str:
-    """SI unit of a result; empty for a pure number.
-
-    Parameters
-    ----------
-    name
-        Such as "pulley_slip[driven]".
-    drive
-        The drive, whose tensioners move along a line or turn.
-    """
+    """SI unit of a result; empty for a pure number."""
     variable, label = variable_and_label(name)
     unit = (VARIABLES | AT_REST | OF_MODES)[variable].units
     if unit == "m or rad":

@@ -31,15 +31,7 @@ _MARK = "# Found by `beltdyn "
 
 
 def headed(text: str, analysis: str) -> str:
-    """The text of a drive with a first line that tells where it comes from.
-
-    Parameters
-    ----------
-    text
-        TOML.
-    analysis
-        Name of the command.
-    """
+    """The text of a drive with a first line that tells where it comes from."""
     return f"{_MARK}{analysis}`.\n{text.removeprefix(_first_line(text))}"
 
 
@@ -49,22 +41,7 @@ def found_file(output: Path) -> Path:
 
 
 def require_free(output: Path, overwrite: bool, study: object) -> None:
-    """Make sure that a result file and the drive file beside it would replace nothing but such.
-
-    Parameters
-    ----------
-    output
-        The result file.
-    overwrite
-        Whether any regular files may be replaced.
-    study
-        The study, which stays.
-
-    Raises
-    ------
-    ModelError
-        If they would.
-    """
+    """Make sure that a result file and the drive file beside it would replace nothing but such."""
     if isinstance(study, Path | str) and target_of(found_file(output)) == target_of(Path(study)):
         raise ModelError(
             f"the optimised drive would be written to {found_file(output)}, which is the study file. Choose "
@@ -75,17 +52,7 @@ def require_free(output: Path, overwrite: bool, study: object) -> None:
 
 
 def write_found(output: Path, text: str, overwrite: bool) -> None:
-    """Write the drive file beside a result file.
-
-    Parameters
-    ----------
-    output
-        The result file.
-    text
-        From `headed`.
-    overwrite
-        Replace any regular file.
-    """
+    """Write the drive file beside a result file."""
     with atomic_path(found_file(output), _is_found, overwrite) as temporary:
         temporary.write_text(text, encoding="utf-8")
 

@@ -73,13 +73,7 @@ class Descent:
         self._goal_scale, self._scales = 1.0, np.ones(0)
 
     def run(self, start: Design) -> str:
-        """Search from a design that runs.
-
-        Returns
-        -------
-        str
-            Why it ended.
-        """
+        """Search from a design that runs."""
         parts = np.array([(one.start - one.least) / (one.largest - one.least) for one in self._designs.numbers])
         derivatives = self._designs.derivatives(start)
         self._set_scales(start, derivatives)

@@ -54,13 +54,6 @@ def columns_of(result: Result, wanted: Sequence[str]) -> Columns:
     A variable along names, as of pulleys or modes, gives a number for each of them.  Of a run over time a plain name
     is that of a mean over the last turns of the belt, as its summary has it, and ``largest(...)``, ``least(...)``,
     ``mean(...)``, ``deviation(...)``, ``swing(...)`` and ``last(...)`` are taken of a variable over all outputs.
-
-    Parameters
-    ----------
-    result
-        The result of any analysis.
-    wanted
-        Names, or "all" for all single numbers.
     """
     plain = _plain(result)
     values, units, missing = dict[str, float](), dict[str, str](), list[str]()
@@ -118,13 +111,7 @@ def _label(label: object) -> str:
 
 
 def require_reductions(wanted: Sequence[str]) -> None:
-    """Make sure that results that are asked for are names, or known reductions of one.
-
-    Raises
-    ------
-    ModelError
-        If one is not.
-    """
+    """Make sure that results that are asked for are names, or known reductions of one."""
     for text in wanted:
         call = _CALL.fullmatch(text.strip())
         if "(" in text and (call is None or call["reduction"] not in _REDUCTIONS):
@@ -182,15 +169,7 @@ class ChunkOutcome:
 
 
 def compute_points(work: PointWork, points: Sequence[tuple[int, Mapping[str, Any]]]) -> ChunkOutcome:
-    """Analyse drives.
-
-    Parameters
-    ----------
-    work
-        What is asked of each.
-    points
-        Numbers of points, and what differs from the drive there.
-    """
+    """Analyse drives."""
     wait_for_the_end()
     outcomes, units = list[Outcome](), dict[str, str]()
     with _one_at_a_time, working():

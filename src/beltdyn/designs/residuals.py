@@ -58,18 +58,6 @@ def read_measured(path: Path, drive: Drive) -> MeasuredTable:
 
     Headings are those of a duty table, paths of numbers, names of results, and results with ± before for standard
     deviations, each with a unit in brackets where it has one.
-
-    Parameters
-    ----------
-    path
-        The CSV file.
-    drive
-        The drive, whose pulleys, numbers and results headings name.
-
-    Raises
-    ------
-    ModelError
-        If it cannot be read, or a heading or number is wrong.
     """
     table = MeasuredTable([], [], {}, {})
     for column in read_headed("table", path):
@@ -198,13 +186,7 @@ class Residuals:
         self._found: dict[bytes, list[Design]] = {}
 
     def start(self) -> FloatArray:
-        """Where the search begins.
-
-        Raises
-        ------
-        ConvergenceError
-            If a state of the drive that is given is not found.
-        """
+        """Where the search begins."""
         first = np.array([(one.start - one.least) / (one.largest - one.least) for one in self._numbers])
         failures = [one.failure for one in self._at(first) if one.failure]
         if failures:

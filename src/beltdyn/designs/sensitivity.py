@@ -60,15 +60,7 @@ class Number(NamedTuple):
 
 
 def numbers_of(part: Part, path: str = "") -> Iterator[Number]:
-    """The numbers of a drive that can be changed a little, with their paths; zeros only where they are coordinates.
-
-    Parameters
-    ----------
-    part
-        A drive, or a part of one.
-    path
-        Of the part.
-    """
+    """The numbers of a drive that can be changed a little, with their paths; zeros only where they are coordinates."""
     for key, value in part.arguments.items():
         yield from _numbers_in(value, f"{path}.{key}" if path else key)
 
@@ -95,20 +87,6 @@ def chosen_numbers(drive: Drive, numbers: str | None, tolerances: Mapping[str, f
 
     Beside numbers that are given there are those that follow from them and may be given in their place, such as the
     axial stiffness of a belt.
-
-    Parameters
-    ----------
-    drive
-        The drive.
-    numbers
-        Paths with commas between; by default all numbers of `numbers_of`.
-    tolerances
-        Path -> tolerance.
-
-    Raises
-    ------
-    ModelError
-        If one of them is no number of the drive.
     """
     known = {one.path: one for one in numbers_of(drive)}
     for path, size in tolerances.items():
@@ -120,13 +98,7 @@ def chosen_numbers(drive: Drive, numbers: str | None, tolerances: Mapping[str, f
 
 
 def _number_in_place(drive: Drive, path: str, known: Sequence[str]) -> Number:
-    """A number that may be given in place of others.
-
-    Raises
-    ------
-    ModelError
-        If there is none at the path.
-    """
+    """A number that may be given in place of others."""
     try:
         value = value_at(drive, path)
     except ModelError:
@@ -150,13 +122,7 @@ _REACH = 4.0
 
 
 def require_points(count: int) -> None:
-    """Make sure that Sobol points are balanced.
-
-    Raises
-    ------
-    ModelError
-        If there are not 2, 4, 8, ... of them.
-    """
+    """Make sure that Sobol points are balanced."""
     if count < 0 or (count and count & (count - 1)) or count == 1:
         raise ModelError(f"sobol = {count} must be a power of two, such as 64 or 256.")
 

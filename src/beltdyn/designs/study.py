@@ -80,18 +80,7 @@ class Dispatch:
         self._seconds = 0.0
 
     def run(self, points: Iterable[int]) -> None:
-        """Have points computed.
-
-        Parameters
-        ----------
-        points
-            Their numbers.
-
-        Raises
-        ------
-        SimulationError
-            If those who compute are gone; what came back until then was taken.
-        """
+        """Have points computed."""
         self._waiting.extend(points)
         try:
             while self._waiting or self._again or self._flying:

@@ -23,26 +23,7 @@ from beltdyn.parts.table_file import HeadedColumn, read_headed
 
 
 def unit_points(sampling: str, dimensions: int, count: int, seed: int) -> FloatArray:
-    """Take points in the unit cube.
-
-    Parameters
-    ----------
-    sampling
-        "latin_hypercube", "sobol" (scrambled, of which the first points stay the same where there are more), or
-        "saltelli": the design A, B, A with each column from B (Saltelli et al. 2010), from which `sobol_indices` are
-        found.
-    dimensions
-        Number of coordinates d.
-    count
-        Number of points n; of Saltelli's design n of A, and n (d + 2) of all.
-    seed
-        The same seed gives the same points.
-
-    Returns
-    -------
-    ndarray
-        Shape (points, d), each from 0 to 1.
-    """
+    """Take points in the unit cube."""
     from scipy.stats import qmc
 
     if sampling == "latin_hypercube":
@@ -106,22 +87,7 @@ class Plan:
 
 
 def plan_of(study: ParameterStudy, drive: Drive, base: Path) -> Plan:
-    """Lay out the points of a study.
-
-    Parameters
-    ----------
-    study
-        The study.
-    drive
-        The drive, in which paths lead.
-    base
-        Folder from which the path of a table starts.
-
-    Raises
-    ------
-    ModelError
-        If a path leads nowhere, a value cannot stand there, a table cannot be read, or there are too many points.
-    """
+    """Lay out the points of a study."""
     columns = read_headed("table", base / study.table) if study.table is not None else []
     paths = tuple(column.what for column in columns) or tuple(one.path for one in study.numbers)
     units, given = tuple(_unit(drive, path) for path in paths), tuple(value_at(drive, path) for path in paths)

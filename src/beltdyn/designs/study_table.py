@@ -62,13 +62,7 @@ class StudyRows:
         return tuple(map(_written, self._plan.values[point]))
 
     def begin(self, columns: Mapping[str, str], outcomes: Sequence[Outcome]) -> None:
-        """Write the file anew, with the results that are known.
-
-        Raises
-        ------
-        ModelError
-            If it cannot be written.
-        """
+        """Write the file anew, with the results that are known."""
         self.columns = dict(columns)
         with (
             atomic_path(self.path, lambda _: True) as temporary,
@@ -77,13 +71,7 @@ class StudyRows:
             file.write(_as_lines([self._headings()]) + self._lines(outcomes))
 
     def append(self, outcomes: Sequence[Outcome]) -> None:
-        """Add rows.
-
-        Raises
-        ------
-        OutputError
-            If the file cannot be written; what it holds stays.
-        """
+        """Add rows."""
         try:
             with self.path.open("a", encoding="utf-8", newline="") as file:
                 file.write(self._lines(outcomes))
@@ -110,11 +98,6 @@ class StudyRows:
         """The intact rows of the file, and with them the columns; none where there is no file.
 
         A row that is damaged, or that a killed process left unfinished, is left out: its point is computed again.
-
-        Raises
-        ------
-        ModelError
-            If the file is none of a study of these numbers, or no row is intact.
         """
         if not self.path.exists():
             return []
@@ -303,15 +286,7 @@ class StudyTable:
         return self._status == "interrupted"
 
     def take(self, outcomes: list[Outcome], units: Mapping[str, str]) -> None:
-        """Take what became of points, and write it.
-
-        Raises
-        ------
-        ModelError
-            If the first point that was computed has no such results as are asked for.
-        OutputError
-            If the rows cannot be written.
-        """
+        """Take what became of points, and write it."""
         fresh = [one for one in outcomes if not self.done[one.point]]
         if not self._columns:
             missing = next((one.missing for one in fresh if not one.failure and one.missing), "")

@@ -38,35 +38,12 @@ class OperatingPoint(NamedTuple):
 
 
 def held(drive: Drive, points: Points) -> Drive:
-    """The drive with speeds, torques and schedules as they are at the instant of a study.
-
-    Parameters
-    ----------
-    drive
-        The drive.
-    points
-        The operating points of the study.
-    """
+    """The drive with speeds, torques and schedules as they are at the instant of a study."""
     return without_schedules(drive, drive.simulation.end if points.at is None else points.at)[0]
 
 
 def study_points(drive: Drive, points: Points, base: Path) -> list[OperatingPoint]:
-    """The operating points of a study.
-
-    Parameters
-    ----------
-    drive
-        The drive.
-    points
-        As the study gives them; without any, the drive has one.
-    base
-        Folder from which paths of tables start.
-
-    Raises
-    ------
-    ModelError
-        If a table cannot be read, a text is no range, or there is no such pulley.
-    """
+    """The operating points of a study."""
     if points.table is not None:
         columns = read_duty(base / points.table)
         durations = durations_of(columns)
@@ -97,15 +74,7 @@ def _words(there: dict[str, float]) -> str:
 
 
 def speed_of(drive: Drive, pulley: int) -> float:
-    """Prescribed speed of a pulley at an operating point, rad/s; NaN without one.
-
-    Parameters
-    ----------
-    drive
-        The drive there.
-    pulley
-        Number of the pulley.
-    """
+    """Prescribed speed of a pulley at an operating point, rad/s; NaN without one."""
     speed = drive.pulleys[pulley].speed
     return np.nan if speed is None else abs(float(speed.at([0.0])[0]))
 
@@ -123,37 +92,12 @@ class Watched:
 
 
 def named(name: str, drive: Drive, count: int) -> Watched:
-    """A result of steady running.
-
-    Parameters
-    ----------
-    name
-        Such as "hub_load[driven]".
-    drive
-        The drive.
-    count
-        Number of operating points.
-    """
+    """A result of steady running."""
     return Watched(name, unit_of(name, drive), lambda state: state.value(name), np.ones(count))
 
 
 def distance_from_order(order: Order, drive: Drive, points: Sequence[OperatingPoint]) -> Watched:
-    """How far the nearest mode is from the band of frequencies of an order, over the end of the band that is near.
-
-    Parameters
-    ----------
-    order
-        The order, and the speeds between which it counts.
-    drive
-        The drive, with constant speeds and torques.
-    points
-        The operating points.
-
-    Raises
-    ------
-    ModelError
-        If there is no such pulley, or no operating point between the speeds.
-    """
+    """How far the nearest mode is from the band of frequencies of an order, over the end of the band that is near."""
     number = driver_of(drive) if order.pulley is None else drive.number_of(order.pulley)
     name = drive.pulleys[number].name
     speeds = np.array([speed_of(point.of(drive), number) for point in points])
@@ -175,15 +119,7 @@ def distance_from_order(order: Order, drive: Drive, points: Sequence[OperatingPo
 
 
 def clearance(one: Obstacle, count: int) -> Watched:
-    """Distance of a round part from the surface of the belt, with straight spans.
-
-    Parameters
-    ----------
-    one
-        The part.
-    count
-        Number of operating points.
-    """
+    """Distance of a round part from the surface of the belt, with straight spans."""
 
     def read(state: FoundState) -> float:
         drive = state.drive

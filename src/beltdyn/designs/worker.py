@@ -106,15 +106,7 @@ _leaving = Event()
 
 
 def start_worker(stop: SharedEvent, parts: "Array[c_double] | tuple[()]" = ()) -> None:
-    """Keep what is shared with the parent.
-
-    Parameters
-    ----------
-    stop
-        Set when the parent is interrupted.
-    parts
-        The part of each simulation of a batch that is done, 0 to 1; NaN before it begins.
-    """
+    """Keep what is shared with the parent."""
     global _stop, _parts
     _stop = stop
     if parts:
@@ -172,13 +164,7 @@ def wait_for_the_end() -> None:
 
 
 def heeding(tell: Callable[[Progress], None] | None = None) -> Callable[[Progress], None]:
-    """What an analysis tells of its progress, which is ended when the parent says so.
-
-    Parameters
-    ----------
-    tell
-        Is told too.
-    """
+    """What an analysis tells of its progress, which is ended when the parent says so."""
 
     def heed(progress: Progress) -> None:
         if tell is not None:
@@ -190,24 +176,7 @@ def heeding(tell: Callable[[Progress], None] | None = None) -> Callable[[Progres
 
 
 def analyse(place: int, file: Path, drive: Drive | Run, work: Work) -> Ending:
-    """Analyse a drive into a file, and finish what is complete.
-
-    Parameters
-    ----------
-    place
-        Of the drive in the batch, from zero.
-    file
-        The result file.
-    drive
-        The drive, or a run in place of it.
-    work
-        What is asked of it.
-
-    Returns
-    -------
-    Ending
-        How it ended; no error is raised.
-    """
+    """Analyse a drive into a file, and finish what is complete."""
     if stopped():
         return Ending("not started")
     wait_for_the_end()
@@ -401,13 +370,6 @@ async def hand_on(task: Awaitable[Any], future: Future[Any]) -> None:
     """Give what becomes of a task of Dask to a future, whatever it is.
 
     Dask's own executor never tells of a task whose result was lost with its worker, and that has failed since then.
-
-    Parameters
-    ----------
-    task
-        The task.
-    future
-        What is told.
     """
     try:
         future.set_result(await task)
@@ -419,20 +381,7 @@ async def hand_on(task: Awaitable[Any], future: Future[Any]) -> None:
 
 
 def workers_of(jobs: int | None, scheduler: str | None) -> Workers:
-    """Who computes.
-
-    Parameters
-    ----------
-    jobs
-        Number of processes of this machine; with one, this process.
-    scheduler
-        Address of a Dask scheduler, in place of processes of this machine.
-
-    Raises
-    ------
-    ModelError
-        If both are given, or there is no such scheduler.
-    """
+    """Who computes."""
     if scheduler is None:
         return ThisProcess() if jobs == 1 else LocalProcesses(jobs)
     if jobs is not None:

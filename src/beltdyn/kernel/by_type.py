@@ -58,18 +58,6 @@ def by_type(kernels: Mapping[type, Callable[..., Any]], name: str) -> Callable[.
     Where a kernel calls it, the choice is made as the caller is compiled, for the types of its arguments; it costs
     nothing at run time, and what is not chosen is not compiled.
 
-    Parameters
-    ----------
-    kernels
-        The kernel for each class of named tuples that may come first. All take the same further arguments, by position.
-    name
-        What error messages call it.
-
-    Returns
-    -------
-    Callable
-        What Python and kernels call like a kernel.
-
     Examples
     --------
     >>> from typing import NamedTuple

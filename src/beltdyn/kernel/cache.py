@@ -32,14 +32,7 @@ _OLDEST, _NEWEST = (0, 60), (0, 68)
 
 @cache
 def compiles_quickly() -> bool:
-    """Whether kernels are compiled by way of Numba's internals; they are never compiled again where they are kept.
-
-    Returns
-    -------
-    bool
-        False for a version of Numba that is not known, or if ``$BELTDYN_PLAIN_COMPILATION`` asks for it: the first
-        start then takes several times longer, and all else is the same.
-    """
+    """Whether kernels are compiled by way of Numba's internals; they are never compiled again where they are kept."""
     if os.environ.get(PLAIN_VARIABLE):
         return False
     major, minor = version("numba").split(".")[:2]
@@ -63,14 +56,7 @@ class KernelCacheWarning(UserWarning):
 
 @cache
 def kernel_cache() -> Path:
-    """Folder of the compiled kernels of exactly these sources, created if needed.
-
-    Returns
-    -------
-    Path
-        Below ``$BELTDYN_CACHE_DIR`` or the user's cache folder.  Where neither can be written, or where other users
-        could put their machine code, a temporary folder, which is gone at the end; a `KernelCacheWarning` says so.
-    """
+    """Folder of the compiled kernels of exactly these sources, created if needed."""
     chosen = Path(os.environ.get(CACHE_VARIABLE) or platformdirs.user_cache_path("beltdyn"))
     name = source_hash(PACKAGE) + ("" if compiles_quickly() else "-plain")
     try:
@@ -119,18 +105,7 @@ def holds_kernels(folder: Path) -> bool:
 
 
 def source_hash(package: Path) -> str:
-    """Hash of all sources below a folder that take part in compiled code, that is, that name this package.
-
-    Parameters
-    ----------
-    package
-        The folder to search for Python files.
-
-    Returns
-    -------
-    str
-        Sixteen hexadecimal digits.
-    """
+    """Hash of all sources below a folder that take part in compiled code, that is, that name this package."""
     digest = hashlib.sha256()
     for path in sorted(package.rglob("*.py")):
         source = path.read_bytes()

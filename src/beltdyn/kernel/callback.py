@@ -19,19 +19,7 @@ class SlowFunctionWarning(UserWarning):
 
 @cache
 def address_of(function: Callable[[float, float, float], float]) -> int:
-    """Make a function of three numbers callable from kernels.
-
-    Parameters
-    ----------
-    function
-        Takes three numbers and returns one.  Numba compiles it; where it cannot, Python runs it, and a warning says
-        what that costs.
-
-    Returns
-    -------
-    int
-        The address of its machine code.
-    """
+    """Make a function of three numbers callable from kernels."""
     from numba import cfunc
 
     try:

@@ -22,20 +22,7 @@ class PlainCompilationWarning(UserWarning):
 
 
 def new_dispatcher(function: Callable[..., Any], inline: bool) -> Any:
-    """Make a dispatcher that compiles a function at its first call.
-
-    Parameters
-    ----------
-    function
-        The function.
-    inline
-        Whether it becomes a part of every kernel that calls it.
-
-    Returns
-    -------
-    numba.core.dispatcher.Dispatcher
-        Or the function itself with ``NUMBA_DISABLE_JIT=1``, as for debuggers.
-    """
+    """Make a dispatcher that compiles a function at its first call."""
     if numba.config.DISABLE_JIT:
         return function
     if compiles_quickly():

@@ -52,40 +52,14 @@ def kernel(function: Callable[P, R], /) -> Callable[P, R]: ...
 @overload
 def kernel(*, inline: bool = False) -> Callable[[Callable[P, R]], Callable[P, R]]: ...
 def kernel(function: Callable[..., Any] | None = None, /, *, inline: bool = False) -> Any:
-    """Compile a function with Numba at its first call and keep the machine code on disk.
-
-    Parameters
-    ----------
-    function
-        A function of scalars, arrays and named tuples of them, that makes no arrays.  Everything that it calls must be
-        a kernel too.
-    inline
-        Whether to make it a part of every kernel that calls it.  Small functions called at each point gain by it;
-        large ones that are called from several places cost time to compile.
-
-    Returns
-    -------
-    Callable
-        The compiled function, with the signature of the given one.
-    """
+    """Compile a function with Numba at its first call and keep the machine code on disk."""
     if function is None:
         return functools.partial(Kernel, inline=inline)
     return Kernel(function, inline)
 
 
 def interpreted(function: Callable[P, R]) -> Callable[P, R]:
-    """Let Python run a kernel and those that it calls, for a few calls where nothing is to be compiled.
-
-    Parameters
-    ----------
-    function
-        A kernel.
-
-    Returns
-    -------
-    Callable
-        The same function.  If it is written with NumPy's functions, it takes arrays in place of numbers.
-    """
+    """Let Python run a kernel and those that it calls, for a few calls where nothing is to be compiled."""
 
     def run(*args: P.args, **kwargs: P.kwargs) -> R:
         token = _interpreting.set(True)
@@ -101,24 +75,7 @@ def interpreted(function: Callable[P, R]) -> Callable[P, R]:
 
 
 def choice(name: str, functions: Mapping[str, Callable[..., Any]], others: Sequence[str]) -> Callable[..., Any]:
-    """Make a kernel that calls one of several by kind.
-
-    Parameters
-    ----------
-    name
-        Its name.
-    functions
-        Kernels by the names of their kinds.  All take a row of their kind and the other arguments, and return the
-        same types.
-    others
-        Names of the other arguments.
-
-    Returns
-    -------
-    Callable
-        A kernel ``name(row, *others)``.  The field `kind` of the row is a place among the functions, and for every
-        kind the row has a field of that name, the row that the function gets.
-    """
+    """Make a kernel that calls one of several by kind."""
     arguments = ", ".join(others)
     lines = [f"def {name}(row, {arguments}):"]
     for number, kind in enumerate(functions):

@@ -120,13 +120,7 @@ def _alone(entry: Path | None) -> Iterator[None]:
 
 
 def choice_type(kernel_for: Callable[..., Any]) -> Any:
-    """Type of a function that stands for several kernels.
-
-    Parameters
-    ----------
-    kernel_for
-        Gives the kernel for the types of the arguments.
-    """
+    """Type of a function that stands for several kernels."""
     return _ChoiceType(_Choice(kernel_for))
 
 

@@ -23,15 +23,7 @@ from beltdyn.kernel.cache import NUMBA_FILES, KernelCacheWarning
 
 @contextmanager
 def setting(name: str, value: Any) -> Iterator[None]:
-    """Change a setting of Numba temporarily; other packages keep theirs.
-
-    Parameters
-    ----------
-    name
-        Its name in `numba.config`.
-    value
-        What it is meanwhile.
-    """
+    """Change a setting of Numba temporarily; other packages keep theirs."""
     before = getattr(numba.config, name)
     setattr(numba.config, name, value)
     try:

@@ -11,18 +11,7 @@ from beltdyn.parts.part import Part
 
 
 def kinds_in(module: ModuleType) -> dict[str, Any]:
-    """Collect the kinds that a module imports.
-
-    Parameters
-    ----------
-    module
-        A module with an import of each kind.
-
-    Returns
-    -------
-    dict
-        The classes by the texts of their field `kind`.
-    """
+    """Collect the kinds that a module imports."""
     found = [one for one in vars(module).values() if isinstance(one, type) and issubclass(one, Part)]
     return {_kind(one): one for one in found}
 

@@ -33,17 +33,7 @@ _ARM = 0.005
 
 
 def judge_contact(drive: Drive, installation: Installation, *, soft: bool = False) -> Iterator[Finding]:
-    """Check given contact parameters, and the results that they spoil.
-
-    Parameters
-    ----------
-    drive : Drive
-        As it is given.
-    installation : Installation
-        The estimates for this drive.
-    soft : bool
-        Whether it is told already that contact is soft.
-    """
+    """Check given contact parameters, and the results that they spoil."""
     without = _without_numbers(drive.contact)
     if without == drive.contact or not installation.tension > 0:
         return

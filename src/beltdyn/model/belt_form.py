@@ -84,27 +84,7 @@ FORMS = MappingProxyType(
 
 
 def to_material(data: Any, base: Path | None) -> Any:
-    """Convert a belt given by profile, stiffnesses or nominal length to material and length.
-
-    Parameters
-    ----------
-    data : Any
-        The keys of a belt as the user gave them; anything but a mapping is returned as it is.
-    base : Path or None
-        Folder that the path of a catalogue starts from; None for the working directory.
-
-    Returns
-    -------
-    Any
-        Keys that are fields of `Belt`: E = EA / bh, alpha2 = EI / (E b h^3 / 12), rho = m / bh, the law of stretch, and
-        what the catalogue says of the profile and the user does not; of a nominal length, that of the line that carries
-        the tension under the measuring force.
-
-    Raises
-    ------
-    ValueError
-        If two forms are mixed, or a profile and its size do not give a belt.
-    """
+    """Convert a belt given by profile, stiffnesses or nominal length to material and length."""
     return _with_length(_by_material(data, base)) if isinstance(data, Mapping) else data
 
 
@@ -160,23 +140,7 @@ def _by_material(data: Mapping[str, Any], base: Path | None) -> Mapping[str, Any
 
 
 def in_new_form(arguments: Mapping[str, Any], changes: Mapping[str, Any], own: Mapping[str, float]) -> dict[str, Any]:
-    """Reduce the arguments of a changed belt to one form, that of the changes.
-
-    Parameters
-    ----------
-    arguments
-        Those of the belt by its material, with the changes.
-    changes
-        What was changed.
-    own
-        Axial and bending stiffness and mass per length of the belt as it was.
-
-    Returns
-    -------
-    dict
-        A profile takes the place of the whole section; a stiffness or the mass of a metre that of the material; a law
-        or a curve of stretch that of the other.
-    """
+    """Reduce the arguments of a changed belt to one form, that of the changes."""
     gone: set[str] = set()
     if any(key in changes for key in Sold.model_fields):
         gone = {*MATERIAL, "width", "thickness", "poissons_ratio", "contact_stiffness", *TAKEN_OVER, *STRETCH}
@@ -268,22 +232,7 @@ _SECTION = (*MATERIAL, *OWN, "width", "thickness", "contact_stiffness", *TAKEN_O
 
 
 def as_sold(data: Any, belt: Any, base: Path | None) -> dict[str, Any] | None:
-    """The section of a belt as given, instead of its material.
-
-    Parameters
-    ----------
-    data
-        The keys of the belt as the user gave them.
-    belt
-        The belt that was made of them.
-    base
-        Folder that the path of a catalogue starts from; None for the working directory.
-
-    Returns
-    -------
-    dict or None
-        Profile, size and what was given beside them, with values of the belt; None of a belt without profile.
-    """
+    """The section of a belt as given, instead of its material."""
     if not isinstance(data, Mapping) or data.get("profile") is None:
         return None
     given = {key: value for key, value in data.items() if value is not None}
@@ -301,21 +250,7 @@ def changes_as_sold(section: Mapping[str, Any], changes: Mapping[str, Any]) -> b
 
 
 def section_with(section: Mapping[str, Any], changes: Mapping[str, Any]) -> dict[str, Any]:
-    """What is given of a belt's section after changes, the changes themselves left out.
-
-    Parameters
-    ----------
-    section
-        As from `as_sold`.
-    changes
-        Keys of a belt -> new value.
-
-    Returns
-    -------
-    dict
-        Another profile keeps the size alone, and not even that where a size is changed with it. A curve of stretch
-        takes the place of the axial stiffness, a law of stretch that of a curve, and a loss that of the same strain.
-    """
+    """What is given of a belt's section after changes, the changes themselves left out."""
     gone = set[str]()
     if "profile" in changes:
         resized = any(key in changes for key in SIZES)

@@ -42,22 +42,7 @@ class Carrier:
 
 
 def carriers_of(tensioners: Sequence[Tensioner], names: Sequence[str], path: Path) -> list[Carrier]:
-    """Pair spring-loaded tensioners with the pulleys that they carry.
-
-    Parameters
-    ----------
-    tensioners : sequence of Tensioner
-        Those of a drive; fixed ones are left out.
-    names : sequence of str
-        Names of the pulleys.
-    path : Path
-        With all tensioners at zero.
-
-    Raises
-    ------
-    ValueError
-        If one of them cannot tension the belt.
-    """
+    """Pair spring-loaded tensioners with the pulleys that they carry."""
     carriers = []
     for tensioner in tensioners:
         if isinstance(tensioner, MovingTensioner):
@@ -78,22 +63,7 @@ def moved(path: Path, carriers: Sequence[Carrier], positions: FloatArray) -> Pat
 
 
 def check_tensioners(tensioners: Sequence[Tensioner], pulleys: Sequence[Pulley], path: Path) -> None:
-    """Check that tensioners carry pulleys of the drive and can tension its belt.
-
-    Parameters
-    ----------
-    tensioners : sequence
-        The tensioners.
-    pulleys : sequence of Pulley
-        The pulleys.
-    path : Path
-        Around all pulleys.
-
-    Raises
-    ------
-    ValueError
-        If a pulley does not exist or is carried twice, or a tensioner does not tension or has no inertia.
-    """
+    """Check that tensioners carry pulleys of the drive and can tension its belt."""
     names, carried = [pulley.name for pulley in pulleys], [item.pulley for item in tensioners]
     for position, (item, name) in enumerate(zip(tensioners, carried, strict=True), 1):
         if name not in names:

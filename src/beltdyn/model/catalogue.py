@@ -142,24 +142,7 @@ def read_catalogue(name: object = None, base: Path | None = None) -> dict[str, E
 
 
 def find_entry(catalogue: Mapping[str, Entry], profile: str) -> Entry:
-    """Look up a profile.
-
-    Parameters
-    ----------
-    catalogue : mapping
-        Entries by the name of their profile.
-    profile : str
-        The name that a user wrote.
-
-    Returns
-    -------
-    Entry
-
-    Raises
-    ------
-    LookupError
-        If there is none of that name; it tells names like it, or all of them.
-    """
+    """Look up a profile."""
     entry = catalogue.get(profile)
     if entry is None:
         like = get_close_matches(profile.lower(), [name.lower() for name in catalogue], n=4, cutoff=0.5)

@@ -58,19 +58,6 @@ def complete(layout: Layout) -> Completed:
 
     A belt with an installed tension gets its length, if its layout has not settled that; an allowed penetration becomes
     a stiffness of contact. The numbers of computation that are not given are chosen by `beltdyn.model.defaults`.
-
-    Parameters
-    ----------
-    layout : Layout
-
-    Returns
-    -------
-    Completed
-
-    Raises
-    ------
-    ValueError
-        If the belt would be slack or overstretched, or the tensioners find no balance.
     """
     pulleys, path = layout.pulleys, layout.path
     given, choices = with_chosen_stiffness(layout.given, path)
@@ -140,18 +127,7 @@ def _with_stiffness(contact: Contact, stiffness: float) -> Contact:
 
 
 def take_up(completed: Completed, distance: float) -> tuple[Tensioner, ...]:
-    """Increase the take-up of the fixed tensioner so that the path lengthens by a small distance.
-
-    Parameters
-    ----------
-    completed : Completed
-    distance : float
-        m.
-
-    Returns
-    -------
-    tuple of Tensioner
-    """
+    """Increase the take-up of the fixed tensioner so that the path lengthens by a small distance."""
     fixed = fixed_tensioner(completed.tensioners)
     number = [pulley.name for pulley in completed.pulleys].index(fixed.pulley)
     return with_take_up(completed.tensioners, fixed.take_up + distance / leverage(completed.path, number, fixed))

@@ -75,11 +75,6 @@ def stiffness_for_tension(path: Path, belt: Belt) -> float:
 
     A belt under T sinks by d = T / (R k_p), which shortens its path by the wrap angle times d, and it loses the tension
     E A / L times that.
-
-    Parameters
-    ----------
-    path : Path
-    belt : Belt
     """
     sinking = float(np.sum(path.wrap_angles / np.abs(path.radii)))
     return belt.axial_stiffness * sinking / (TENSION_LOST * path.length)
@@ -89,13 +84,6 @@ def choose_stiffness(path: Path, belt: Belt, tension: float) -> Choice:
     """Choose the contact stiffness: that of the belt if known and hard enough.
 
     Slip is taken at the rim, and penetration does not change the radius at which a belt runs: a soft one spoils slip.
-
-    Parameters
-    ----------
-    path : Path
-    belt : Belt
-    tension : float
-        At rest, N.
     """
     radius = float(np.min(np.abs(path.radii)))
     shallow, thin = DEPTH_OF_RADIUS * radius, DEPTH_OF_THICKNESS * belt.thickness
@@ -110,15 +98,7 @@ def choose_stiffness(path: Path, belt: Belt, tension: float) -> Choice:
 
 
 def critical_damping(stiffness: float, mass_per_length: float) -> float:
-    """Critical damping 2 sqrt(k_p m) of a belt pressed on a pulley, N s/m^2.
-
-    Parameters
-    ----------
-    stiffness : float
-        k_p, N/m^2.
-    mass_per_length : float
-        m, kg/m.
-    """
+    """Critical damping 2 sqrt(k_p m) of a belt pressed on a pulley, N s/m^2."""
     return 2.0 * math.sqrt(stiffness * mass_per_length)
 
 
@@ -149,28 +129,13 @@ def choose_creep_ratio(pulleys: Sequence[Pulley], grips: FloatArray, strain: flo
 
 
 def choose_standstill_creep(creep_ratio: float, speed: float) -> Choice:
-    """Choose the creep velocity on pulleys at a standstill.
-
-    Parameters
-    ----------
-    creep_ratio : float
-        That of pulleys that turn.
-    speed : float
-        Largest speed of the rims, m/s.
-    """
+    """Choose the creep velocity on pulleys at a standstill."""
     reason = f"as at {STANDSTILL:.0%} of the largest speed, {speed:.3g} m/s"
     return Choice("contact.standstill_creep", STANDSTILL * creep_ratio * speed, "m/s", reason)
 
 
 def choose_elements(belt: OnPath, tension: float) -> Choice:
-    """Choose the number of elements.
-
-    Parameters
-    ----------
-    belt : OnPath
-    tension : float
-        At rest, N.
-    """
+    """Choose the number of elements."""
     needed = {name: fewest(belt, Running(tension), name, limit) for name, limit in RESOLVED.items()}
     name = max(needed, key=lambda name: needed[name])
     number = min(max(needed[name], FEWEST), MOST)
@@ -187,16 +152,7 @@ def choose_elements(belt: OnPath, tension: float) -> Choice:
 
 
 def choose_graded_elements(belt: OnPath, path: Path, tension: float) -> Choice:
-    """Choose the number of elements of a staying mesh.
-
-    Parameters
-    ----------
-    belt : OnPath
-    path : Path
-        Closed.
-    tension : float
-        At rest, N.
-    """
+    """Choose the number of elements of a staying mesh."""
     layer = layer_length(*layer_lengths(belt, tension))
     arcs = Laid.on(path, belt.belt_length, path.longest_span).arcs()
     number = graded_mesh(belt.belt_length, arcs, layer).size

@@ -394,20 +394,7 @@ def has_functions(drive: Drive) -> bool:
 
 
 def refuse_functions(drive: Drive, rule: str, remedy: str) -> None:
-    """Make sure that all of a drive can be written as text.
-
-    Parameters
-    ----------
-    drive : Drive
-        The drive.
-    rule, remedy : str
-        Why it must be, and what to do beside giving a table.
-
-    Raises
-    ------
-    ModelError
-        If a load is a function of Python.
-    """
+    """Make sure that all of a drive can be written as text."""
     for pulley in drive.pulleys:
         if any(isinstance(load, FunctionLoad) for load in pulley.load):
             raise ModelError(

@@ -50,18 +50,7 @@ class End(Part):
         return 0.0
 
     def on_path(self, gravity: tuple[float, float]) -> PathEnd:
-        """The end as the path sees it.
-
-        Parameters
-        ----------
-        gravity : tuple of float
-            Acceleration of gravity, m/s^2.
-
-        Raises
-        ------
-        ValueError
-            If nothing pulls the end.
-        """
+        """The end as the path sees it."""
         pull = np.array(self.force) + self.attached_mass * np.array(gravity)
         if not np.any(pull):
             raise ValueError(
@@ -145,20 +134,7 @@ else:
 
 
 def ends_on_path(ends: tuple[End, ...], gravity: tuple[float, float]) -> tuple[PathEnd, ...]:
-    """The ends of a belt as its path sees them.
-
-    Parameters
-    ----------
-    ends : tuple of End
-        None for a closed belt; the first and the second end of an open one.
-    gravity : tuple of float
-        Acceleration of gravity, m/s^2.
-
-    Raises
-    ------
-    ValueError
-        If the number of ends is not zero or two, none of two is fixed, or nothing pulls one that is not.
-    """
+    """The ends of a belt as its path sees them."""
     if len(ends) not in (0, 2):
         raise ValueError(
             f"the number of [[end]] is {len(ends)}; a closed belt has no ends, an open belt has two, in running order. "

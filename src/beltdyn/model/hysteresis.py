@@ -50,12 +50,7 @@ class BendingAtPoints(NamedTuple):
 
 
 def bending_at_points(drive: Drive) -> BendingAtPoints:
-    """Bending hysteresis on a staying mesh, where curvatures have no waves of the mesh.
-
-    Parameters
-    ----------
-    drive : Drive
-    """
+    """Bending hysteresis on a staying mesh, where curvatures have no waves of the mesh."""
     belt = drive.belt
     modulus = BENDING_SHARE / _KEPT_AT_POINTS * belt.bending_loss_factor * belt.bending_stiffness
     return BendingAtPoints(modulus, _SMOOTHED_AT_POINTS * layer_lengths(drive, drive.tension_at_rest)[0])
@@ -67,10 +62,6 @@ def passing_strains(drive: Drive) -> Passing:
     With fixed centres the stretch of the whole belt stays as it was at rest, and tensions lie as far above as below
     it; where a spring or an end holds a tension, the slack side stays at it.  The tension changes over R / mu, the
     length of an arc that slides until it has grown by a factor of e, the curvature over sqrt(EI / T) and an element.
-
-    Parameters
-    ----------
-    drive : Drive
     """
     tension = drive.tension_at_rest
     belt, friction = drive.belt, np.maximum(drive.frictions, _LEAST_FRICTION)
@@ -85,12 +76,7 @@ def passing_strains(drive: Drive) -> Passing:
 
 
 def bending_resistance(drive: Drive) -> float:
-    """Resisting force of bending hysteresis on all pulleys of a drive, N.
-
-    Parameters
-    ----------
-    drive : Drive
-    """
+    """Resisting force of bending hysteresis on all pulleys of a drive, N."""
     belt = drive.belt
     return float(bending_loss(belt.bending_stiffness, belt.bending_loss_factor, drive.radii).sum())
 

@@ -84,18 +84,7 @@ def install(drive: Drive) -> Installation:
 def describe(
     drive: Drive, span_tensions: FloatArray, penetrations: FloatArray, hub_loads: FloatArray, positions: FloatArray
 ) -> Installation:
-    """Describe a belt at rest.
-
-    Parameters
-    ----------
-    drive : Drive
-    span_tensions, penetrations, hub_loads, positions : ndarray
-        As `Installation` has them.
-
-    Returns
-    -------
-    Installation
-    """
+    """Describe a belt at rest."""
     path = moved(drive.path, drive.carriers, positions)
     laid = path.length / drive.belt_length
     return Installation(

@@ -94,20 +94,6 @@ def lay_out(given: Given) -> Layout:
 
     Fixed tensioners move their pulleys; where a length and an installed tension are given, one of them takes up what is
     missing.
-
-    Parameters
-    ----------
-    given : Given
-
-    Returns
-    -------
-    Layout
-
-    Raises
-    ------
-    ValueError
-        If a belt cannot run around the pulleys, its length does not fit, a tensioner does not fit the pulleys, or none
-        can bring the belt to its tension.
     """
     pulleys = given.pulleys_in_place
     path = given.path_around(pulleys)

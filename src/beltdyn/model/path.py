@@ -298,17 +298,7 @@ class Surroundings(NamedTuple):
 
 
 def crossings(path: Path) -> list[tuple[int, int]]:
-    """Pairs of crossing spans.
-
-    Parameters
-    ----------
-    path : Path
-
-    Returns
-    -------
-    list of tuple
-        Numbers of two spans, the smaller first.
-    """
+    """Pairs of crossing spans."""
     starts, directions, lengths = path.span_points[:, 0], path.span_directions, path.span_lengths
     between = starts - starts[:, None]
     with np.errstate(divide="ignore", invalid="ignore"):  # of parallel spans
@@ -319,18 +309,7 @@ def crossings(path: Path) -> list[tuple[int, int]]:
 
 
 def obstacle(path: Path, around: Surroundings) -> Obstacle | None:
-    """Find a pulley, or belt on it, that a span or an arc on another pulley collides with.
-
-    Parameters
-    ----------
-    path : Path
-    around : Surroundings
-
-    Returns
-    -------
-    Obstacle or None
-        The first that is found.
-    """
+    """Find a pulley, or belt on it, that a span or an arc on another pulley collides with."""
     between = path.centers - path.centers[:, None]
     covered = _covers(path, -between).T
     reach = _extents(path, around, -between)

@@ -29,15 +29,7 @@ _TAKES = 1e-3
 
 
 def judge_plausibility(drive: Drive, installation: Installation) -> Iterator[Finding]:
-    """Check the plausibility of a drive.
-
-    Parameters
-    ----------
-    drive : Drive
-        As it is given.
-    installation : Installation
-        The estimates for this drive.
-    """
+    """Check the plausibility of a drive."""
     yield from _tension(drive, installation)
     yield from _small_pulleys(drive)
     yield from _sides(drive)
@@ -99,13 +91,7 @@ def with_pitch_diameters(drive: Drive) -> Drive | None:
 
 
 def other_diameters(drive: Drive) -> str:
-    """The difference if the diameters are those of the tension line, in words; empty if there is none.
-
-    Parameters
-    ----------
-    drive : Drive
-        As it is given.
-    """
+    """The difference if the diameters are those of the tension line, in words; empty if there is none."""
     meant = None if drive.ends else with_pitch_diameters(drive)
     if meant is None:
         return ""

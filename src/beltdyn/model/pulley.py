@@ -255,13 +255,7 @@ def fastest_rim(pulleys: Sequence[Pulley], radii: FloatArray, duration: float = 
 
 
 def friction_on(pulley: Pulley, belt: Belt, contact: Contact) -> float:
-    """Friction coefficient of a belt on a pulley, with the wedge factor on the inside.
-
-    Raises
-    ------
-    ValueError
-        If none is given.
-    """
+    """Friction coefficient of a belt on a pulley, with the wedge factor on the inside."""
     return flat_friction_on(pulley, belt, contact) * (belt.wedge_factor if pulley.side == "inside" else 1.0)
 
 
@@ -269,11 +263,6 @@ def flat_friction_on(pulley: Pulley, belt: Belt, contact: Contact) -> float:
     """Friction coefficient of a belt on a pulley, without the wedge effect.
 
     It is that of the pulley, or of the contact, or of the belt: the first that is given.
-
-    Raises
-    ------
-    ValueError
-        If none is.
     """
     for given in (pulley.friction, contact.friction, belt.friction):
         if given is not None:

@@ -92,13 +92,7 @@ class Laid(NamedTuple):
 
 
 def layer_length(bending: float, sinking: float) -> float:
-    """Length over which the belt adopts the curvature of a pulley, m.
-
-    Parameters
-    ----------
-    bending, sinking
-        sqrt(EI / T) and sqrt(T / k_p), m.
-    """
+    """Length over which the belt adopts the curvature of a pulley, m."""
     return sqrt(bending * sinking) if sinking < bending else max(bending, _ENOUGH * sinking)
 
 
@@ -318,17 +312,7 @@ def fewest(drive: OnPulleys, running: Running, name: str, limit: float) -> int:
 
 
 def unresolved(errors: Mapping[str, float], needed: Mapping[str, int], *, pressures: bool) -> list[Finding]:
-    """Quantities that a mesh does not resolve, and meshes that would; empty if it resolves all.
-
-    Parameters
-    ----------
-    errors
-        Result of `mesh_errors`; an unknown error, NaN, counts as resolved.
-    needed
-        Result of `elements_needed`.
-    pressures
-        Whether to include pressures, as for a given number of elements; the default number ignores them.
-    """
+    """Quantities that a mesh does not resolve, and meshes that would; empty if it resolves all."""
     asked = ERROR_LIMITS if pressures else ERROR_LIMITS.keys() - PRESSURES
     names = sorted((name for name in asked if errors[name] > ERROR_LIMITS[name]), key=lambda name: -needed[name])
     if not names:

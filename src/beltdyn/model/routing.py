@@ -86,28 +86,7 @@ class _Fault(NamedTuple):
 
 
 def lay_path(pulleys: Sequence[Pulley], belt: Belt, ends: Sequence[PathEnd] = ()) -> Path:
-    """Lay a path around pulleys in belt order, and check it.
-
-    Parameters
-    ----------
-    pulleys : sequence of Pulley
-        In the order in which the belt meets them when it turns those on its inside counter-clockwise.
-    belt : Belt
-        What it adds to the radii, and whether its spans may cross.
-    ends : sequence of PathEnd
-        First and second end of an open belt, none for a closed one.
-
-    Returns
-    -------
-    Path
-
-    Raises
-    ------
-    ValueError
-        If there are fewer than two pulleys (one for an open belt), names are used twice, pulleys overlap or are too
-        close for the belt to pass between them, the order or a side is wrong, or the belt misses a pulley, runs
-        through a pulley, or crosses itself.
-    """
+    """Lay a path around pulleys in belt order, and check it."""
     if not ends and len(pulleys) < 2:
         raise ValueError(f"the drive has {len(pulleys)} pulley; a closed belt needs at least two. Add a [[pulley]]")
     if not pulleys:

@@ -378,15 +378,7 @@ class Frame(NamedTuple):
 
 
 def choose_frame(simulation: Simulation, belt: Belt, contact: Contact, is_open: bool) -> Frame:
-    """Choose the mesh of a run: staying, unless the drive needs features of the travelling mesh.
-
-    Parameters
-    ----------
-    simulation, belt, contact
-        Parts of the drive.
-    is_open
-        Whether the belt has ends.
-    """
+    """Choose the mesh of a run: staying, unless the drive needs features of the travelling mesh."""
     if simulation.frame is not None:
         return Frame(simulation.frame, "as given")
     misfits = [("simulation", *one[:2]) for one in simulation.misfits_staying]

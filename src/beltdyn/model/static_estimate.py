@@ -43,14 +43,6 @@ def static_estimate(path: Path, belt: Belt, contact: Contact) -> StaticEstimate:
     unstretched metre, so the belt sinks by d = T g / (R k_p), which shortens the path by the wrap angle times d. Of the
     length and the tension of the belt, and of the stiffness of contact and the largest d, one is given and the other
     found.
-
-    Parameters
-    ----------
-    path : Path
-    belt : Belt
-        With its length or its tension; if it has both, its tension counts.
-    contact : Contact
-        With its stiffness or its penetration.
     """
     radii, law = np.abs(path.radii), belt.stretch_parameters
 

@@ -75,20 +75,7 @@ class StretchCurve(Part):
 
 
 def with_initial_slope(data: Any, base: Path | None) -> Any:
-    """Set the axial stiffness of a belt with a measured curve to the initial slope of the curve.
-
-    Parameters
-    ----------
-    data
-        Keys of a belt; returned as they are without a curve.
-    base
-        Folder that the path of a file of the curve starts from.
-
-    Raises
-    ------
-    ValueError
-        If there is a stiffness beside the curve.
-    """
+    """Set the axial stiffness of a belt with a measured curve to the initial slope of the curve."""
     if not isinstance(data, Mapping) or "stretch_curve" not in data:
         return data
     if "axial_stiffness" in data:

@@ -65,13 +65,7 @@ class _Situation(NamedTuple):
         return static_estimate(moved(self.path, self.carriers, changed), self.belt, self.contact)
 
     def excess(self, position: float) -> float:
-        """Excess of the force of spring and stops over that of the belt at a position, F - T dL/dq.
-
-        Raises
-        ------
-        ValueError
-            If the belt leaves a pulley there, or the pulley meets another one.
-        """
+        """Excess of the force of spring and stops over that of the belt at a position, F - T dL/dq."""
         one, there = self.carrier, self.at(position)
         if abs(there.path.total_turning - self.path.total_turning) > 1.0:
             raise ValueError("the belt leaves a pulley")

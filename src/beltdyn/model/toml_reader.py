@@ -50,25 +50,7 @@ def load(path: str | pathlib.Path) -> Drive:
 
 
 def read_study(path: str | pathlib.Path, kind: type[Study]) -> Study:
-    """Read a study file.
-
-    Parameters
-    ----------
-    path : str or pathlib.Path
-        A TOML file.
-    kind : type
-        The kind of study.
-
-    Returns
-    -------
-    Part
-        The study.
-
-    Raises
-    ------
-    ModelError
-        If the file cannot be read, or does not describe such a study.
-    """
+    """Read a study file."""
     path = pathlib.Path(path)
     text = _text_of(path, "A study file is TOML.")
     try:

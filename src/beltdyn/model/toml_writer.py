@@ -21,16 +21,6 @@ from beltdyn.parts.toml_edits import Edit, Location, changed_data, changed_text
 def tolerances_of(drive: Drive) -> dict[str, float]:
     """Tolerances of the numbers of a drive, in SI units, by their paths.
 
-    Parameters
-    ----------
-    drive : Drive
-        The drive, as read from a file; one whose numbers were changed in Python has none.
-
-    Returns
-    -------
-    dict of str to float
-        Half the width of the interval in which a number lies; of a diameter that of the radius.
-
     Examples
     --------
     >>> from beltdyn.model.toml_writer import tolerances_of
@@ -91,20 +81,7 @@ def dumps(drive: Drive) -> str:
 
 
 def spelled_out(drive: Drive, tolerances: Mapping[str, float]) -> str:
-    """Write a drive as `dumps` does, with given tolerances.
-
-    Parameters
-    ----------
-    drive : Drive
-        The drive.
-    tolerances : mapping
-        Path -> tolerance in SI units, of numbers that stand in the drive.
-
-    Raises
-    ------
-    ModelError
-        If a load is a function of Python.
-    """
+    """Write a drive as `dumps` does, with given tolerances."""
     refuse_functions(drive, "a drive file cannot hold a Python function", "keep the drive in a script")
     data = drive.data
     for path, size in tolerances.items():
@@ -117,20 +94,7 @@ def spelled_out(drive: Drive, tolerances: Mapping[str, float]) -> str:
 
 
 def location_of(data: Mapping[str, Any], path: str) -> Location:
-    """The location of a path of `Drive.with_` in the plain data of a drive file.
-
-    Parameters
-    ----------
-    data : mapping
-        Groups and keys.
-    path : str
-        The path.
-
-    Raises
-    ------
-    KeyError, IndexError
-        If a group or a list on the way is not there; a last key may be missing.
-    """
+    """The location of a path of `Drive.with_` in the plain data of a drive file."""
     given: Any = data
     location: Location = ()
     for step in steps_of(path):
@@ -156,25 +120,6 @@ _DIGITS = 10
 def edited(drive: Drive, changes: Mapping[str, float]) -> str:
     """The text of a drive with some numbers changed, and the rest as its author wrote it.
 
-    Parameters
-    ----------
-    drive : Drive
-        The drive, as read from a file.
-    changes : mapping
-        Path -> number in SI units, as `Drive.with_` takes them.
-
-    Returns
-    -------
-    str
-        TOML, from which `loads` makes the changed drive to ten digits. A number that a default or the profile of a belt
-        gave is a line more. Where the text cannot be changed so, as when a pulley has a diameter in place of the
-        radius, every number is spelled out.
-
-    Raises
-    ------
-    ModelError
-        If a path leads nowhere, or the changed drive is not valid.
-
     Examples
     --------
     >>> from beltdyn.model.toml_writer import edited
@@ -194,13 +139,7 @@ def edited(drive: Drive, changes: Mapping[str, float]) -> str:
 
 
 def _edit(data: dict[str, Any], path: str, value: float, unit: str) -> Edit:
-    """The edit that gives a number its value in a drive file, where a default or a belt's profile may have given it.
-
-    Raises
-    ------
-    KeyError, IndexError
-        If its group does not stand there.
-    """
+    """The edit that gives a number its value in a drive file, where a default or a belt's profile may have given it."""
     *outer, last = location = location_of(data, path)
     holder: Any = data
     for key in outer:

@@ -99,13 +99,7 @@ class BandLimit:
         self._time, self._values = np.append(self._time, time), np.concatenate([before, values])
 
     def known_until(self, *, last: bool = True) -> float:
-        """Instant up to which the states that outputs need have all come, s.
-
-        Parameters
-        ----------
-        last : bool
-            Whether no more states come: the one after those in reach changes the slope at the last of them.
-        """
+        """Instant up to which the states that outputs need have all come, s."""
         return float(self._time[-1 if last else -2]) - self._reach if len(self._time) > 2 else -np.inf
 
     def at(self, instants: FloatArray) -> FloatArray:

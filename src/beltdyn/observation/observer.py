@@ -179,13 +179,7 @@ class Observer:
 
 
 def _require_numbers(time: FloatArray, shown: BoolArray, seen: Arrays) -> None:
-    """Make sure that all that is seen has a value, but spans whose pulleys the belt has left.
-
-    Raises
-    ------
-    ConvergenceError
-        If something has none.
-    """
+    """Make sure that all that is seen has a value, but spans whose pulleys the belt has left."""
     for name, values in seen.items():
         if name not in _VALUES_OF_SPANS and not np.isfinite(values.sum()):
             times = time[shown] if name in _OF_SHOWN else time
@@ -220,13 +214,7 @@ class SlipThrough:
         self._speed = np.zeros(len(drive.pulleys))
 
     def __call__(self, outputs: Arrays) -> None:
-        """Look at further outputs.
-
-        Raises
-        ------
-        SlipError
-            If the whole arc of a pulley slides for a turn of the belt, faster than 5 % of the swept rim's speed.
-        """
+        """Look at further outputs."""
         for row, time in enumerate(outputs["time"]):
             sliding = np.abs(outputs["sliding_speed"][row])
             speed = float(outputs["pulley_speed"][row, self._swept])

@@ -40,22 +40,7 @@ _NEAR = 0.4
 
 
 def step_bound(drive: Drive, statistics: Statistics, reached: float) -> str:
-    """Say what bounds the time steps, and what would let them be longer.
-
-    Parameters
-    ----------
-    drive
-        The drive.
-    statistics
-        What the solver did so far.
-    reached
-        Simulated time until now, s.
-
-    Returns
-    -------
-    str
-        One or two sentences; empty before the first step.
-    """
+    """Say what bounds the time steps, and what would let them be longer."""
     simulation = drive.simulation
     taken, rejected = statistics.steps, statistics.rejected_steps
     if taken == 0:
@@ -84,18 +69,7 @@ def step_bound(drive: Drive, statistics: Statistics, reached: float) -> str:
 
 
 def result_layout(drive: Drive, system: System) -> Layout:
-    """Names and reference coordinates of the results.
-
-    Parameters
-    ----------
-    drive, system
-        What is simulated.
-
-    Returns
-    -------
-    Layout
-        Belt coordinates run from node 0 in the direction of motion.
-    """
+    """Names and reference coordinates of the results."""
     names = tuple(pulley.name for pulley in drive.pulleys)
     spans = tuple(f"{a}-{b}" for a, b in drive.spans)
     lengths = curve_lengths(system)
@@ -226,22 +200,7 @@ class Recording:
 
     @classmethod
     def resumed(cls, kept: Mapping[str, Any], output: Path, progress: Report | None) -> Self:
-        """Go on with a recording.
-
-        Parameters
-        ----------
-        kept
-            From `keep`.
-        output
-            Its result file.
-        progress
-            Whom to tell.
-
-        Raises
-        ------
-        ModelError
-            If the file does not hold what was recorded by then.
-        """
+        """Go on with a recording."""
         made = cls.__new__(cls)
         for name in _KEPT:
             setattr(made, name, kept[name])
@@ -287,15 +246,7 @@ class Recording:
         self._cpu_started = time.process_time()
 
     def start(self, drive: Drive, system: System, unstable: tuple[str, ...]) -> None:
-        """Note that the state at the beginning is known.
-
-        Parameters
-        ----------
-        drive, system
-            What is simulated, with the length of the belt, or the take-up, that was found for its installed tension.
-        unstable
-            Names of the pulleys whose tensioners are not in stable balance at rest.
-        """
+        """Note that the state at the beginning is known."""
         layout = result_layout(drive, system)
         if drive is not self._drive:
             origin = provenance(drive.text, self._title) | self._mesh()

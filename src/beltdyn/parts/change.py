@@ -17,25 +17,7 @@ Steps = tuple[str, ...]
 
 
 def changed_arguments(part: Part, changes: Mapping[str, Any]) -> dict[str, Any]:
-    """Constructor arguments of a part with some values changed at once.
-
-    Parameters
-    ----------
-    part
-        The part; it stays as it is.
-    changes
-        Path -> new value, None to leave the argument open.
-
-    Returns
-    -------
-    dict
-        Arguments of the constructor, which validates them.
-
-    Raises
-    ------
-    ModelError
-        If a path does not exist, or leads into a value that another path replaces.
-    """
+    """Constructor arguments of a part with some values changed at once."""
     if not isinstance(changes, Mapping):
         raise ModelError(f'changes = {shorten(repr(changes))} must be a mapping, such as {{"belt.length": 1.2}}.')
     arguments = _changed(part, {steps_of(path): value for path, value in changes.items()}, "")
@@ -44,65 +26,19 @@ def changed_arguments(part: Part, changes: Mapping[str, Any]) -> dict[str, Any]:
 
 
 def value_at(part: Part, path: str) -> Any:
-    """The value at a path.
-
-    Parameters
-    ----------
-    part
-        The part.
-    path
-        As for `changed_arguments`.
-
-    Returns
-    -------
-    object
-        None where an argument is left open.
-
-    Raises
-    ------
-    ModelError
-        If the path leads nowhere.
-    """
+    """The value at a path."""
     return _followed(part, path)[-1][1]
 
 
 def converted(part: Part, path: str, value: Any) -> Any:
-    """A value converted as at a path, such as ``"25 mm"`` in m, validated by the innermost part alone.
-
-    Parameters
-    ----------
-    part
-        The part; it stays as it is.
-    path
-        As for `changed_arguments`.
-    value
-        A number, or text with a unit.
-
-    Raises
-    ------
-    ModelError
-        If the path does not exist, or the value is invalid there.
-    """
+    """A value converted as at a path, such as ``"25 mm"`` in m, validated by the innermost part alone."""
     inner, steps = _innermost(part, path)
     rest = f"{steps[0]}{''.join(f'[{one}]' for one in steps[1:])}"
     return value_at(type(inner)(**changed_arguments(inner, {rest: value})), rest)
 
 
 def unit_at(part: Part, path: str) -> str:
-    """The SI unit of the number at a path; empty for a dimensionless number.
-
-    Parameters
-    ----------
-    part
-        The part.
-    path
-        As for `changed_arguments`.
-
-    Raises
-    ------
-    ModelError
-        If the path does not exist, or is not that of a number.
-    """
+    """The SI unit of the number at a path; empty for a dimensionless number."""
     inner, steps = _innermost(part, path)
     fields = {field.alias or name: field for name, field in type(inner).model_fields.items()}
     field = (fields | dict(type(inner).alternatives()))[steps[0]]
@@ -113,27 +49,7 @@ def unit_at(part: Part, path: str) -> str:
 
 
 def as_argument(part: Part, path: str, size: float) -> tuple[str, float]:
-    """A toleranced number as the argument that replaces it: for a diameter, the radius with half the tolerance.
-
-    Parameters
-    ----------
-    part
-        The part.
-    path
-        As for `changed_arguments`.
-    size
-        Its tolerance.
-
-    Returns
-    -------
-    path, size
-        Unchanged if the number is not replaced.
-
-    Raises
-    ------
-    ModelError
-        If the path leads nowhere.
-    """
+    """A toleranced number as the argument that replaces it: for a diameter, the radius with half the tolerance."""
     inner, steps = _innermost(part, path)
     other = inner.in_place_of.get(steps[0])
     if other is None or steps[0] in inner.arguments:
@@ -169,18 +85,7 @@ def _followed(part: Part, path: str) -> list[tuple[str, Any]]:
 
 
 def steps_of(path: str) -> Steps:
-    """The steps of a path: keys, and names or numbers of entries.
-
-    Parameters
-    ----------
-    path
-        Such as "pulley[driven].load[1].torque".
-
-    Raises
-    ------
-    ModelError
-        If it is not a valid path.
-    """
+    """The steps of a path: keys, and names or numbers of entries."""
     found = list(_STEP.finditer(str(path)))
     if not found or "".join(match[0] for match in found) != path or path.startswith((".", "[")):
         raise ModelError(f'"{path}" is not a path. Write for example "belt.length" or "pulley[driven].load[1].torque".')

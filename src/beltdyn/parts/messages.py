@@ -120,33 +120,12 @@ class Told(NamedTuple):
 
 
 def explain(error: ValidationError, model: type[BaseModel], data: Mapping[str, Any]) -> str:
-    """Explain the validation errors of a drive or a part of it.
-
-    Parameters
-    ----------
-    error : ValidationError
-        What pydantic found.
-    model : type
-        The model that was validated.
-    data : mapping
-        What it was validated from.
-
-    Returns
-    -------
-    str
-        One line for each error.
-    """
+    """Explain the validation errors of a drive or a part of it."""
     return "\n".join(dict.fromkeys(one.sentence for one in told_apart(error, model, data)))
 
 
 def told_apart(error: ValidationError, model: type[BaseModel], data: Mapping[str, Any]) -> list[Told]:
-    """Explain each error with its location; arguments as for `explain`.
-
-    Returns
-    -------
-    list of Told
-        Those that do not follow from another one; at last how many more there are, if there are many.
-    """
+    """Explain each error with its location; arguments as for `explain`."""
     locations = ErrorLocation(model, data)
     details = error.errors(include_url=False)[:_MOST_ERRORS]
     kept = [detail for detail in details if not _follows_from_another(detail, details, locations)]

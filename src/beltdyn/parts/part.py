@@ -25,33 +25,14 @@ _NAMES = {float: "float", int: "int", bool: "bool", str: "str"}
 
 
 def document(part: type[BaseModel], others: Mapping[str, FieldInfo]) -> str:
-    """Docstring of a part with numpydoc sections of its constructor's arguments.
-
-    Parameters
-    ----------
-    part
-        A kind of part, whose docstring has no such section yet.
-    others
-        Arguments that are taken in place of fields, by their names.
-
-    Returns
-    -------
-    str
-        The docstring.
-    """
+    """Docstring of a part with numpydoc sections of its constructor's arguments."""
     fields = {field.alias or name: field for name, field in part.model_fields.items()}
     told, heading, examples = inspect.cleandoc(part.__doc__ or "").partition(_EXAMPLES)
     return told + _section("Parameters", fields) + _section("Other Parameters", others) + heading + examples
 
 
 def signature(part: type[BaseModel], others: Mapping[str, FieldInfo]) -> inspect.Signature:
-    """Signature of the constructor of a part, for help and completion; arguments as for `document`.
-
-    Returns
-    -------
-    inspect.Signature
-        Keyword arguments only; those that another one may stand in for show None.
-    """
+    """Signature of the constructor of a part, for help and completion; arguments as for `document`."""
     fields = {field.alias or name: field for name, field in part.model_fields.items()}
     return inspect.Signature(
         [
@@ -190,13 +171,7 @@ class Part(BaseModel):
         return isinstance(other, Part) and type(self) is type(other) and self.arguments == other.arguments
 
     def value_of(self, key: str) -> Any:
-        """The value of a constructor argument, given or derived; None if it is open.
-
-        Parameters
-        ----------
-        key : str
-            One of `keys`.
-        """
+        """The value of a constructor argument, given or derived; None if it is open."""
         return self.arguments.get(key)
 
     @property
@@ -211,22 +186,6 @@ class Part(BaseModel):
 
     def replace(self, **changes: Any) -> Self:
         """Make a validated copy with some values changed.
-
-        Parameters
-        ----------
-        **changes
-            The constructor's arguments that differ. Where one argument is given in place of another, as a tension
-            of the belt in place of its length, the new one takes the place of the old one.
-
-        Returns
-        -------
-        Part
-            A part of the same kind.
-
-        Raises
-        ------
-        ModelError
-            If the changed part is not valid.
 
         Examples
         --------

@@ -49,25 +49,7 @@ def _registry() -> "pint.UnitRegistry[float]":
 
 
 def to_si(text: str, unit: str) -> float:
-    """Convert a text such as ``"25 mm"`` into a number in `unit`.
-
-    Parameters
-    ----------
-    text : str
-        A number and a unit, maybe with a tolerance, which `tolerance_in` gives.
-    unit : str
-        The SI unit to convert into; the empty string for a dimensionless number.
-
-    Returns
-    -------
-    float
-        The number in `unit`.
-
-    Raises
-    ------
-    ValueError
-        If the text has no number, no unit, an unknown unit, or a unit of another dimension.
-    """
+    """Convert a text such as ``"25 mm"`` into a number in `unit`."""
     nominal, tolerance = _without_tolerance(text, unit)
     match = _NUMBER.fullmatch(nominal) if len(text) <= _LONGEST_TEXT else None
     if match is None:
@@ -103,25 +85,7 @@ def is_unit(text: str) -> bool:
 
 
 def tolerance_in(text: str, unit: str) -> float | None:
-    """The tolerance of a text such as ``"12.5 ± 0.1 mm"``, ``"12.5 +- 0.1 mm"`` or ``"12.5 mm ± 1 %"``, in `unit`.
-
-    Parameters
-    ----------
-    text : str
-        As for `to_si`.
-    unit : str
-        The SI unit.
-
-    Returns
-    -------
-    float or None
-        None where the text has no tolerance.
-
-    Raises
-    ------
-    ValueError
-        If the text cannot be read.
-    """
+    """The tolerance of a text such as ``"12.5 ± 0.1 mm"``, ``"12.5 +- 0.1 mm"`` or ``"12.5 mm ± 1 %"``, in `unit`."""
     _, match = _without_tolerance(text, unit)
     if match is None:
         return None
@@ -148,24 +112,7 @@ def _without_tolerance(text: str, unit: str) -> tuple[str, re.Match[str] | None]
 
 
 def written_like(value: float, given: object, unit: str, digits: int = 7) -> float | str:
-    """Format a number in the unit of another one.
-
-    Parameters
-    ----------
-    value : float
-        The number, in `unit`.
-    given : object
-        How the other one stands in a drive file: a number, or text such as ``"25 mm"``.
-    unit : str
-        The SI unit.
-    digits : int
-        Digits that are written.
-
-    Returns
-    -------
-    float or str
-        A number in SI where `given` is no text with a unit.
-    """
+    """Format a number in the unit of another one."""
     if isinstance(given, str) and len(given) <= _LONGEST_TEXT:
         try:
             nominal, tolerance = _without_tolerance(given, unit)
@@ -224,13 +171,7 @@ class _Reader:
 
 
 def unit_of(annotation: object) -> str | None:
-    """The SI unit of a field, or of the numbers in a list; None without numbers.
-
-    Parameters
-    ----------
-    annotation : object
-        What the field is annotated with, or an entry of its metadata.
-    """
+    """The SI unit of a field, or of the numbers in a list; None without numbers."""
     if isinstance(annotation, BeforeValidator) and isinstance(annotation.func, _Reader):
         return annotation.func.unit
     inner = (*getattr(annotation, "__metadata__", ()), *get_args(annotation))
@@ -256,20 +197,7 @@ _Toleranced = Annotated[str, StringConstraints(pattern=r"±|\+/?-|%")]
 
 
 def quantity(unit: str, smallest: float = 1e-15) -> BeforeValidator:
-    """Annotate a field that takes a number in `unit`, or text with any unit of the same dimension.
-
-    Parameters
-    ----------
-    unit : str
-        The SI unit; the empty string for a dimensionless number, which takes text only in % or with a tolerance.
-    smallest : float
-        The smallest magnitude beside zero.
-
-    Returns
-    -------
-    BeforeValidator
-        What goes into the annotation of the field.
-    """
+    """Annotate a field that takes a number in `unit`, or text with any unit of the same dimension."""
     return BeforeValidator(_Reader(unit, smallest), json_schema_input_type=float | (str if unit else _Toleranced))
 
 
@@ -318,27 +246,7 @@ _MOST = 10_000
 
 
 def number_in(name: str, value: float | str, unit: str) -> float:
-    """Read a number with or without its unit.
-
-    Parameters
-    ----------
-    name : str
-        What it is, for messages.
-    value : float or str
-        In SI units, or a text such as ``"800 rpm"``.
-    unit : str
-        The SI unit.
-
-    Returns
-    -------
-    float
-        In SI units.
-
-    Raises
-    ------
-    ModelError
-        If the text is no such quantity, or the number is not finite.
-    """
+    """Read a number with or without its unit."""
     try:
         number = to_si(value, unit) if isinstance(value, str) else float(value)
         if not isfinite(number):
@@ -349,29 +257,7 @@ def number_in(name: str, value: float | str, unit: str) -> float:
 
 
 def numbers_in(name: str, text: str, unit: str, count: int) -> FloatArray:
-    """Read a range as equally spaced numbers, or a list of numbers.
-
-    Parameters
-    ----------
-    name : str
-        What it is, for messages.
-    text : str
-        Such as ``"700..6000 rpm"`` or ``"700, 1500 rpm"``; the unit belongs to all numbers.
-    unit : str
-        The SI unit; the empty string for pure numbers, which may be in %.
-    count : int
-        How many numbers to take out of a range.
-
-    Returns
-    -------
-    ndarray
-        Ascending, in SI units.
-
-    Raises
-    ------
-    ModelError
-        If the text is neither, its unit is not known, or there are no different numbers.
-    """
+    """Read a range as equally spaced numbers, or a list of numbers."""
     ranged, listed = _RANGE.fullmatch(str(text)), _LIST.fullmatch(str(text))
     example = "700..6000 rpm" if unit == "rad/s" else f"0.2..1.2 {unit}".rstrip()
     if ranged is not None:

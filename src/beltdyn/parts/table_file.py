@@ -55,18 +55,6 @@ def read_rows(path: Path, hint: str = "") -> CsvRows:
     Text is UTF-8, with or without a byte-order mark, UTF-16 with one, or else Windows-1252, of which Latin-1 is a part.
     Cells are separated by tabs or semicolons if these are in more than half of the lines, and else by commas. Where no
     comma separates and no number has a decimal point, numbers may have decimal commas.
-
-    Parameters
-    ----------
-    path : Path
-        The file.
-    hint : str
-        What a message adds where there is no such file.
-
-    Raises
-    ------
-    ValueError
-        If it cannot be read as CSV: what goes behind the name of the file.
     """
     try:
         lines = _decoded(read_bytes(path, LONGEST_TABLE)).splitlines()
@@ -152,13 +140,7 @@ class HeadedColumn(NamedTuple):
     """Numbers of lines, and what stands there."""
 
     def values(self, unit: str) -> list[float]:
-        """Numbers in an SI unit, or as they are where either has none; those in % as parts of one.
-
-        Raises
-        ------
-        ModelError
-            If a cell is no number, or the unit is another one.
-        """
+        """Numbers in an SI unit, or as they are where either has none; those in % as parts of one."""
         return [self._number(line, cell, unit) for line, cell in self.cells]
 
     def _number(self, line: int, cell: str, unit: str) -> float:
@@ -175,20 +157,7 @@ class HeadedColumn(NamedTuple):
 
 
 def read_headed(option: str, path: Path) -> list[HeadedColumn]:
-    """Read a table.
-
-    Parameters
-    ----------
-    option
-        Name of the option that names it, for messages.
-    path
-        The CSV file.
-
-    Raises
-    ------
-    ModelError
-        If it cannot be read, has no rows, or lines of other lengths than its headings.
-    """
+    """Read a table."""
     try:
         rows = without_preamble(read_rows(path).rows)
     except ValueError as error:
@@ -217,28 +186,7 @@ _MOST_ROWS = 250_000
 
 
 def take_file(data: Any, info: ValidationInfo, first: str, second: str) -> Any:
-    """Replace the key ``file`` of a table by the two columns of that CSV file.
-
-    Parameters
-    ----------
-    data : object
-        What a user gave for a table; returned as it is if it names no file.
-    info : ValidationInfo
-        Its context may hold ``base``, the folder that a relative path starts from.
-    first, second : str
-        The keys of the columns.
-
-    Returns
-    -------
-    object
-        The same table with its columns, as text with units where the key ``units``, or else the head of the file,
-        gives those of the columns.
-
-    Raises
-    ------
-    ValueError
-        If there are columns beside the file, or the file cannot be read.
-    """
+    """Replace the key ``file`` of a table by the two columns of that CSV file."""
     if not names_file(data, (first, second)):
         return data
     told, rows = read_table(data["file"], _base(info), 2)
@@ -254,23 +202,6 @@ def take_grid(data: Any, info: ValidationInfo, rows: str, columns: str, values: 
 
     Its first line has the columns' arguments behind a first cell of any content; each other line has the argument of a
     row, and then its values.
-
-    Parameters
-    ----------
-    data, info
-        As for `take_file`; ``units`` are those of rows, columns and values.
-    rows, columns, values : str
-        The keys of both arguments, and of the values.
-
-    Returns
-    -------
-    object
-        The same table with these keys; the values are a list of rows.
-
-    Raises
-    ------
-    ValueError
-        If one of these keys is there beside the file, or the file cannot be read.
     """
     if not names_file(data, (rows, columns, values)):
         return data
@@ -313,20 +244,7 @@ def _base(info: ValidationInfo) -> Path | None:
 
 
 def check_points(first: str, arguments: Sequence[float], second: str, values: Sequence[object]) -> None:
-    """Check that the points of a table are a function.
-
-    Parameters
-    ----------
-    first, second : str
-        The keys of the columns.
-    arguments, values : sequence of float
-        The columns.
-
-    Raises
-    ------
-    ValueError
-        If the columns differ in length, or the first is not ascending.
-    """
+    """Check that the points of a table are a function."""
     if len(arguments) != len(values):
         raise ValueError(
             f"{first} has {len(arguments)} numbers but {second} has {len(values)}. Give one {second[:-1]} for each "
@@ -340,17 +258,7 @@ def check_points(first: str, arguments: Sequence[float], second: str, values: Se
 
 
 def describe_file(schema: dict[str, Any], keys: Sequence[str], content: str) -> None:
-    """Add the keys ``file`` and ``units``, which are replaced by others on reading, to the JSON schema of a table.
-
-    Parameters
-    ----------
-    schema : dict
-        Changed in place.
-    keys : sequence of str
-        The keys that the file replaces.
-    content : str
-        What the file holds.
-    """
+    """Add the keys ``file`` and ``units``, which are replaced by others on reading, to the JSON schema of a table."""
     schema["properties"]["file"] = {"type": "string", "description": f"the path of a CSV file with {content}"}
     schema["properties"]["units"] = {
         "type": "array",
@@ -377,21 +285,6 @@ def read_table(name: object, base: Path | None, width: int | None) -> NumberTabl
     Lines that are empty or start with ``#`` are skipped, and so is a head: all lines above the first numbers whose
     first cell does not begin as a number does. Units are in brackets behind headings, such as ``speed [rpm]``, or in a
     row of their own below them.
-
-    Parameters
-    ----------
-    name : object
-        Path of the file, as the user wrote it.
-    base : Path or None
-        Folder that a relative path starts from; None for the working directory.
-    width : int or None
-        Numbers in a row.  None for a grid, whose rows are as long as its first line; the first cell of that is read as
-        zero.
-
-    Raises
-    ------
-    ValueError
-        If the file cannot be read, or is not a table of such rows.
     """
     if not isinstance(name, str | Path):
         raise ValueError(f"file = {shorten(name)} must be the path of a CSV file, as text")

@@ -39,18 +39,7 @@ class ErrorLocation:
         self._prefix = "" if getattr(model, "fills_a_file", False) else model.__name__.lower()
 
     def locate(self, location: tuple[int | str, ...]) -> tuple[str, dict[str, Any]]:
-        """Find the path in the user's notation, ``pulley[driven].radius``, and the schema of its key.
-
-        Parameters
-        ----------
-        location : tuple
-            Keys, positions in lists and, after a profile, its kind; after one of several options, which one.
-
-        Returns
-        -------
-        path : str
-        schema : dict
-        """
+        """Find the path in the user's notation, ``pulley[driven].radius``, and the schema of its key."""
         path, _, schema = self._follow(location)
         return path, schema
 
@@ -107,18 +96,7 @@ class ErrorLocation:
 
 
 def option_names(schema: Mapping[str, Any]) -> dict[str, dict[str, Any]]:
-    """Names of alternative forms in locations: by their part, or their JSON type.
-
-    Parameters
-    ----------
-    schema : mapping
-        The JSON schema of a key.
-
-    Returns
-    -------
-    dict
-        Name -> schema; empty where there are no such options.
-    """
+    """Names of alternative forms in locations: by their part, or their JSON type."""
     options = schema.get("oneOf", ()) if {"discriminator", "properties"}.isdisjoint(schema) else ()
     return {option.get("$ref", option.get("type", "")).split("/")[-1]: option for option in options}
 
@@ -169,45 +147,12 @@ def as_text(name: str) -> str:
 
 
 def read_text(path: Path, longest: int) -> str:
-    """Read a UTF-8 text file.
-
-    Parameters
-    ----------
-    path, longest
-        As for `read_bytes`.
-
-    Returns
-    -------
-    str
-        The text, without a byte order mark.
-
-    Raises
-    ------
-    OSError
-        If it cannot be read.
-    ValueError
-        As `read_bytes`; or if it is no text in UTF-8 (`UnicodeDecodeError`).
-    """
+    """Read a UTF-8 text file."""
     return read_bytes(path, longest).decode("utf-8-sig").replace("\r\n", "\n")
 
 
 def read_bytes(path: Path, longest: int) -> bytes:
-    """Read a file up to a limit of size.
-
-    Parameters
-    ----------
-    path : Path
-        The file.
-    longest : int
-        The limit, bytes.
-
-    Raises
-    ------
-    OSError
-        If it cannot be read.
-    ValueError
-        If it is not a regular file, is too long, or its name is invalid.
-    """
+    """Read a file up to a limit of size."""
     with open_file(path) as file:
         data, size = file.read(longest + 1), os.fstat(file.fileno()).st_size
     if len(data) > longest:
@@ -216,15 +161,7 @@ def read_bytes(path: Path, longest: int) -> bytes:
 
 
 def open_file(path: Path) -> BinaryIO:
-    """Open a regular file for reading; a pipe would block the reader.
-
-    Raises
-    ------
-    OSError
-        If it cannot be opened.
-    ValueError
-        If it is not a regular file, or its name is invalid.
-    """
+    """Open a regular file for reading; a pipe would block the reader."""
     if path.is_dir():  # which some systems do not open
         raise ValueError("is a directory")
     file = os.open(path, os.O_RDONLY | _NO_WAITING)
@@ -235,23 +172,7 @@ def open_file(path: Path) -> BinaryIO:
 
 
 def parse_toml(text: str) -> dict[str, Any]:
-    """Parse TOML.
-
-    Parameters
-    ----------
-    text : str
-        The text.
-
-    Returns
-    -------
-    dict
-        Its tables.
-
-    Raises
-    ------
-    ValueError
-        If it is not TOML, is too long, nests too deeply, or holds too long a number.
-    """
+    """Parse TOML."""
     if len(text) > LONGEST_TOML:
         raise ValueError(f"it is longer than {LONGEST_TOML:,} characters. Move long tables to CSV files")
     if _depth(text) > _DEEPEST:

@@ -37,13 +37,7 @@ class Edit(NamedTuple):
 
 
 def changed_data(data: dict[str, Any], edits: Sequence[Edit]) -> dict[str, Any]:
-    """Return plain data with some edits; the input is unchanged.
-
-    Raises
-    ------
-    LookupError
-        If a location leads nowhere.
-    """
+    """Return plain data with some edits; the input is unchanged."""
     changed = copy.deepcopy(data)
     for edit in edits:
         _apply(changed, edit, plain=True)
@@ -51,22 +45,7 @@ def changed_data(data: dict[str, Any], edits: Sequence[Edit]) -> dict[str, Any]:
 
 
 def changed_text(text: str, edits: Sequence[Edit], data: dict[str, Any]) -> str | None:
-    """Return a text with some edits, and the rest as its author wrote it.
-
-    Parameters
-    ----------
-    text : str
-        TOML.
-    edits : sequence of Edit
-        What changes.
-    data : dict
-        What the changed text must say, as `changed_data` gives it.
-
-    Returns
-    -------
-    str or None
-        None where the text cannot be changed so.
-    """
+    """Return a text with some edits, and the rest as its author wrote it."""
     try:
         written = tomlkit.parse(text)
         for edit in edits:

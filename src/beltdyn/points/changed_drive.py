@@ -12,20 +12,7 @@ from beltdyn.transient.sweep import without_schedules
 
 
 def held_at(drive: Drive, at: float | str | None) -> Drive:
-    """Hold speeds, torques and schedules as they are at an instant, with the belt's length or take-up found.
-
-    Parameters
-    ----------
-    drive
-        The drive.
-    at
-        The instant, such as "0.5 s", or in s; by default the end of the simulation.
-
-    Raises
-    ------
-    ConvergenceError
-        If there is no length that gives the installed tension.
-    """
+    """Hold speeds, torques and schedules as they are at an instant, with the belt's length or take-up found."""
     held = at_instant(drive, at)
     return held if held.belt.installed_tension is None else bring_to_stand(held).drive
 
@@ -42,13 +29,7 @@ def sense_of(drive: Drive, number: int) -> float:
 
 
 def driver_of(drive: Drive) -> int:
-    """Number of the pulley that drives: the first whose speed is prescribed, or else the first with a motor.
-
-    Raises
-    ------
-    ModelError
-        If nothing drives.
-    """
+    """Number of the pulley that drives: the first whose speed is prescribed, or else the first with a motor."""
     if drive.driver is None:
         raise ModelError(
             "nothing drives the belt: no pulley has a speed or a motor. Give the pulley whose speed to prescribe."
@@ -62,17 +43,7 @@ def is_motor(load: Load) -> bool:
 
 
 def at_speed(drive: Drive, number: int, speed: float) -> Drive:
-    """Prescribe the speed of a pulley, in place of its motor, torque and loads.
-
-    Parameters
-    ----------
-    drive
-        The drive.
-    number
-        Number of the pulley.
-    speed
-        rad/s.
-    """
+    """Prescribe the speed of a pulley, in place of its motor, torque and loads."""
     return with_pulley(drive, number, _at_speed(drive.pulleys[number], speed))
 
 
@@ -98,13 +69,6 @@ def with_load(drive: Drive, factor: float) -> Drive:
     """Multiply all torques and loads, but for those of motors.
 
     A load times 1.3 is the load and another one with the schedule 0.3, as schedules reach up to 1.
-
-    Parameters
-    ----------
-    drive
-        With constant torques and schedules.
-    factor
-        Zero or more.
     """
     if factor == 1.0:
         return drive

@@ -104,18 +104,7 @@ def duty(
 
 
 def read_duty(path: Path) -> list[Column]:
-    """Read a duty table.
-
-    Parameters
-    ----------
-    path
-        The CSV file.
-
-    Raises
-    ------
-    ModelError
-        If it cannot be read, or a heading, number or duration is wrong.
-    """
+    """Read a duty table."""
     columns = [_column(one) for one in read_headed("table", path)]
     durations = [one.values for one in columns if one.what == "duration"]
     if len(durations) != 1 or min(durations[0]) < 0.0 or not sum(durations[0]) > 0.0:
@@ -140,17 +129,7 @@ def durations_of(columns: list[Column]) -> FloatArray:
 
 
 def at_row(held: Drive, columns: list[Column], row: int) -> Drive:
-    """The drive at the operating point of a row of a table.
-
-    Parameters
-    ----------
-    held
-        The drive, with constant speeds and torques.
-    columns
-        The table.
-    row
-        Number of the row, from 0.
-    """
+    """The drive at the operating point of a row of a table."""
     loads = [one.values[row] for one in columns if one.what == "load"]
     if loads and loads[0] < 0.0:
         raise ModelError(f"row {row + 1}: load = {loads[0]:g} is negative, with which loads would drive.")

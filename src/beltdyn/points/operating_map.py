@@ -99,17 +99,7 @@ def operating_map(
 
 
 def at_point(held: Drive, pulley: int, there: Mapping[str, float]) -> Drive:
-    """The drive at an operating point of a map.
-
-    Parameters
-    ----------
-    held
-        The drive, with constant speeds and torques.
-    pulley
-        Number of the pulley whose speed is prescribed.
-    there
-        Its "speed" in the sense in which it turns, rad/s, and the "load", a factor; either may be missing.
-    """
+    """The drive at an operating point of a map."""
     factor = there.get("load", 1.0)
     if "speed" not in there:
         return with_load(held, factor)
@@ -117,20 +107,7 @@ def at_point(held: Drive, pulley: int, there: Mapping[str, float]) -> Drive:
 
 
 def load_factors(load: str, count: int) -> FloatArray:
-    """Factors on loads.
-
-    Parameters
-    ----------
-    load
-        A range or a list.
-    count
-        How many to take out of a range.
-
-    Raises
-    ------
-    ModelError
-        If one is below zero.
-    """
+    """Factors on loads."""
     factors = numbers_in("load", load, "", count)
     if factors[0] < 0.0:
         raise ModelError(

@@ -97,15 +97,7 @@ def labels_of(drive: Drive) -> dict[str, list[str]]:
 
 
 def values_by_name(run: Run, means: Means) -> dict[str, Any]:
-    """The values of an operating point by the names of `VARIABLES`.
-
-    Parameters
-    ----------
-    run
-        Steady running.
-    means
-        Its means.
-    """
+    """The values of an operating point by the names of `VARIABLES`."""
     balance, dataset, tensions = means.balance, run.dataset, [one.tension for one in means.spans]
     values: dict[str, Any] = {
         name: [getattr(one, attribute) for one in means.pulleys] for name, attribute in _OF_PULLEYS.items()
@@ -250,23 +242,6 @@ class OperatingPoints:
         """Find the operating points one after the other, each from the one before.
 
         Whatever goes wrong at a point is noted there, and the others are found all the same.
-
-        Parameters
-        ----------
-        at
-            The drive at an operating point, with constant speeds, torques and schedules: a function of its labels along
-            the axes.
-        force_tolerance
-            As for `steady_state`.
-        order
-            Places in the table, in the order in which they are found; by default one after the other.
-        then
-            Called with the place of each point and its steady running, None where there is none.
-        found_then
-            What that finds, in words.
-        stride
-            Longest way along the axis from one search to the next; with it, a point that is not found from the one
-            before is looked for by parts of the way, too.
         """
         for index in np.ndindex(self.shape) if order is None else order:
             self._find(index, at, force_tolerance, stride)
@@ -299,13 +274,7 @@ class OperatingPoints:
         return steady_state(at(*there), force_tolerance=force_tolerance, start=self._near)
 
     def _reach(self, found: Callable[[Sequence[float]], Run], there: FloatArray, stride: float) -> Run:
-        """Steady running, by strides, and by parts of the last one where it is not found at once.
-
-        Raises
-        ------
-        ConvergenceError
-            That of the point itself, if it is not found.
-        """
+        """Steady running, by strides, and by parts of the last one where it is not found at once."""
         if self._near is None:
             return found(there.tolist())
         begin = np.array(self._near_at)
@@ -351,15 +320,7 @@ class OperatingPoints:
         self._warn(index, re.sub(r"[\d.,e+\-−–%]+", "#", text), text)
 
     def result(self) -> Result:
-        """The table as it is now.
-
-        Raises
-        ------
-        ConvergenceError
-            If points were looked for, and none was found.
-        ModelError
-            If that is for an error of the drive or the options.
-        """
+        """The table as it is now."""
         if self._error and not self.found and self._status != "interrupted":
             kind = ModelError if isinstance(self._error, ModelError) else ConvergenceError
             points = f"no steady running at any of {self._done} points. The first one: " if self._done > 1 else ""

@@ -283,13 +283,7 @@ def _balanced(drive: Drive) -> Installation:
 
 
 def _number_of(drive: Drive, pulley: str | None) -> int:
-    """Number of a tensioner among those that move.
-
-    Raises
-    ------
-    ModelError
-        If there is none, or none of that name, or several of which none is named.
-    """
+    """Number of a tensioner among those that move."""
     names = [one.pulley for one in drive.moving_tensioners]
     if not names:
         raise ModelError(
@@ -305,13 +299,7 @@ def _number_of(drive: Drive, pulley: str | None) -> int:
 
 
 def _length(name: str, text: str, nominal: float) -> float:
-    """A length, m, given as one or as a part of the nominal length.
-
-    Raises
-    ------
-    ModelError
-        If it is neither, below zero, or as long as the belt.
-    """
+    """A length, m, given as one or as a part of the nominal length."""
     whole = text.strip()
     try:
         found = nominal * float(whole[:-1]) / 100.0 if whole.endswith("%") else to_si(whole, "m")

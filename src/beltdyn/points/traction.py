@@ -162,13 +162,7 @@ def _driven_by_speed(drive: Drive, force_tolerance: float | None) -> Drive:
 
 
 def _loaded(drive: Drive, driver: int) -> int:
-    """Number of the only pulley beside the driver that has a torque or loads.
-
-    Raises
-    ------
-    ModelError
-        If there is not just one.
-    """
+    """Number of the only pulley beside the driver that has a torque or loads."""
     taking = [number for number, one in enumerate(drive.pulleys) if number != driver and (one.load or one.torque)]
     others = [number for number in range(len(drive.pulleys)) if number != driver]
     found = taking if taking or others[1:] else others
@@ -191,13 +185,7 @@ def _firmness(near: Run | None, number: int) -> float:
 
 
 def _past_gross_slip(slipping: Callable[[float, float], Drive], number: int, points: int) -> FloatArray:
-    """Slips from zero to some way beyond where the whole arc of the pulley slides, or that of the driver.
-
-    Raises
-    ------
-    ConvergenceError
-        If there is no steady running with any slip.
-    """
+    """Slips from zero to some way beyond where the whole arc of the pulley slides, or that of the driver."""
     if points < _FEWEST:
         raise ModelError(f"points = {points} must be {_FEWEST} or more. Give more, or a list of slips.")
     creeping, sliding, run = 0.0, _LAST, None

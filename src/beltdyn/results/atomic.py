@@ -89,18 +89,7 @@ def locked(path: Path, patience: float = 0.0) -> Iterator[None]:
 
 
 def lock_file(path: Path) -> Path:
-    """The file that is there while a run writes a result, and after a run that was killed.
-
-    Parameters
-    ----------
-    path : Path
-        The result file.
-
-    Returns
-    -------
-    Path
-        In the same folder.
-    """
+    """The file that is there while a run writes a result, and after a run that was killed."""
     return path.with_name(f".{path.name}.lock")
 
 
@@ -139,27 +128,7 @@ _FULL = (errno.ENOSPC, errno.EFBIG, getattr(errno, "EDQUOT", errno.ENOSPC))
 
 @contextmanager
 def atomic_path(path: Path, is_ours: Callable[[Path], bool], overwrite: bool = False) -> Iterator[Path]:
-    """Give a temporary path that is moved to `path` on success.
-
-    Parameters
-    ----------
-    path : Path
-        The file to be written; of a symbolic link that to which it leads.
-    is_ours : callable
-        Tells whether a regular file that exists was written by beltdyn, and so may be replaced.
-    overwrite : bool
-        Replace any regular file.
-
-    Yields
-    ------
-    Path
-        A path in the same folder with the same suffix.
-
-    Raises
-    ------
-    ModelError
-        If the file cannot be written, is being written by another one, or would replace one that is not ours.
-    """
+    """Give a temporary path that is moved to `path` on success."""
     require_replaceable(path, is_ours, overwrite)
     target = target_of(path)
     temporary = target.with_name(f".{target.stem}.{secrets.token_hex(4)}{target.suffix}")
@@ -178,18 +147,7 @@ def atomic_path(path: Path, is_ours: Callable[[Path], bool], overwrite: bool = F
 
 @contextmanager
 def locked_output(path: Path) -> Iterator[None]:
-    """Let nobody else write to a file meanwhile.
-
-    Parameters
-    ----------
-    path : Path
-        The file.
-
-    Raises
-    ------
-    ModelError
-        If another one writes to it, or nobody can.
-    """
+    """Let nobody else write to a file meanwhile."""
     with ExitStack() as held:
         try:
             held.enter_context(locked(target_of(path)))
@@ -199,13 +157,7 @@ def locked_output(path: Path) -> Iterator[None]:
 
 
 def target_of(path: Path) -> Path:
-    """The file that a path leads to, whether or not it is there.
-
-    Raises
-    ------
-    ModelError
-        If links lead in a circle.
-    """
+    """The file that a path leads to, whether or not it is there."""
     try:
         target = path.resolve()
         target.is_symlink()  # from Python 3.13 on a circle is told here at the earliest
@@ -216,22 +168,7 @@ def target_of(path: Path) -> Path:
 
 
 def require_replaceable(path: Path, is_ours: Callable[[Path], bool], overwrite: bool = False) -> None:
-    """Check that writing a file does not destroy another one.
-
-    Parameters
-    ----------
-    path : Path
-        The file.
-    is_ours : callable
-        Tells whether a regular file that exists was written by beltdyn.
-    overwrite : bool
-        Whether any regular file may be replaced.
-
-    Raises
-    ------
-    ModelError
-        If the path is a file of another program, or not a file.
-    """
+    """Check that writing a file does not destroy another one."""
     try:
         mode = path.stat().st_mode
     except FileNotFoundError:
@@ -249,18 +186,7 @@ def require_replaceable(path: Path, is_ours: Callable[[Path], bool], overwrite: 
 
 
 def stamp(path: Path) -> tuple[int, int] | None:
-    """Inode and time of a file, which identify it and its version.
-
-    Parameters
-    ----------
-    path : Path
-        The file.
-
-    Returns
-    -------
-    number, time : int, or None
-        None where there is no file.
-    """
+    """Inode and time of a file, which identify it and its version."""
     try:
         status = path.stat()
     except (OSError, ValueError):
@@ -269,13 +195,7 @@ def stamp(path: Path) -> tuple[int, int] | None:
 
 
 def remove_leftovers(path: Path) -> None:
-    """Remove temporary files of `atomic_path` that a killed process has left beside a file.
-
-    Parameters
-    ----------
-    path : Path
-        The file that was to be written, which the caller has locked.
-    """
+    """Remove temporary files of `atomic_path` that a killed process has left beside a file."""
     pattern = re.compile(rf"\.{re.escape(path.stem)}\.[0-9a-f]{{8}}{re.escape(path.suffix)}")
     with suppress(OSError):
         for file in path.parent.iterdir():
@@ -284,20 +204,7 @@ def remove_leftovers(path: Path) -> None:
 
 
 def is_marked(path: Path, mark: str = MARK) -> bool:
-    """Whether a file carries the mark of beltdyn.
-
-    Parameters
-    ----------
-    path : Path
-        A regular file.
-    mark : str
-        What it holds near its start or its end.
-
-    Returns
-    -------
-    bool
-        False too if it cannot be read.
-    """
+    """Whether a file carries the mark of beltdyn."""
     with suppress(OSError), path.open("rb") as file:
         start = file.read(_MARKED)
         file.seek(max(path.stat().st_size - _MARKED, 0))
@@ -306,20 +213,7 @@ def is_marked(path: Path, mark: str = MARK) -> bool:
 
 
 def unwritable(path: Path, error: Exception) -> str:
-    """Message for a file that cannot be written, with the remedy.
-
-    Parameters
-    ----------
-    path : Path
-        The file.
-    error : Exception
-        The error of the operating system.
-
-    Returns
-    -------
-    str
-        The message.
-    """
+    """Message for a file that cannot be written, with the remedy."""
     number = getattr(error, "errno", None)
     if number in _FULL:
         return f"{path} cannot be written ({os.strerror(number)}). Make room, or write to another disk."
@@ -328,23 +222,7 @@ def unwritable(path: Path, error: Exception) -> str:
 
 
 def make_folder(folder: Path) -> Path:
-    """Create a folder and its parents unless they exist.
-
-    Parameters
-    ----------
-    folder : Path
-        The folder.
-
-    Returns
-    -------
-    Path
-        The folder.
-
-    Raises
-    ------
-    ModelError
-        If it cannot be made.
-    """
+    """Create a folder and its parents unless they exist."""
     try:
         folder.mkdir(parents=True, exist_ok=True)
     except OSError as error:

@@ -79,13 +79,7 @@ class Balance:
 
 
 def losses_of(recorded: Recorded) -> Mapping[str, str]:
-    """Give the recorded works of the losses, and their causes in words.
-
-    Parameters
-    ----------
-    recorded : Recorded
-        The results.
-    """
+    """Give the recorded works of the losses, and their causes in words."""
     return {name: cause for name, cause in LOSSES.items() if name in recorded} | (
         {} if "bending_loss" in recorded else _BEFORE
     )
@@ -143,34 +137,12 @@ class Closure(NamedTuple):
 
 
 def largest_closure(recorded: Recorded) -> Closure:
-    """Largest energy balance error over time.
-
-    Parameters
-    ----------
-    recorded : Recorded
-        The results, with at least one output.
-
-    Returns
-    -------
-    Closure
-        The error of largest magnitude with its sign, and its instant; the first NaN if there is one.
-    """
+    """Largest energy balance error over time."""
     return _largest(recorded, np.asarray(recorded["energy_closure"]))
 
 
 def largest_numerical_share(recorded: Recorded) -> Closure:
-    """Largest share of the energy input lost in time integration.
-
-    Parameters
-    ----------
-    recorded : Recorded
-        The results, with at least one output.
-
-    Returns
-    -------
-    Closure
-        The share of largest magnitude with its sign, and its instant.
-    """
+    """Largest share of the energy input lost in time integration."""
     taken, given = np.asarray(recorded["numerical_loss"]), energy_put_in(recorded)
     shares = np.divide(taken, given, out=np.zeros_like(given), where=given > 0.0)
     return _largest(recorded, shares)

@@ -88,18 +88,7 @@ def page_count(end: int) -> int:
 
 
 def find_checksums(file: BinaryIO) -> Checksums | None:
-    """The checksums that count in a file.
-
-    Parameters
-    ----------
-    file
-        Open for reading.
-
-    Returns
-    -------
-    Checksums or None
-        None where there are none that are whole.
-    """
+    """The checksums that count in a file."""
     size = file.seek(0, 2)
     last = next(_all_between(file, 0, size), None)
     if last is None:
@@ -147,25 +136,7 @@ class DamageError(ValueError):
 
 
 def verify(path: Path) -> bool:
-    """Make sure that a file is as it was written.
-
-    Parameters
-    ----------
-    path : Path
-        The file.
-
-    Returns
-    -------
-    bool
-        False where it has no checksums.
-
-    Raises
-    ------
-    DamageError
-        If it is not.
-    OSError, ValueError
-        If it cannot be read, or is no regular file.
-    """
+    """Make sure that a file is as it was written."""
     status = path.stat()
     return _verify(path, (status.st_dev, status.st_ino, status.st_mtime_ns, status.st_size))
 

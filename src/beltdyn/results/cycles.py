@@ -211,18 +211,6 @@ def mean_window(recorded: Recorded, drive: Drive) -> Window:
     Whole turns of the belt and whole periods of prescribed harmonics and repeating tables: at least a tenth of the
     recorded time, and at most half of it or the time since the last prescribed change. If no turn of the belt fits, the
     window covers whole element passings within a tenth of the time. If nothing turns, it is the last tenth.
-
-    Parameters
-    ----------
-    recorded : Recorded
-        The results, with at least one output.
-    drive : Drive
-        The drive.
-
-    Returns
-    -------
-    Window
-        The averaging window of figures, tables and summaries.
     """
     shortest = turn_window(recorded, drive)
     time, least = shortest.time, SHORTEST * float(np.ptp(shortest.time))
@@ -234,20 +222,7 @@ def mean_window(recorded: Recorded, drive: Drive) -> Window:
 
 
 def turn_window(recorded: Recorded, drive: Drive) -> Window:
-    """Give the shortest window of whole cycles, a turn of the belt if it fits, for running means.
-
-    Parameters
-    ----------
-    recorded : Recorded
-        The results, with at least one output.
-    drive : Drive
-        The drive.
-
-    Returns
-    -------
-    Window
-        The window; if nothing turns, a window without cycles, which leaves values unchanged.
-    """
+    """Give the shortest window of whole cycles, a turn of the belt if it fits, for running means."""
     time = np.asarray(recorded["time"], dtype=float)
     elapsed = float(np.ptp(time))
     if elapsed > 0.0:

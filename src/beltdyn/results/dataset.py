@@ -23,18 +23,7 @@ from beltdyn.results.staged_file import is_marked
 
 
 def open_values(path: Path) -> xr.Dataset:
-    """Open a file of HDF5; values that cannot be read later raise a `ModelError`.
-
-    Parameters
-    ----------
-    path : Path
-        The file.
-
-    Returns
-    -------
-    xarray.Dataset
-        What it holds.
-    """
+    """Open a file of HDF5; values that cannot be read later raise a `ModelError`."""
     store = _Store.open(path)
     try:
         return xr.open_dataset(store, decode_times=False)
@@ -72,22 +61,7 @@ _LONGEST_REASON = 200
 
 
 def build_dataset(layout: Layout, arrays: Mapping[str, NDArray[Any]], attributes: Mapping[str, Any]) -> "xr.Dataset":
-    """Label arrays with their dimensions, coordinates and units.
-
-    Parameters
-    ----------
-    layout : Layout
-        Names and reference coordinates.
-    arrays : mapping
-        An array for every name in `Layout.recorded`, each with one row for each instant.
-    attributes : mapping
-        Global attributes.
-
-    Returns
-    -------
-    xarray.Dataset
-        The dataset.
-    """
+    """Label arrays with their dimensions, coordinates and units."""
     import xarray as xr
 
     coordinates = layout.coordinates | {name: arrays[name] for name in TIMES}
@@ -103,46 +77,12 @@ def build_dataset(layout: Layout, arrays: Mapping[str, NDArray[Any]], attributes
 
 
 def open_dataset(path: Path) -> "xr.Dataset":
-    """Open the result file of a run lazily.
-
-    Parameters
-    ----------
-    path : Path
-        A file written by `FileRecorder`, finished or not.
-
-    Returns
-    -------
-    xarray.Dataset
-        Its complete outputs.
-
-    Raises
-    ------
-    ModelError
-        If the file cannot be read, is not the result of a run, or has a format that is not known yet.
-    """
+    """Open the result file of a run lazily."""
     return complete_dataset(path, read_dataset(path))
 
 
 def complete_dataset(path: Path, dataset: "xr.Dataset") -> "xr.Dataset":
-    """The complete outputs of an open result file of a run.
-
-    Parameters
-    ----------
-    path : Path
-        The file.
-    dataset : xarray.Dataset
-        From `read_dataset`; closed if it is refused.
-
-    Returns
-    -------
-    xarray.Dataset
-        As it is, without what an interrupted run has left, and with the variables that are parts of others.
-
-    Raises
-    ------
-    ModelError
-        If it is not the result of a run.
-    """
+    """The complete outputs of an open result file of a run."""
     try:
         _check_names(path, dataset)
         return _complete(dataset)
@@ -155,24 +95,7 @@ def complete_dataset(path: Path, dataset: "xr.Dataset") -> "xr.Dataset":
 
 
 def read_dataset(path: Path) -> "xr.Dataset":
-    """Open a result file of any kind lazily.
-
-    Parameters
-    ----------
-    path : Path
-        A result file.
-
-    Returns
-    -------
-    xarray.Dataset
-        What it holds.
-
-    Raises
-    ------
-    ModelError
-        If the file cannot be read, is not a result of beltdyn, or has a format that is not known yet; later, where
-        values are read, if they are damaged.
-    """
+    """Open a result file of any kind lazily."""
     try:
         require_intact(path)
         dataset = open_values(path)
@@ -190,15 +113,7 @@ def read_dataset(path: Path) -> "xr.Dataset":
 
 
 def require_intact(path: Path) -> None:
-    """Check that a result file is undamaged.
-
-    Raises
-    ------
-    DamageError
-        If it is damaged, or its checksums are missing.
-    OSError
-        If it cannot be read.
-    """
+    """Check that a result file is undamaged."""
     verified = verify(path)
     with h5py.File(path, "r") as file:  # h5netcdf complains on standard error where HDF5 cannot open a file
         if not verified and is_marked(file):
@@ -214,20 +129,7 @@ def kind_of(dataset: "xr.Dataset") -> str:
 
 
 def unreadable(path: Path, error: Exception) -> str:
-    """Message for a file that cannot be read as a result.
-
-    Parameters
-    ----------
-    path : Path
-        The file.
-    error : Exception
-        The error of the reader.
-
-    Returns
-    -------
-    str
-        The message.
-    """
+    """Message for a file that cannot be read as a result."""
     reason = " ".join(str(getattr(error, "strerror", None) or error).split())[:_LONGEST_REASON]
     said = f"{path} cannot be read as a result file: {reason or type(error).__name__}."
     if lock_file(target_of(path)).exists():
@@ -302,18 +204,7 @@ def _with_parts(dataset: "xr.Dataset") -> "xr.Dataset":
 
 
 def is_result(path: Path) -> bool:
-    """Tell whether a file is a result of beltdyn.
-
-    Parameters
-    ----------
-    path : Path
-        A file.
-
-    Returns
-    -------
-    bool
-        False too if it cannot be read, as a pipe, which would be waited for.
-    """
+    """Tell whether a file is a result of beltdyn."""
     try:
         if not path.is_file():
             return False
@@ -324,25 +215,7 @@ def is_result(path: Path) -> bool:
 
 
 def checked_outputs(layout: Layout, outputs: Mapping[str, NDArray[Any]]) -> dict[str, NDArray[Any]]:
-    """Check names and shapes of outputs.
-
-    Parameters
-    ----------
-    layout : Layout
-        Sizes of the dimensions.
-    outputs : mapping
-        An array for every name in `Layout.recorded`, each with one row for each new output or output of fields.
-
-    Returns
-    -------
-    dict
-        The same arrays in the schema's types and order.
-
-    Raises
-    ------
-    ValueError
-        If a name is missing or unknown, or a shape is wrong.
-    """
+    """Check names and shapes of outputs."""
     recorded = layout.recorded
     if outputs.keys() != recorded.keys():
         names = sorted(outputs.keys() ^ recorded.keys())

@@ -39,25 +39,6 @@ def write_mat(result: Result, path: Path | str, overwrite: bool = False) -> Path
     each heading: ``pulleys.pulley_speed_driver`` for ``pulley_speed driver [rad/s]``. What is no letter or digit of a
     name in MATLAB becomes ``_``, and ``pulleys.headings`` are the headings with units, in order of the columns. Numbers
     are double, names are cells.
-
-    Parameters
-    ----------
-    result : Result
-        A run, or another result.
-    path : Path or str
-        The file, ``.mat``.
-    overwrite : bool
-        Replace any regular file, and not only those of beltdyn.
-
-    Returns
-    -------
-    Path
-        The file.
-
-    Raises
-    ------
-    ModelError
-        If it is a run without an output, or the file cannot be written or would replace one that is not ours.
     """
     from scipy.io import savemat
 
@@ -72,61 +53,17 @@ def write_mat(result: Result, path: Path | str, overwrite: bool = False) -> Path
 
 
 def mat_file(path: Path) -> Path:
-    """Where the MAT file of a result file is written.
-
-    Parameters
-    ----------
-    path : Path
-        The result file.
-
-    Returns
-    -------
-    Path
-        A file beside it, named after it.
-    """
+    """Where the MAT file of a result file is written."""
     return path.with_name(f"{path.stem}.mat")
 
 
 def require_mat(path: Path, overwrite: bool = False) -> None:
-    """Check that a MAT file replaces at most one of beltdyn.
-
-    Parameters
-    ----------
-    path : Path
-        The file, which may not exist yet.
-    overwrite : bool
-        Whether any regular file may be replaced.
-
-    Raises
-    ------
-    ModelError
-        If there is another file.
-    """
+    """Check that a MAT file replaces at most one of beltdyn."""
     require_replaceable(path, is_marked, overwrite)
 
 
 def write_parquet(result: Result, folder: Path | str, overwrite: bool = False) -> list[Path]:
-    """Write the tables of a result as Parquet, for data frames: those of `write_csv` with the same headings.
-
-    Parameters
-    ----------
-    result : Result
-        A run, or another result.
-    folder : Path or str
-        Where to write; made if need be.
-    overwrite : bool
-        Replace any regular files, and not only tables of ours.
-
-    Returns
-    -------
-    list of Path
-        ``pulleys.parquet``, ``spans.parquet`` and so on.
-
-    Raises
-    ------
-    ModelError
-        If pyarrow is missing, it is a run without an output, a file cannot be written, or would replace another one.
-    """
+    """Write the tables of a result as Parquet, for data frames: those of `write_csv` with the same headings."""
     folder = Path(folder)
     require_parquet(folder, overwrite)
     import pyarrow as pa
@@ -149,20 +86,7 @@ def write_parquet(result: Result, folder: Path | str, overwrite: bool = False) -
 
 
 def require_parquet(folder: Path, overwrite: bool = False) -> None:
-    """Check that Parquet files can be written, and replace at most tables of beltdyn.
-
-    Parameters
-    ----------
-    folder : Path
-        The folder, which may not exist yet.
-    overwrite : bool
-        Whether any regular files may be replaced.
-
-    Raises
-    ------
-    ModelError
-        If pyarrow is missing, or there is another file.
-    """
+    """Check that Parquet files can be written, and replace at most tables of beltdyn."""
     try:
         import pyarrow  # noqa: F401
     except ImportError:

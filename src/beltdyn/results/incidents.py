@@ -56,15 +56,7 @@ class Incident:
 
 
 def incidents(recorded: Recorded, drive: Drive) -> tuple[Incident, ...]:
-    """Find the events of a run.
-
-    Parameters
-    ----------
-    recorded : Recorded
-        What was recorded, with at least one output.
-    drive : Drive
-        The drive. A belt with ends slides by design.
-    """
+    """Find the events of a run."""
     found = [
         (GROSS_SLIP, name, "", on) for name, on in _each(names(recorded, "pulley"), slides_through(recorded, drive))
     ]

@@ -108,20 +108,7 @@ class Layout:
         return {name: variable for name, variable in RECORDED.items() if all(dim in sizes for dim in variable.dims[1:])}
 
     def shape(self, variable: Variable, outputs: int) -> tuple[int, ...]:
-        """Shape of a variable.
-
-        Parameters
-        ----------
-        variable : Variable
-            A variable over time.
-        outputs : int
-            Number of instants.
-
-        Returns
-        -------
-        tuple of int
-            ``(outputs, ...)``.
-        """
+        """Shape of a variable."""
         sizes = self.sizes
         return (outputs, *(sizes[dim] for dim in variable.dims[1:]))
 
@@ -143,18 +130,7 @@ def chunk_rows(row: tuple[int, ...], dtype: str) -> int:
 
 
 def expected_bytes(drive: Drive) -> int:
-    """Give the expected size of the results of a run.
-
-    Parameters
-    ----------
-    drive : Drive
-        The drive.
-
-    Returns
-    -------
-    int
-        Bytes of its file, to about a tenth; files grow by pieces of up to 32 kB for each variable.
-    """
+    """Give the expected size of the results of a run."""
     instants, sizes = drive.simulation.instants, _sizes(drive)
     counts = {"time": instants.count, "field_time": instants.fields, "filtered_time": instants.count}
     return _HEADER + sum(
@@ -165,13 +141,7 @@ def expected_bytes(drive: Drive) -> int:
 
 
 def describe_size(drive: Drive) -> str:
-    """Describe the number, interval and size of outputs.
-
-    Parameters
-    ----------
-    drive : Drive
-        The drive.
-    """
+    """Describe the number, interval and size of outputs."""
     instants = drive.simulation.instants
     return (
         f"{_in_words(expected_bytes(drive))}: {instants.count} outputs every {instants.interval:.4g} s, "
@@ -180,20 +150,7 @@ def describe_size(drive: Drive) -> str:
 
 
 def require_room(drive: Drive, path: Path | None) -> None:
-    """Check that the results of a run fit on the disk or in memory.
-
-    Parameters
-    ----------
-    drive : Drive
-        The drive.
-    path : Path or None
-        The result file, or None for memory.
-
-    Raises
-    ------
-    ModelError
-        If they do not fit, with ways to reduce them.
-    """
+    """Check that the results of a run fit on the disk or in memory."""
     expected = expected_bytes(drive)
     if path is None:
         needed, free, place = _COPIES * expected, float(psutil.virtual_memory().available), "memory"

@@ -65,16 +65,6 @@ def key_numbers(result: Result) -> tuple[KeyNumber, ...]:
     In a run, hub loads and tensions are the worst of all outputs; slip and capstan margin are the worst mean over the
     averaging window. In a table of operating points all are the worst of all points.
 
-    Parameters
-    ----------
-    result : Result
-        A run with at least one output, a drive at rest, a map or a duty table.
-
-    Returns
-    -------
-    tuple of KeyNumber
-        Those that the result holds; empty for other results: a traction curve continues until the belt slips.
-
     Examples
     --------
     >>> [number.name for number in bd.results.key_numbers(run)][:2]

@@ -133,22 +133,7 @@ class SpanSummary:
 
 
 def pulley_means(recorded: Recorded, drive: Drive, window: Window | None = None) -> tuple[PulleySummary, ...]:
-    """Average the pulleys over a window.
-
-    Parameters
-    ----------
-    recorded : Recorded
-        What was recorded, with at least one output.
-    drive : Drive
-        The drive.
-    window : Window, optional
-        What means are taken over; `mean_window` by default.
-
-    Returns
-    -------
-    tuple of PulleySummary
-        One for each pulley.
-    """
+    """Average the pulleys over a window."""
     window = mean_window(recorded, drive) if window is None else window
     belt_torque, shaft_torque, wrap_angle, hub_force, tension, belt_speed, centers = (
         window.mean(recorded, name)
@@ -179,22 +164,7 @@ def pulley_means(recorded: Recorded, drive: Drive, window: Window | None = None)
 
 
 def tensioner_means(recorded: Recorded, drive: Drive, window: Window | None = None) -> tuple[TensionerSummary, ...]:
-    """Average the moving tensioners over a window.
-
-    Parameters
-    ----------
-    recorded : Recorded
-        What was recorded, with at least one output.
-    drive : Drive
-        The drive.
-    window : Window, optional
-        What means are taken over; `mean_window` by default.
-
-    Returns
-    -------
-    tuple of TensionerSummary
-        One for each tensioner that moves.
-    """
+    """Average the moving tensioners over a window."""
     moving = drive.moving_tensioners
     if not moving:
         return ()
@@ -207,22 +177,7 @@ def tensioner_means(recorded: Recorded, drive: Drive, window: Window | None = No
 
 
 def span_means(recorded: Recorded, drive: Drive, window: Window | None = None) -> tuple[SpanSummary, ...]:
-    """Average the spans over a window.
-
-    Parameters
-    ----------
-    recorded : Recorded
-        What was recorded, with at least one output.
-    drive : Drive
-        The drive.
-    window : Window, optional
-        What means are taken over; `mean_window` by default.
-
-    Returns
-    -------
-    tuple of SpanSummary
-        One for each span.
-    """
+    """Average the spans over a window."""
     window = mean_window(recorded, drive) if window is None else window
     tension = np.asarray(recorded["span_tension"][window.first :])
     mean, belt_speed, speed = (window.mean(recorded, name) for name in ("span_tension", "belt_speed", "pulley_speed"))

@@ -146,20 +146,7 @@ def element_lengths(dataset: "xr.Dataset", belt_length: float) -> FloatArray:
 
 
 def recorded_kind(dataset: "xr.Dataset", drive: Drive) -> ElementKind:
-    """Give the kind of the elements whose nodal coordinates a result holds.
-
-    Parameters
-    ----------
-    dataset : xarray.Dataset
-        A result.
-    drive : Drive
-        Its drive.
-
-    Returns
-    -------
-    ElementKind
-        The drive's, or that of a staying mesh.
-    """
+    """Give the kind of the elements whose nodal coordinates a result holds."""
     given, names = drive.element_kind, tuple(dataset["coordinate"].values.tolist())
     return next(kind for kind in (given, *ELEMENTS.values()) if kind.coordinates == names)
 

@@ -63,20 +63,7 @@ class GrowingFile:
             self._commit(staged)
 
     def append(self, path: Path, arrays: Mapping[str, NDArray[Any]]) -> None:
-        """Write outputs.
-
-        Parameters
-        ----------
-        path : Path
-            Where the file is now.
-        arrays : mapping
-            An array for every variable that the file holds, each with one row for each new output; ``time`` comes last.
-
-        Raises
-        ------
-        OSError
-            If the file is not there, or the disk does not take them; what was written before stays as it is.
-        """
+        """Write outputs."""
         *variables, time = arrays.items()
         for some in (variables, [time]):
             with self._open(path) as staged:
@@ -88,20 +75,7 @@ class GrowingFile:
             self._outputs[name] += len(arrays[name])
 
     def finish(self, path: Path, attributes: Mapping[str, Any]) -> None:
-        """Cut what an interrupted `append` has left, and set global attributes.
-
-        Parameters
-        ----------
-        path : Path
-            Where the file is now.
-        attributes : mapping
-            Global attributes to set or to replace.
-
-        Raises
-        ------
-        OSError
-            If the file is not there, or cannot be written.
-        """
+        """Cut what an interrupted `append` has left, and set global attributes."""
         with self._open(path) as staged:
             with h5py.File(staged, "r+", libver=_FORMAT) as file:
                 for name, dataset in file.items():
@@ -127,33 +101,7 @@ class GrowingFile:
 
 
 def copied(source: Path, path: Path, layout: Layout, counts: Mapping[str, int], owner: str) -> GrowingFile:
-    """Copy the first outputs of a file into one that grows.
-
-    Parameters
-    ----------
-    source : Path
-        A file of outputs, whether or not it was finished.
-    path : Path
-        Where to write.
-    layout : Layout
-        Names and reference coordinates of both.
-    counts : mapping
-        Number of instants to copy of each of `schema.TIMES`.
-    owner : str
-        As for `GrowingFile`.
-
-    Returns
-    -------
-    GrowingFile
-        The copy, with the attributes of the source and the status "running".
-
-    Raises
-    ------
-    OSError, KeyError
-        If a file cannot be read or written, or does not hold what it should.
-    ValueError
-        If the source holds fewer outputs.
-    """
+    """Copy the first outputs of a file into one that grows."""
     with h5netcdf.File(source, "r") as attributed:
         attributes = {**attributed.attrs, "status": "running"}
     copy = GrowingFile(path, layout, attributes, owner)
@@ -170,22 +118,7 @@ def copied(source: Path, path: Path, layout: Layout, counts: Mapping[str, int], 
 def write_dataset(
     path: Path, dataset: "xr.Dataset", encoding: Mapping[Hashable, Mapping[str, Any]] | None = None
 ) -> None:
-    """Write a dataset that is complete to a file of its own.
-
-    Parameters
-    ----------
-    path : Path
-        The file.
-    dataset : xarray.Dataset
-        What it shall hold.
-    encoding : mapping, optional
-        How variables are kept; see `xarray.Dataset.to_netcdf`.
-
-    Raises
-    ------
-    OSError
-        If it cannot be written.
-    """
+    """Write a dataset that is complete to a file of its own."""
     from xarray.backends import H5NetCDFStore
 
     path.touch()

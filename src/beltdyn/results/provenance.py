@@ -60,18 +60,6 @@ def estimate_resolution(recorded: Recorded, drive: Drive) -> Resolution:
 
     The errors are estimated from the tension, which a coarse mesh raises; therefore the tension at rest of the drive is
     used, or that of the run if it is lower.
-
-    Parameters
-    ----------
-    recorded : Recorded
-        Its results, with at least one output.
-    drive : Drive
-        The drive.
-
-    Returns
-    -------
-    Resolution
-        The estimates, validated against converged meshes in the documentation.
     """
     found = found_errors(recorded)
     if found:
@@ -82,13 +70,7 @@ def estimate_resolution(recorded: Recorded, drive: Drive) -> Resolution:
 
 
 def mesh_error_attribute(quantity: str) -> str:
-    """Name of the attribute of results that tells the error of a quantity which an analysis has found.
-
-    Parameters
-    ----------
-    quantity : str
-        One of `beltdyn.model.ERROR_LIMITS`.
-    """
+    """Name of the attribute of results that tells the error of a quantity which an analysis has found."""
     return f"mesh_error_{quantity.replace(' ', '_')}"
 
 
@@ -100,22 +82,7 @@ def found_errors(recorded: Recorded) -> dict[str, float]:
 
 
 def mesh_resolution(drive: Drive, tension: float, square: float) -> Resolution:
-    """Estimate the mesh error at a tension and speed of the belt.
-
-    Parameters
-    ----------
-    drive : Drive
-        The drive, from which the tension is taken where it is less.
-    tension : float
-        Mean tension of the belt, N.
-    square : float
-        Mean square of the belt's speed, m^2/s^2; zero at rest.
-
-    Returns
-    -------
-    Resolution
-        See `estimate_resolution`.
-    """
+    """Estimate the mesh error at a tension and speed of the belt."""
     tension = min(tension, install(drive).tension)
     running = Running(tension, drive.belt.mass_per_length * square)
     if not running.tension > running.lifted:
@@ -143,23 +110,7 @@ STAYING = Frame("staying", "as all analyses about rest or steady running")
 
 
 def provenance(drive_text: str, title: str, kind: str = RUN) -> dict[str, str]:
-    """Global attributes known before the computation.
-
-    Parameters
-    ----------
-    drive_text : str
-        The drive file's text.
-    title : str
-        What the dataset is, in a few words.
-    kind : str
-        Name of the analysis; "run" where results grow over time.
-
-    Returns
-    -------
-    dict
-        ``title``, ``kind``, ``drive``, ``format`` (version of the result file), ``beltdyn_version``, ``numba_version``,
-        ``numpy_version``, ``scipy_version``, ``python_version`` and ``created`` (ISO 8601, UTC).
-    """
+    """Global attributes known before the computation."""
     return {
         "title": title,
         "kind": kind,
@@ -178,17 +129,7 @@ def _versions() -> dict[str, str]:
 
 
 def mesh_used(drive: Drive, frame: Frame, elements: int | None = None) -> dict[str, Any]:
-    """Attributes of the mesh of an analysis, and the settings of the drive that it does not use.
-
-    Parameters
-    ----------
-    drive : Drive
-        The drive.
-    frame : Frame
-        The mesh, and why.
-    elements : int, optional
-        Number of its elements, where there is one mesh.
-    """
+    """Attributes of the mesh of an analysis, and the settings of the drive that it does not use."""
     element = QUINTIC.name if frame.stays else drive.belt.discretization or ANCF.name
     unused = unused_settings(drive.belt, drive.contact) if frame.stays else []
     known = {} if elements is None else {"mesh_elements": elements}
@@ -198,13 +139,7 @@ def mesh_used(drive: Drive, frame: Frame, elements: int | None = None) -> dict[s
 
 
 def mesh_facts(attributes: Mapping[str, Any]) -> list[tuple[str, str]]:
-    """The mesh of a result for a sheet; empty if unknown.
-
-    Parameters
-    ----------
-    attributes : mapping
-        Of a dataset or its file.
-    """
+    """The mesh of a result for a sheet; empty if unknown."""
     if "mesh_frame" not in attributes:
         return []
     count = f"{np.asarray(attributes['mesh_elements']).item()} " if "mesh_elements" in attributes else ""

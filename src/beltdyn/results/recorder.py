@@ -32,48 +32,16 @@ class Recorder(Protocol):
     """Records outputs during a simulation."""
 
     def revise(self, layout: Layout, attributes: Mapping[str, Any]) -> None:
-        """Restart with other coordinates and attributes, before the first outputs.
-
-        Parameters
-        ----------
-        layout, attributes
-            As for the beginning, of the same sizes.
-        """
+        """Restart with other coordinates and attributes, before the first outputs."""
 
     def append(self, outputs: Outputs) -> None:
-        """Append outputs.
-
-        Parameters
-        ----------
-        outputs : mapping
-            An array for every name in `Layout.recorded`, each with one row for each new output along its first
-            dimension, one of `schema.TIMES`.
-
-        Raises
-        ------
-        ValueError
-            If a name is missing or unknown, or a shape is wrong.
-        """
+        """Append outputs."""
 
     def close(self, status: Status, attributes: Mapping[str, Any]) -> None:
-        """Finish the recording.
-
-        Parameters
-        ----------
-        status : {"completed", "interrupted", "failed"}
-            How it ended.
-        attributes : mapping
-            Global attributes known by now: the solver's statistics.
-        """
+        """Finish the recording."""
 
     def dataset(self) -> "xr.Dataset":
-        """Give the outputs recorded so far.
-
-        Returns
-        -------
-        xarray.Dataset
-            The dataset.
-        """
+        """Give the outputs recorded so far."""
 
     @property
     def file(self) -> Path | None:
@@ -155,22 +123,7 @@ class FileRecorder:
 
     @classmethod
     def resumed(cls, path: Path, layout: Layout, counts: Mapping[str, int]) -> Self:
-        """Resume a file whose writer was interrupted or killed, dropping later outputs.
-
-        Parameters
-        ----------
-        path : Path
-            The file.
-        layout : Layout
-            As it was made with.
-        counts : mapping
-            Number of instants to keep of each of `schema.TIMES`.
-
-        Raises
-        ------
-        ModelError
-            If the file cannot be read or written, is being written by another run, or holds fewer outputs.
-        """
+        """Resume a file whose writer was interrupted or killed, dropping later outputs."""
         made = cls.__new__(cls)
         made.path, made._target, made._layout, made._attributes = path, target_of(path), layout, {}
         try:
@@ -194,15 +147,7 @@ class FileRecorder:
         self._layout, self._attributes = layout, {**attributes, "status": "running"}
 
     def append(self, outputs: Outputs) -> None:
-        """Append outputs; see `Recorder.append`.
-
-        Raises
-        ------
-        ValueError
-            If a name is missing or unknown, or a shape is wrong.
-        OutputError
-            If the file can no longer be written; it keeps what it holds.
-        """
+        """Append outputs; see `Recorder.append`."""
         arrays = checked_outputs(self._layout, outputs)
         if self._file is None:
             if any(len(arrays[name]) for name in TIMES):
@@ -224,13 +169,7 @@ class FileRecorder:
         return file
 
     def close(self, status: Status, attributes: Mapping[str, Any]) -> None:
-        """Finish the recording; see `Recorder.close`. Without outputs there is no file, or an earlier one.
-
-        Raises
-        ------
-        OutputError
-            If the file can no longer be written; it keeps what it holds.
-        """
+        """Finish the recording; see `Recorder.close`. Without outputs there is no file, or an earlier one."""
         self._attributes |= {**attributes, "status": status}
         try:
             if self._file is not None:

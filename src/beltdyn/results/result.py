@@ -155,25 +155,7 @@ def build_result(
 
 
 def drive_of(dataset: "xr.Dataset", path: Path) -> Drive:
-    """Read the drive of a result file.
-
-    Parameters
-    ----------
-    dataset : xarray.Dataset
-        Its dataset.
-    path : Path
-        The file.
-
-    Returns
-    -------
-    Drive
-        The drive.
-
-    Raises
-    ------
-    ModelError
-        If its text is no drive file.
-    """
+    """Read the drive of a result file."""
     try:
         return loads(dataset.attrs["drive"], base=path.parent)
     except ValueError as error:

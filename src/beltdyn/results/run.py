@@ -78,18 +78,7 @@ class StaticResult(Result):
 
 
 def static_result(run: "Run") -> StaticResult:
-    """Give the drive at rest of a run that holds it as its only output.
-
-    Parameters
-    ----------
-    run : Run
-        The run.
-
-    Returns
-    -------
-    StaticResult
-        In memory, with the warnings of the run.
-    """
+    """Give the drive at rest of a run that holds it as its only output."""
     instant = run.fields_at()
     seen = {
         name: (replace(variable, dims=variable.dims[1:]), instant[name].values)

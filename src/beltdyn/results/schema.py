@@ -218,20 +218,7 @@ _SHOWN = {**SHOWN_UNITS, **dict.fromkeys(("1", VARIOUS), ("", 1.0))}
 
 
 def shown_unit(variable: "xr.DataArray") -> tuple[str, float]:
-    """Give the display unit of a variable and its factor.
-
-    Parameters
-    ----------
-    variable : DataArray
-        A variable of a result.
-
-    Returns
-    -------
-    unit : str
-        rpm for rad/s, degrees for rad, mm for short lengths, nothing for a pure number; others as they are.
-    factor : float
-        What its numbers are multiplied by.
-    """
+    """Give the display unit of a variable and its factor."""
     unit = str(variable.attrs.get("units", ""))
     if unit == "m" and not (abs(variable) >= _MILLIMETRES).any():
         return "mm", 1e3
@@ -285,44 +272,15 @@ class InMemory:
 
 
 def names(recorded: Recorded, dimension: str) -> list[str]:
-    """Names along a dimension.
-
-    Parameters
-    ----------
-    recorded : Recorded
-        What was recorded.
-    dimension : str
-        "pulley", "span" or "tensioner".
-
-    Returns
-    -------
-    list of str
-        In order.
-    """
+    """Names along a dimension."""
     return [name.decode() if isinstance(name, bytes) else str(name) for name in np.asarray(recorded[dimension])]
 
 
 def runs_steadily(recorded: Recorded) -> bool:
-    """Whether it is steady running, in which nothing changes over time, in place of a run.
-
-    Parameters
-    ----------
-    recorded : Recorded
-        What was recorded.
-    """
+    """Whether it is steady running, in which nothing changes over time, in place of a run."""
     return "belt_parameter" in recorded.attrs
 
 
 def attribute(recorded: Recorded, name: str, unknown: float) -> float:
-    """Give an attribute that is a number.
-
-    Parameters
-    ----------
-    recorded : Recorded
-        What was recorded.
-    name : str
-        Name of the attribute.
-    unknown : float
-        What to give where it is missing.
-    """
+    """Give an attribute that is a number."""
     return float(np.squeeze(recorded.attrs.get(name, unknown)))  # a file holds arrays of one number

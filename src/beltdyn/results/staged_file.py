@@ -117,20 +117,7 @@ class StagedFile:
         """Keep waiting: `commit` writes."""
 
     def commit(self, reserve: int = RESERVE, owner: str = "") -> None:
-        """Write what was staged, and checksums.
-
-        Parameters
-        ----------
-        reserve : int
-            Bytes to hold behind the new contents, beside room for checksums; 0 if the file grows no longer.
-        owner : str
-            See `Checksums`.
-
-        Raises
-        ------
-        OSError
-            If the disk does not take it; the contents are the old ones then.
-        """
+        """Write what was staged, and checksums."""
         old, sums = self._length, self._checksums(reserve, owner)
         runs = [*self._changed_runs(sums.end), (sums.place, sums.to_bytes())]
         before = [(place, data[: old - place]) for place, data in reversed(runs) if place < old]
@@ -187,13 +174,7 @@ class StagedFile:
         return [(place, bytes(data[: end - place])) for place, data in runs if place < end]
 
     def _block(self, place: int) -> bytearray:
-        """A block as it is now.
-
-        Raises
-        ------
-        OSError
-            If the disk gives other bytes than were written.
-        """
+        """A block as it is now."""
         if place not in self._blocks:
             data = self._stored(place, _BLOCK)
             if self.checksums:
@@ -221,25 +202,7 @@ def _require_same(checksums: Checksums, place: int, data: bytes) -> None:
 
 @contextmanager
 def staged_hdf5(path: Path, mode: Literal["w", "r+"]) -> Iterator[h5py.File]:
-    """Change an HDF5 file as a whole or not at all.
-
-    Parameters
-    ----------
-    path : Path
-        A file that exists; empty if it shall be begun.
-    mode : {"w", "r+"}
-        Whether it is begun, or added to.
-
-    Yields
-    ------
-    h5py.File
-        What is written to it reaches the disk at the end.
-
-    Raises
-    ------
-    OSError
-        If the disk does not take it.
-    """
+    """Change an HDF5 file as a whole or not at all."""
     with StagedFile(path) as staged:
         with h5py.File(staged, mode) as file:
             yield file
@@ -258,17 +221,7 @@ def is_marked(file: h5py.File) -> bool:
 
 
 def identity(status: os.stat_result) -> tuple[int, int]:
-    """What tells a file from any other, whatever its name.
-
-    Parameters
-    ----------
-    status : os.stat_result
-        From `os.stat`.
-
-    Returns
-    -------
-    device, number : int
-    """
+    """What tells a file from any other, whatever its name."""
     return status.st_dev, status.st_ino
 
 

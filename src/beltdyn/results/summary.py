@@ -139,13 +139,7 @@ def summarize(run: Run) -> Summary:
 
 
 def means_of(run: Run) -> Means:
-    """Means over the averaging window of a run, without findings.
-
-    Parameters
-    ----------
-    run : Run
-        The run, with at least one output.
-    """
+    """Means over the averaging window of a run, without findings."""
     with run.recorded() as recorded:
         return _means(run, recorded, mean_window(recorded, run.drive))
 
@@ -245,24 +239,12 @@ def steady_comparison(run: Run) -> tuple[Compared, ...]:
 
 
 def steady_values(run: Run) -> list[float]:
-    """The values in steady running that `steady_comparison` reads from the attribute `VALUES` of another run.
-
-    Parameters
-    ----------
-    run : Run
-        The result of `steady_state`, with the same pulleys, spans and tensioners.
-    """
+    """The values in steady running that `steady_comparison` reads from the attribute `VALUES` of another run."""
     return [one.run for one in _ending(run)]
 
 
 def coarse_settings(drive: Drive) -> list[str]:
-    """Settings of a run by which its losses and slip may differ from those on the mesh, and with the tolerance, chosen.
-
-    Parameters
-    ----------
-    drive : Drive
-        The drive as it is given.
-    """
+    """Settings of a run by which losses and slip may differ from those with the chosen mesh and tolerance."""
     settings, default = drive.simulation, Simulation.model_fields["rtol"].default
     found = []
     if not drive.frame.stays:
@@ -278,13 +260,7 @@ def coarse_settings(drive: Drive) -> list[str]:
 
 
 def ends_steadily(run: Run) -> bool:
-    """Whether a run ends in what steady running may be compared with: a turn of the belt in which nothing changes.
-
-    Parameters
-    ----------
-    run : Run
-        The run, not of steady running itself.
-    """
+    """Whether a run ends in what steady running may be compared with: a turn of the belt in which nothing changes."""
     pulleys = run.drive.pulleys
     if run.outputs == 0 or any(one.harmonics or any(load.orders for load in one.load) for one in pulleys):
         return False
@@ -295,13 +271,7 @@ def ends_steadily(run: Run) -> bool:
 
 
 def steady_losses(run: Run) -> dict[str, list[float]]:
-    """Attributes of another run by which `off_steady_running` finds its errors.
-
-    Parameters
-    ----------
-    run : Run
-        Of `steady_state`, of the same pulleys.
-    """
+    """Attributes of another run by which `off_steady_running` finds its errors."""
     means = means_of(run)
     return {
         STEADY_LOSSES: [means.balance.losses[cause] for cause in LOSSES.values()],

@@ -133,18 +133,7 @@ def write_csv(run: Result, folder: Path | str, overwrite: bool = False) -> list[
 
 
 def tables_folder(path: Path) -> Path:
-    """Where the tables of a result file are written.
-
-    Parameters
-    ----------
-    path : Path
-        The result file.
-
-    Returns
-    -------
-    Path
-        A folder beside it, named after it.
-    """
+    """Where the tables of a result file are written."""
     return path.with_name(f"{path.stem}-tables")
 
 
@@ -208,20 +197,7 @@ def _tables_of_names(dataset: "xr.Dataset") -> dict[str, Table]:
 
 
 def require_tables(folder: Path | str, overwrite: bool = False) -> None:
-    """Check that tables in a folder replace at most tables of beltdyn.
-
-    Parameters
-    ----------
-    folder : Path or str
-        The folder, which may not exist yet.
-    overwrite : bool
-        Whether any regular files may be replaced.
-
-    Raises
-    ------
-    ModelError
-        If there is another file.
-    """
+    """Check that tables in a folder replace at most tables of beltdyn."""
     for name in NAMES:
         require_replaceable(Path(folder) / f"{name}.csv", _is_table, overwrite)
 

@@ -161,18 +161,7 @@ class Cylinders:
 
 
 def batches(run: Run) -> "Iterator[xr.Dataset]":
-    """All instants at which fields were recorded, some at a time, in order.
-
-    Parameters
-    ----------
-    run : Run
-        The run.
-
-    Yields
-    ------
-    xarray.Dataset
-        Part of `Run.fields`.
-    """
+    """All instants at which fields were recorded, some at a time, in order."""
     fields = run.fields
     count = fields.sizes["time"]
     for first, last in pairwise([*range(0, count, _AT_A_TIME), count]):
@@ -247,25 +236,6 @@ def write_vtkhdf(run: Run, path: Path | str, overwrite: bool = False) -> list[Pa
     ``pulley_angle`` (rad), ``pulley_torque`` (N m) and ``mark``, 1 on one sector and 0 elsewhere, on their polygons.
     Numbers have single precision, times double.
 
-    Parameters
-    ----------
-    run : Run
-        The run.
-    path : Path or str
-        A result file, beside and after which the files are named.
-    overwrite : bool
-        Replace any regular files, and not only those of this function.
-
-    Returns
-    -------
-    list of Path
-        ``NAME-belt.vtkhdf`` and ``NAME-pulleys.vtkhdf``.
-
-    Raises
-    ------
-    ModelError
-        If the run holds no output, or a file cannot be written or would replace one that is not ours.
-
     Notes
     -----
     `VTKHDF file format <https://docs.vtk.org/en/latest/vtk_file_formats/vtkhdf_file_format/>`_, Kitware.
@@ -280,20 +250,7 @@ def write_vtkhdf(run: Run, path: Path | str, overwrite: bool = False) -> list[Pa
 
 
 def require_vtkhdf(path: Path | str, overwrite: bool = False) -> None:
-    """Check that files replace at most those of `write_vtkhdf`.
-
-    Parameters
-    ----------
-    path : Path or str
-        The result file after which they are named.
-    overwrite : bool
-        Whether any regular files may be replaced.
-
-    Raises
-    ------
-    ModelError
-        If there is another file.
-    """
+    """Check that files replace at most those of `write_vtkhdf`."""
     for file in _files(path).values():
         require_replaceable(file, _is_ours, overwrite)
 

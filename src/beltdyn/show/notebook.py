@@ -56,17 +56,7 @@ class Picture:
 
 
 def picture(drive: Drive) -> Picture:
-    """Draw a drive, with spring-loaded tensioners where the file has them.
-
-    Parameters
-    ----------
-    drive : Drive
-
-    Returns
-    -------
-    Picture
-        y points up in the drive and down in the picture.
-    """
+    """Draw a drive, with spring-loaded tensioners where the file has them."""
     path = drive.path
     reach = abs(path.radii)[:, None]
     points = np.concatenate([path.centers - reach, path.centers + reach, *([] if path.ends is None else [path.ends])])
@@ -86,22 +76,7 @@ def picture(drive: Drive) -> Picture:
 
 
 def outline(path: Path, place: Callable[[float, float], tuple[float, float]], scale: float) -> str:
-    """Draw the line of a path.
-
-    Parameters
-    ----------
-    path : Path
-        The path.
-    place : callable
-        Gives the place in the picture of a point in the plane of the drive, m; it turns y over.
-    scale : float
-        Pixels a metre.
-
-    Returns
-    -------
-    str
-        In the language of the attribute ``d``.
-    """
+    """Draw the line of a path."""
     x, y = place(*path.span_points[path.order[0], 0])
     steps = [f"M {x:.2f} {y:.2f}"]
     for span in path.order:
@@ -123,17 +98,7 @@ def templates() -> Environment:
 
 
 def drive_html(drive: Drive) -> str:
-    """Show a drive as HTML.
-
-    Parameters
-    ----------
-    drive : Drive
-
-    Returns
-    -------
-    str
-        A fragment that takes the notebook's fonts and colours.
-    """
+    """Show a drive as HTML."""
     installation = install(drive)
     template = templates().get_template("drive.html.jinja")
     return template.render(
@@ -147,18 +112,7 @@ def drive_html(drive: Drive) -> str:
 
 
 def result_html(result: Result) -> str:
-    """Show a result as HTML.
-
-    Parameters
-    ----------
-    result : Result
-        Of any analysis.
-
-    Returns
-    -------
-    str
-        A fragment that takes the notebook's fonts and colours.
-    """
+    """Show a result as HTML."""
     return (
         templates()
         .get_template("result.html.jinja")

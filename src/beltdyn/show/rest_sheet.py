@@ -33,22 +33,7 @@ _HALF_TURN = 179.95
 
 
 def rest_sheet(given: Drive, drive: Drive, installation: Installation) -> Sheet:
-    """Summarise a drive at rest.
-
-    Parameters
-    ----------
-    given : Drive
-        The drive of the file.
-    drive : Drive
-        The same drive with the length, or the take-up, that gives the installed tension.
-    installation : Installation
-        Its static equilibrium, or an estimate.
-
-    Returns
-    -------
-    Sheet
-        Facts of the belt, tables of pulleys, spans and tensioners, and the chosen values.
-    """
+    """Summarise a drive at rest."""
     parts: list[Table | Facts] = [
         Facts(tuple(_facts(given, drive, installation))),
         Table("Pulleys at rest", _PULLEY_HEADINGS, tuple(_pulleys(drive, installation))),

@@ -82,18 +82,7 @@ _MOST = 40
 
 
 def study_sheet(result: Result) -> Sheet:
-    """Give the sheet of a study.
-
-    Parameters
-    ----------
-    result : Result
-        The result of `study`.
-
-    Returns
-    -------
-    Sheet
-        Without its warnings.
-    """
+    """Give the sheet of a study."""
     dataset = result.dataset
     names = str(dataset.attrs["results"]).splitlines()
     numbers = [_row(dataset[path]) for path in str(dataset.attrs["numbers"]).splitlines()]
@@ -155,18 +144,7 @@ _KILOWATTS = 1e4
 
 
 def run_sheet(run: Run) -> Sheet:
-    """Summarise a run in tables and facts.
-
-    Parameters
-    ----------
-    run : Run
-        The run.
-
-    Returns
-    -------
-    Sheet
-        For a run without outputs, a sentence that says so.
-    """
+    """Summarise a run in tables and facts."""
     if run.outputs == 0:
         return Sheet("The run ended before its first output.", ())
     summary = summarize(run)
@@ -332,13 +310,7 @@ def _mesh(resolution: Resolution) -> str:
 
 
 def _steady_running(run: Run) -> tuple[Table | Facts, ...]:
-    """What a sheet says of steady running: the comparison, or why there is none; nothing where none was asked for.
-
-    Parameters
-    ----------
-    run : Run
-        The run.
-    """
+    """What a sheet says of steady running: the comparison, or why there is none; nothing where none was asked for."""
     with run.recorded() as recorded:
         failure = str(recorded.attrs.get(FAILURE, ""))
     if failure:
@@ -362,18 +334,7 @@ _AMONG_WARNINGS = frozenset({"failure"})
 
 
 def sheet(result: Result) -> Sheet:
-    """Give the sheet of a result: the summary of a run, or the values and tables of another analysis.
-
-    Parameters
-    ----------
-    result : Result
-        The result of any analysis.
-
-    Returns
-    -------
-    Sheet
-        Without its warnings.
-    """
+    """Give the sheet of a result: the summary of a run, or the values and tables of another analysis."""
     if isinstance(result, Run):
         return run_sheet(result)
     if result.kind == STUDY:

@@ -223,22 +223,7 @@ def all_eigenvalues(given: Pencil) -> tuple[ComplexArray, ComplexArray]:
 
 
 def nearest(given: Pencil, shift: complex, count: int) -> tuple[ComplexArray, ComplexArray]:
-    """Eigenvalues nearest to a shift, with their eigenvectors in columns, by the Arnoldi method on the shifted inverse.
-
-    Parameters
-    ----------
-    given
-        The pencil.
-    shift
-        1/s.
-    count
-        How many, at least.
-
-    Raises
-    ------
-    ConvergenceError
-        If they are not found.
-    """
+    """Eigenvalues nearest to a shift, and eigenvectors in columns, by the Arnoldi method on the shifted inverse."""
     from scipy.sparse.linalg import splu
 
     def inverse(vector: ComplexArray) -> ComplexArray:

@@ -107,13 +107,7 @@ def advance(
 def linearise(
     system: System, motion: Motion, multipliers: FloatArray, factors: TangentFactors, equations: Equations
 ) -> bool:
-    """Assemble the equations at a state and solve tangent x = residual; arguments as for `assemble`.
-
-    Returns
-    -------
-    bool
-        False if the tangent is singular.
-    """
+    """Assemble the equations at a state and solve tangent x = residual; arguments as for `assemble`."""
     return _dispatch_at(system, Request(LINEARISE, motion.time, factors=factors), motion, multipliers, equations)
 
 
@@ -162,22 +156,7 @@ def _dispatch_at(
 
 
 def restart(system: System, state: IntegratorState, equations: Equations) -> None:
-    """Take the accelerations from the equations of motion: at the start, and after a jump of what drives the system.
-
-    Parameters
-    ----------
-    system
-        Belt, bodies, supports.
-    state
-        Changed in place; profiles are taken just after its time.
-    equations
-        Arrays to work in.
-
-    Raises
-    ------
-    ConvergenceError
-        If the mass matrix is singular.
-    """
+    """Take the accelerations from the equations of motion: at the start, and after a jump of what drives the system."""
     after = motion_of(state)._replace(time=float(np.nextafter(state.clock.time, np.inf)))
     speeds = state.velocity.copy()
     if not accelerate(system, after, state.multipliers, equations):

@@ -93,20 +93,7 @@ class Vibrations:
         return csc_array((values[used], (self._rows[used], self._columns[used])), shape=(self.size, self.size))
 
     def fastest_growing(self, time: float, position: FloatArray, velocity: FloatArray, shift: complex) -> complex:
-        """Of the vibrations nearest to a shift the one that grows fastest.
-
-        Parameters
-        ----------
-        time, position, velocity
-            The state, as for `tangents`.
-        shift
-            Where to look, 1/s: growth, and i times the angular frequency.
-
-        Returns
-        -------
-        complex
-            Its eigenvalue s, 1/s; NaN where none is found.
-        """
+        """Of the vibrations nearest to a shift the one that grows fastest."""
         solve = self._shifted_inverse(self.tangents(time, position, velocity), shift)
         found = np.zeros(0, complex)
         for ritz in arnoldi(solve, 2 * self.size, _BATCHES) if solve else ():

@@ -136,13 +136,7 @@ class AlphaIntegration:
         restart(self.system, self.state, self._equations)
 
     def until(self, stop: float) -> Iterator[Chunk]:
-        """Integrate up to an instant (s), on which the last step ends.
-
-        Raises
-        ------
-        ConvergenceError
-            If it fails.
-        """
+        """Integrate up to an instant (s), on which the last step ends."""
         budget = max(1, _STEPS_AT_ONCE // self.system.length.size)
         while self.state.clock.time < stop:
             steps = empty_steps(self.system, min(_ROOM, budget))

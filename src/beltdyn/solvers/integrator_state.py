@@ -135,15 +135,7 @@ def trial_motion(state: IntegratorState, time: float) -> Motion:
 
 
 def empty_steps(system: System, count: int) -> Steps:
-    """Make room for steps.
-
-    Parameters
-    ----------
-    system
-        The system.
-    count
-        How many; without room for any, `advance` keeps none.
-    """
+    """Make room for steps."""
     size = system.first_body + system.bodies.size
     return Steps(
         time=np.empty(count),

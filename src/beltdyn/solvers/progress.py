@@ -77,18 +77,7 @@ class Pace:
         self._marks: deque[tuple[float, float]] = deque()
 
     def at(self, elapsed: float, reached: float) -> float:
-        """Note where it stands, and tell simulated time over computing time.
-
-        Parameters
-        ----------
-        elapsed, reached
-            Computing and simulated time until now, s, neither less than before.
-
-        Returns
-        -------
-        float
-            NaN as long as nothing is known.
-        """
+        """Note where it stands, and tell simulated time over computing time."""
         marks = self._marks
         if not marks or elapsed - marks[-1][0] > _OFTEN:
             marks.append((elapsed, reached))

@@ -89,17 +89,7 @@ class StepControl(Protocol):
         """Excitation that a step may miss, over the velocity scale; infinite for any."""
 
     def judge(self, length: float, error: float, order: int) -> Verdict:
-        """Accept or reject a step.
-
-        Parameters
-        ----------
-        length
-            Of the step, s.
-        error
-            Its largest error over the velocity scale of the drive; infinite where the step has no solution.
-        order
-            Order of the method.
-        """
+        """Accept or reject a step."""
 
 
 @dataclass(frozen=True)

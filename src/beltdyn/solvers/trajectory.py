@@ -220,56 +220,16 @@ class Integrator(Protocol):
         """Name, for results and messages."""
 
     def __call__(self, task: Task) -> Iterator[Chunk]:
-        """Integrate, handing out chunks as they come.
-
-        Parameters
-        ----------
-        task
-            The problem; its statistics are kept up to date.
-
-        Raises
-        ------
-        ConvergenceError
-            If the solver fails.
-        """
+        """Integrate, handing out chunks as they come."""
 
 
 def drive_task(drive: Drive, system: System, start: State, statistics: Statistics) -> Task:
-    """The initial value problem that a drive file describes.
-
-    Parameters
-    ----------
-    drive
-        The drive.
-    system
-        Its arrays.
-    start
-        State at the beginning.
-    statistics
-        Where the solver counts.
-
-    Returns
-    -------
-    Task
-        Outputs at multiples of the interval and at the end.
-    """
+    """The initial value problem that a drive file describes."""
     settings = drive.simulation
     return Task(system, start, settings.instants, drive.breakpoints, velocity_scale(drive), statistics)
 
 
 def velocity_scale(drive: Drive) -> float:
-    """Velocity that local errors are measured by: the fastest rim that is driven, or what the strain can cause.
-
-    Parameters
-    ----------
-    drive
-        The drive.
-
-    Returns
-    -------
-    float
-        m/s; rims are driven by a prescribed speed, or by a motor up to its synchronous speed.  The second is strain at
-        rest times the speed of axial waves, the velocity of a belt end that is let go.
-    """
+    """Velocity that local errors are measured by: the fastest rim that is driven, or what the strain can cause."""
     rim = fastest_rim(drive.pulleys, drive.radii, drive.simulation.end)
     return max(rim, install(drive).strain * drive.belt.wave_speed)

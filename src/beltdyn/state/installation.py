@@ -135,13 +135,7 @@ def bring_to_rest(drive: Drive, progress: Report | None = None) -> Rest:
 
 
 def on_equal_elements(drive: Drive) -> Drive:
-    """Give the drive on the travelling mesh, on which equilibrium is found.
-
-    Parameters
-    ----------
-    drive
-        The drive; a number of elements that it leaves open is chosen for that mesh.
-    """
+    """Give the drive on the travelling mesh, on which equilibrium is found."""
     if not drive.frame.stays:
         return drive
     return drive.replace(simulation=drive.simulation.replace(frame="travelling", force_tolerance=None))
@@ -164,22 +158,7 @@ def _unstable(rest: Rest) -> tuple[str, ...]:
 
 
 def tighten(first: At, wanted: float, at_rest: Callable[[Drive], At]) -> At:
-    """Shorten the belt, or move its fixed tensioner, until the mean tension at rest is the one that is wanted.
-
-    Parameters
-    ----------
-    first
-        The drive at rest with the length that is estimated.
-    wanted
-        N.
-    at_rest
-        Brings a drive to rest.
-
-    Raises
-    ------
-    ConvergenceError
-        If the tension is not reached.
-    """
+    """Shorten the belt, or move its fixed tensioner, until the mean tension at rest is the one that is wanted."""
     length = first.drive.belt_length
     rest, done, slope = first, 0.0, _tension_over_length(first.drive)
     sides: dict[bool, tuple[float, At]] = {}  # the nearest trials with too much and too little tension
@@ -213,13 +192,7 @@ def tighten(first: At, wanted: float, at_rest: Callable[[Drive], At]) -> At:
 
 
 def _beside_jump(slack: At, tight: At, wanted: float) -> At:
-    """Of two states on both sides of a jump, as a node of the mesh meets a pulley, the nearer one.
-
-    Raises
-    ------
-    ConvergenceError
-        If the jump is larger than what meshes are taken for.
-    """
+    """Of two states on both sides of a jump, as a node of the mesh meets a pulley, the nearer one."""
     nearer = min(slack, tight, key=lambda one: abs(one.tension - wanted))
     if abs(nearer.tension - wanted) > _JUMP * wanted:
         raise _out_of_reach(
@@ -313,20 +286,7 @@ def _at_rest(drive: Drive) -> Rest:
 
 
 def from_starts(drive: Drive, installation: Installation, begun: Callable[[float], Found]) -> Found:
-    """Find a drive at rest by way of contact as stiff as its own, or else of stiffer or softer contact.
-
-    Parameters
-    ----------
-    drive, installation
-        The drive, and what is estimated of it.
-    begun
-        Finds it, beginning with contact stiffer by a factor.
-
-    Raises
-    ------
-    ConvergenceError
-        That contact is too soft, if it is, and otherwise the first one that was raised.
-    """
+    """Find a drive at rest by way of contact as stiff as its own, or else of stiffer or softer contact."""
     failures = list[ConvergenceError]()
     for start in _STARTS:
         try:
@@ -337,21 +297,7 @@ def from_starts(drive: Drive, installation: Installation, begun: Callable[[float
 
 
 def follow(start: float, balance: Callable[[float], bool]) -> bool:
-    """Follow equilibria from a stiffness of contact to the drive's own, in shorter steps where long ones fail.
-
-    Parameters
-    ----------
-    start
-        Stiffness of contact to begin with, over the drive's own.
-    balance
-        Finds the equilibrium with contact stiffer by a factor from the one that was found last; where it does not,
-        it returns False and keeps that one.
-
-    Returns
-    -------
-    bool
-        Whether the drive's own equilibrium was found.
-    """
+    """Follow equilibria from a stiffness of contact to the drive's own, in shorter steps where long ones fail."""
     found, ratio = start, _LONGEST_RATIO
     if not balance(start):
         return False
@@ -387,13 +333,7 @@ def drawn_in(drive: Drive, installation: Installation, factor: float) -> BeltPat
 
 
 def looked_at(drive: Drive, system: System, state: State) -> Rest:
-    """An equilibrium in which the belt touches every pulley.
-
-    Raises
-    ------
-    ConvergenceError
-        If it does not: forces are in balance of a belt that has left a pulley, or lies behind its center, too.
-    """
+    """An equilibrium in which the belt touches every pulley."""
     seen = observe(standing(system), np.zeros(1), state.position[None], state.velocity[None])
     depths = _depths(drive, seen)
     for pulley, radius, wrap, depth in zip(

@@ -82,26 +82,7 @@ class Refined(NamedTuple):
 def steady_from_rest(
     rest: Standing, time: float, rule: Callable[[Standing], MeshRule], tolerance: float, *, bands: bool
 ) -> Refined:
-    """Find steady running from a belt at rest, on a finer mesh where that on a coarse one leads to no other.
-
-    Parameters
-    ----------
-    rest
-        The drive at rest.
-    time
-        At which speeds, torques and schedules are taken, s.
-    rule
-        Gives the rule of the mesh, of which the next finer one is the first to be compared, from the drive at rest.
-    tolerance
-        As for `refine`.
-    bands
-        Whether to find where dry friction holds tensioners, which takes further solutions.
-
-    Raises
-    ------
-    ConvergenceError
-        If there is none.
-    """
+    """Find steady running from a belt at rest, on a finer mesh where that on a coarse one leads to no other."""
     ran = False
     for trial in range(1, _MOST_STARTS + 1):
         search, given = SteadySearch(rest.drive, rest.system, rest.state, time), rule(rest)
@@ -119,30 +100,7 @@ def steady_from_rest(
 
 
 def refine(search: SteadySearch, rule: MeshRule, tolerance: float) -> tuple[dict[str, float], MeshRule]:
-    """Refine the mesh of a drive in steady running, which is changed in place.
-
-    Parameters
-    ----------
-    search
-        In steady running.
-    rule
-        Of its mesh. One of equal elements is made finer once to learn its errors.
-    tolerance
-        Change of contact forces from one mesh to the next, over the largest of a pulley, that is small enough.
-
-    Returns
-    -------
-    errors : dict of str to float
-        Differences between the last two meshes, relative: "tension", "mean pressure", "peak pressure", "slip". They
-        exceed the tolerance where no finer mesh finds steady running, or would have too many elements.
-    rule
-        That of the last mesh.
-
-    Raises
-    ------
-    ConvergenceError
-        If no finer mesh finds steady running.
-    """
+    """Refine the mesh of a drive in steady running, which is changed in place."""
     before, errors = _solution(search), dict[str, float]()
     while True:
         finer = _moved(search, before, rule)
@@ -176,27 +134,7 @@ def _moved(search: SteadySearch, now: Solution, rule: MeshRule) -> MeshRule | No
 
 
 def against_coarser(search: SteadySearch, rule: MeshRule) -> tuple[dict[str, float], SteadySearch]:
-    """Compare steady running with that on a coarser mesh.
-
-    Parameters
-    ----------
-    search
-        In steady running.
-    rule
-        Of its mesh.
-
-    Returns
-    -------
-    errors
-        As those of `refine`.
-    coarser
-        Steady running on the mesh of ``rule.finer(1 / FINER)``.
-
-    Raises
-    ------
-    ConvergenceError
-        If the coarser mesh finds no steady running.
-    """
+    """Compare steady running with that on a coarser mesh."""
     here, coarser = _solution(search), copy(search)
     coarser.tolerance = _COMPARED
     coarser.move_to(_mesh(search.drive, here, rule.finer(1.0 / FINER)))
@@ -206,15 +144,7 @@ def against_coarser(search: SteadySearch, rule: MeshRule) -> tuple[dict[str, flo
 
 
 def is_fine(errors: Mapping[str, float], tolerance: float) -> bool:
-    """Whether a mesh is fine enough.
-
-    Parameters
-    ----------
-    errors
-        Its errors, as from `refine`.
-    tolerance
-        As there.
-    """
+    """Whether a mesh is fine enough."""
     return errors["peak pressure"] <= tolerance and errors["tension"] <= _OF_TENSION * tolerance
 
 
@@ -257,20 +187,7 @@ def _seen(system: System, state: State) -> Observations:
 
 
 def errors_at_rest(rest: Standing, elements: int | None = None) -> dict[str, float]:
-    """Errors of a mesh in tension and contact pressures at rest, relative, by a finer one.
-
-    Parameters
-    ----------
-    rest
-        The drive at rest on the mesh.
-    elements
-        Number of its equal elements; by default it is graded.
-
-    Returns
-    -------
-    dict of str to float
-        As `refine` gives them, without slip; empty where the finer mesh finds no rest.
-    """
+    """Errors of a mesh in tension and contact pressures at rest, relative, by a finer one."""
     try:
         return _between(rest, _finer(rest, elements))
     except ConvergenceError:
@@ -278,27 +195,7 @@ def errors_at_rest(rest: Standing, elements: int | None = None) -> dict[str, flo
 
 
 def refine_at_rest(rest: Standing, tolerance: float) -> tuple[Standing, dict[str, float]]:
-    """Refine a graded mesh of a drive at rest.
-
-    Parameters
-    ----------
-    rest
-        The drive at rest.
-    tolerance
-        Change of contact forces to the next mesh, over the largest of a pulley, that is small enough.
-
-    Returns
-    -------
-    rest
-        On the first mesh from which the next one changes little enough.
-    errors
-        By that next one, as from `errors_at_rest`.
-
-    Raises
-    ------
-    ConvergenceError
-        If a finer mesh finds no rest.
-    """
+    """Refine a graded mesh of a drive at rest."""
     while True:
         finer = _finer(rest, None)
         errors = _between(rest, finer)

@@ -43,22 +43,7 @@ Solution = tuple[float, FloatArray]
 def go_on(
     solve: Callable[[float, FloatArray], FloatArray | None], *passed: Solution, step: float = 1.0
 ) -> FloatArray | None:
-    """Go on from 0 to 1.
-
-    Parameters
-    ----------
-    solve
-        Gives the unknowns at a place of the way, from a guess; None if there is no solution.
-    *passed
-        Solutions in the order in which they serve a guess, at least that at 0; it may be the only one.
-    step
-        The first one.
-
-    Returns
-    -------
-    ndarray or None
-        The unknowns at 1; None if the way ends before.
-    """
+    """Go on from 0 to 1."""
     known, reached = list(passed), 0.0
     while reached < 1.0:
         ahead = min(1.0, reached + step)
@@ -74,15 +59,7 @@ def go_on(
 
 
 def extrapolated(known: Sequence[Solution], place: float) -> FloatArray:
-    """Value of the polynomial through solutions.
-
-    Parameters
-    ----------
-    known
-        Solutions at different places, as many as the polynomial has coefficients.
-    place
-        Where.
-    """
+    """Value of the polynomial through solutions."""
     total = np.zeros_like(known[0][1])
     for own, values in known:
         others = [other for other, _ in known if other != own]
@@ -164,26 +141,13 @@ class SteadySearch:
         return np.concatenate([self.state.position, self.state.velocity, self.constant.frame.speed])
 
     def place(self, unknowns: FloatArray) -> None:
-        """Put the search in its place.
-
-        Parameters
-        ----------
-        unknowns
-            As from `unknowns`.
-        """
+        """Put the search in its place."""
         size = self.state.position.size
         self.state.position[:], self.state.velocity[:] = unknowns[:size], unknowns[size : 2 * size]
         self.constant.frame.speed[:] = unknowns[2 * size :]
 
     def resume(self, tangent: SteadyWork | None = None) -> bool:
-        """Find steady running under the loads that are asked for from that under others; False if that fails.
-
-        Parameters
-        ----------
-        tangent
-            From `factorised`, of steady running that differs a little, on the same mesh. It serves as long as
-            corrections shrink well; otherwise it is overwritten.
-        """
+        """Find steady running under the loads that are asked for from that under others; False if that fails."""
         if tangent is None:
             return self._try(Setting())
         self._work = tangent
@@ -198,20 +162,7 @@ class SteadySearch:
         return self._work
 
     def run(self, rest: Standing) -> None:
-        """Find steady running under the loads that are asked for.
-
-        Parameters
-        ----------
-        rest
-            The same drive at rest, on the same mesh.
-
-        Raises
-        ------
-        ModelError
-            If nothing drives.
-        ConvergenceError
-            If there is no steady running; it says how much the drive transmits.
-        """
+        """Find steady running under the loads that are asked for."""
         speed, driver = operating_point(self.constant, self.drive.path.radii, self._prescribed)
         if driver is not None:
             self._held_speed = speed / float(self.drive.path.radii[driver])

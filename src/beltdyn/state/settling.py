@@ -86,27 +86,7 @@ class Settling:
     def __call__(
         self, drive: Drive, system: System, state: State, integrator: Integrator, progress: Report | None, /
     ) -> Start:
-        """Settle.
-
-        Parameters
-        ----------
-        drive
-            That of the run to come.
-        system
-            Its arrays.
-        state
-            At rest.
-        integrator
-            Method of time integration.
-        progress
-            Whom to tell.
-
-        Returns
-        -------
-        Start
-            The state at the end. Its attributes are ``settling_time`` (s, with the lead), and ``settling_left``: what
-            is left of the start in the span tensions, over the largest mean one.
-        """
+        """Settle."""
         before = self._before(drive)
         slower = system._replace(profiles=profile_arrays(before.pulleys))
         task = drive_task(drive, slower, state, Statistics())
@@ -204,17 +184,7 @@ def settle(
 
 
 def with_angles(drive: Drive, system: System, before: System | None = None, time: float = 0.0) -> System:
-    """Arrays of a drive whose prescribed angles go on from what they were in another system.
-
-    Parameters
-    ----------
-    drive, system
-        The drive.
-    before
-        The other system; by default angles are zero at the beginning.
-    time
-        When the other system had the angles, s.
-    """
+    """Arrays of a drive whose prescribed angles go on from what they were in another system."""
     profiles = profile_arrays(drive.pulleys)
     prescribed = [number for number, pulley in enumerate(drive.pulleys) if pulley.prescribed]
     integral = interpreted(profile_integral)
@@ -254,22 +224,7 @@ class Beginning(NamedTuple):
 
 
 def begin_flowing(drive: Drive, progress: Report | None) -> Beginning:
-    """Find the state in which a run on a staying mesh begins, and the mesh.
-
-    Parameters
-    ----------
-    drive
-        The drive; `simulation.start` says whether it begins at rest or in steady running.
-    progress
-        Whom to tell.
-
-    Raises
-    ------
-    ModelError
-        If the drive cannot run steadily where it is to begin so.
-    ConvergenceError
-        If there is no such state.
-    """
+    """Find the state in which a run on a staying mesh begins, and the mesh."""
     if progress is not None:
         progress(Progress(0.0, drive.simulation.duration, 0.0, 0, "equilibrium"))
     meshed = _meshed(drive)

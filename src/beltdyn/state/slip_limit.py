@@ -57,17 +57,7 @@ class Passed(NamedTuple):
 
 
 def slip_limit(drive: Drive, system: System, asked: System, passed: Sequence[Passed]) -> str:
-    """Name the pulley that slips, and say how much it transmits.
-
-    Parameters
-    ----------
-    drive, system
-        The drive.
-    asked
-        The drive under the loads that are asked for.
-    passed
-        Steady running on the way there, in the order of the search.
-    """
+    """Name the pulley that slips, and say how much it transmits."""
     slips = np.array([_slips(drive, system, one) for one in passed])
     last, (at, slip) = passed[-1], gross_slip(drive, system, passed)
     here = passed[at] if slip > GROSS else last

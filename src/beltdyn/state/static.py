@@ -112,18 +112,7 @@ def find_equilibrium(
 
 
 def standing(system: System) -> System:
-    """The same system with prescribed shafts that stand still, as static equilibrium has it.
-
-    Parameters
-    ----------
-    system
-        Belt, pulleys, supports.
-
-    Returns
-    -------
-    System
-        With prescribed speeds of zero.
-    """
+    """The same system with prescribed shafts that stand still, as static equilibrium has it."""
     segments, starts = system.profiles.segment.copy(), system.profiles.table["segment"]
     for pulley in np.flatnonzero(system.bodies["unknown"][system.pulleys.shaft] < 0):
         for name in ("offset", "slope", "amplitude"):
@@ -243,13 +232,7 @@ def _with_sides_of_its_own(equations: Equations) -> Equations:
 
 
 def only_tensioners(system: System) -> Records:
-    """The bodies when nothing turns and tensioners move.
-
-    Parameters
-    ----------
-    system
-        Belt, pulleys, tensioners.
-    """
+    """The bodies when nothing turns and tensioners move."""
     bodies, count = system.bodies.copy(), system.tensioners.size
     bodies["unknown"] = -1
     bodies["unknown"][bodies.size - count :] = np.arange(count)

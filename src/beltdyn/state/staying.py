@@ -72,18 +72,6 @@ def bring_to_stand(drive: Drive, elements: int | None = None) -> Standing:
     """Find the equilibrium at rest, with the installed tension that was asked for if one was.
 
     The length for that tension is found on a mesh that is fine enough for it.
-
-    Parameters
-    ----------
-    drive
-        The drive.
-    elements
-        Number of equal elements; by default the mesh is graded.
-
-    Raises
-    ------
-    ConvergenceError
-        If it is not found.
     """
     rest, wanted = stand(drive, elements), drive.belt.installed_tension
     if wanted is None:
@@ -99,20 +87,6 @@ def stand(drive: Drive, elements: int | None = None, *, fineness: float = FIRST_
     """Find the equilibrium at rest, without friction, of a drive with the length that it has.
 
     Where Newton's method does not get there from the laid belt, it follows the equilibria of stiffer or softer contact.
-
-    Parameters
-    ----------
-    drive
-        The drive.
-    elements
-        Number of equal elements; by default the mesh is graded.
-    fineness
-        Of a graded mesh.
-
-    Raises
-    ------
-    ConvergenceError
-        If it is not found.
     """
     installation = install(drive)
     layer = layer_length(*layer_lengths(drive, installation.tension))
@@ -144,20 +118,7 @@ def _balanced(drive: Drive, system: System, state: State, start: float = 1.0) ->
 
 
 def stand_like(drive: Drive, like: Standing) -> Standing:
-    """Find the equilibrium of a drive that differs a little, in the length of its belt, from that of the other.
-
-    Parameters
-    ----------
-    drive
-        The drive.
-    like
-        The other one, of which the mesh is taken in proportion: another mesh would have other errors.
-
-    Raises
-    ------
-    ConvergenceError
-        If it is not found from there.
-    """
+    """Find the equilibrium of a drive that differs a little, in the length of its belt, from that of the other."""
     nodes, bodies = np.split(like.place, [like.system.first_body])
     system, state = carried(drive, like.drive, like.system.length, nodes)
     state.position[system.first_body :] += bodies
@@ -231,13 +192,7 @@ def _lying(drive: Drive, system: System, installation: Installation, factor: flo
 
 
 def found_arcs(system: System, state: State) -> list[Arc]:
-    """Where the belt touches pulleys, in the order in which they follow each other along the belt.
-
-    Parameters
-    ----------
-    system, state
-        Where the belt is.
-    """
+    """Where the belt touches pulleys, in the order in which they follow each other along the belt."""
     ends = np.cumsum(system.length)
     parts = np.arange(_SAMPLES) / _SAMPLES
     along = ((ends - system.length)[:, None] + system.length[:, None] * parts).ravel()

@@ -29,13 +29,7 @@ from beltdyn.system.state_forces import body_forces_at
 
 
 def instant_given(drive: Drive, at: float | str | None) -> float:
-    """The instant that is asked for, such as "0.5 s", or in s; by default the end of the simulation; in s.
-
-    Raises
-    ------
-    ModelError
-        If it is no time.
-    """
+    """The instant that is asked for, such as "0.5 s", or in s; by default the end of the simulation; in s."""
     return drive.simulation.end if at is None else number_in("at", at, "s")
 
 
@@ -43,22 +37,7 @@ def instant_given(drive: Drive, at: float | str | None) -> float:
 
 
 def require_neighbour(drive: Drive, start: Run, elements: int | None) -> None:
-    """Make sure that steady running of a drive can begin with that of another one.
-
-    Parameters
-    ----------
-    drive
-        The drive.
-    start
-        Results of the other one.
-    elements
-        Number of equal elements that is asked for, if any.
-
-    Raises
-    ------
-    ModelError
-        If they are not those of steady running, or of other pulleys and tensioners, or a mesh is asked for.
-    """
+    """Make sure that steady running of a drive can begin with that of another one."""
     if elements is not None:
         raise ModelError(f"elements = {elements} cannot be given with start, which has its own mesh. Omit one of them.")
     if not runs_steadily(start.dataset):
@@ -73,15 +52,7 @@ def require_neighbour(drive: Drive, start: Run, elements: int | None) -> None:
 
 
 def with_length_of(drive: Drive, start: Run) -> Drive | None:
-    """The drive with the length of the belt, or the take-up, that is known; None if it must be found.
-
-    Parameters
-    ----------
-    drive
-        The drive.
-    start
-        Steady running of a drive. If it is that of this one, at whatever instant, the length found then is known.
-    """
+    """The drive with the length of the belt, or the take-up, that is known; None if it must be found."""
     if drive.belt.installed_tension is None:
         return drive
     return start.drive if start.dataset.attrs["drive_as_given"] == drive.text else None
@@ -91,15 +62,6 @@ def search_from(drive: Drive, start: Run, time: float) -> SteadySearch:
     """A search for steady running that begins with that of a neighbour, on its mesh.
 
     Its speeds are changed in proportion to those that are prescribed.
-
-    Parameters
-    ----------
-    drive
-        A drive with a length.
-    start
-        What `require_neighbour` lets pass.
-    time
-        At which speeds, torques and schedules are taken, s.
     """
     found = start.dataset
     lengths = np.diff(found.node_coordinate.values, append=start.drive.belt_length)
@@ -210,24 +172,7 @@ def steady_state(
 
 
 def steady_from(drive: Drive, start: Run | None, force_tolerance: float | None, *, bands: bool) -> Run:
-    """Find the steady running of a drive from that of another one, or from rest, as `steady_state` does.
-
-    Parameters
-    ----------
-    drive
-        The drive, with constant speeds and torques.
-    start
-        Steady running of one that differs a little, if there is one.
-    force_tolerance
-        As for `steady_state`.
-    bands
-        Whether to find where dry friction holds tensioners, which takes several times as long as all else.
-
-    Raises
-    ------
-    ConvergenceError
-        If there is none.
-    """
+    """Find the steady running of a drive from that of another one, or from rest, as `steady_state` does."""
     instant, tolerance = drive.simulation.end, _tolerance(drive, force_tolerance)
     found = None if start is None else _continued(drive, start, instant, tolerance, bands=bands)
     return _as_run(drive, instant, found or _from_rest(drive, instant, tolerance, None, bands=bands))
@@ -256,20 +201,7 @@ class Beside(NamedTuple):
 def steady_beside(
     drive: Drive, start: Run, guess: FloatArray | None = None, tangent: SteadyWork | None = None
 ) -> Beside | None:
-    """Look for the steady running of a drive on the mesh of another one; None if it is not found from there.
-
-    Parameters
-    ----------
-    drive
-        The drive, with constant speeds and torques.
-    start
-        Steady running of one that differs a little.
-    guess
-        By how much its unknowns may differ from those that are carried over from the other one, as far as is known.
-    tangent
-        That of the other one, from `tangent_of`, with which a small change is followed by the implicit function
-        theorem.
-    """
+    """Look for the steady running of a drive on the mesh of another one; None if it is not found from there."""
     require_neighbour(drive, start, None)
     search, begun = _begin(drive, start, drive.simulation.end), time.perf_counter()
     carried = search.unknowns()
@@ -286,31 +218,12 @@ def tangent_of(run: Run) -> SteadyWork:
 
 
 def steady_on_mesh(drive: Drive, start: Run) -> Run:
-    """Find the steady running of a drive on the mesh of another one, of which the errors are taken over.
-
-    Parameters
-    ----------
-    drive
-        The drive, with constant speeds and torques.
-    start
-        Steady running of one that differs a little.
-
-    Raises
-    ------
-    ConvergenceError
-        If it is not found from there.
-    """
+    """Find the steady running of a drive on the mesh of another one, of which the errors are taken over."""
     return require_found(steady_beside(drive, start)).run(bands=True)
 
 
 def require_found(found: Beside | None) -> Beside:
-    """Make sure that steady running was found.
-
-    Raises
-    ------
-    ConvergenceError
-        If it was not.
-    """
+    """Make sure that steady running was found."""
     if found is None:
         raise ConvergenceError("Newton's method does not converge for so large a change.")
     return found
@@ -402,13 +315,7 @@ def _as_run(drive: Drive, instant: float, found: _Found) -> Run:
 
 
 def require_steady(drive: Drive) -> None:
-    """Make sure that a drive may run steadily.
-
-    Raises
-    ------
-    ModelError
-        If not.
-    """
+    """Make sure that a drive may run steadily."""
     if drive.ends:
         raise ModelError("an open belt has no steady running. Simulate it with `beltdyn run`.")
     shaped = [pulley.name for pulley in drive.pulleys if pulley.surface and pulley.surface.kind != "circle"]
@@ -427,13 +334,7 @@ def require_steady(drive: Drive) -> None:
 
 
 def require_steady_start(drive: Drive) -> None:
-    """Make sure that a drive whose run is to begin in steady running may do so.
-
-    Raises
-    ------
-    ModelError
-        If not.
-    """
+    """Make sure that a drive whose run is to begin in steady running may do so."""
     try:
         require_steady(drive)
     except ModelError as error:
@@ -443,13 +344,7 @@ def require_steady_start(drive: Drive) -> None:
 
 
 def require_tolerance(force_tolerance: float) -> None:
-    """Make sure that an error of contact forces that is asked for makes sense.
-
-    Raises
-    ------
-    ModelError
-        If not.
-    """
+    """Make sure that an error of contact forces that is asked for makes sense."""
     if not 0.0 < force_tolerance < 1.0:
         raise ModelError(f"force_tolerance = {force_tolerance:g} must be between 0 and 1, such as 0.01 for 1 %.")
 

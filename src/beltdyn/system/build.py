@@ -62,18 +62,7 @@ Closure = Literal["shared_node", "multipliers", "open"]
 
 
 def drive_system(drive: Drive) -> System:
-    """Arrays of a drive.
-
-    Parameters
-    ----------
-    drive
-        A checked drive.
-
-    Returns
-    -------
-    System
-        Its belt, with its ends or closed as ``drive.simulation.joint`` says, and its pulleys.
-    """
+    """Arrays of a drive."""
     belt, contact = drive.completed.belt, drive.completed.contact
     return system_of(drive, belt, contact, "open" if drive.ends else drive.simulation.joint, **_at_ends(drive))
 
@@ -200,18 +189,7 @@ def belt_system(
 
 
 def contact_points(contact: Contact | None) -> Quadrature:
-    """Where contact is evaluated on a curve of the centreline: at Gauss points, or at its ends alone.
-
-    Parameters
-    ----------
-    contact
-        Contact constants; None for a belt without pulleys.
-
-    Returns
-    -------
-    Quadrature
-        Points and weights on [0, 1].
-    """
+    """Where contact is evaluated on a curve of the centreline: at Gauss points, or at its ends alone."""
     if contact is None:
         return gauss_points(1)
     if contact.sampling == "nodal":

@@ -33,29 +33,7 @@ def machine_arrays(
     path: Path | None = None,
     gravity: tuple[float, float] = (0.0, 0.0),
 ) -> Machines:
-    """Arrays of everything on and behind the pulleys.
-
-    Parameters
-    ----------
-    pulleys
-        The pulleys.
-    tensioners
-        What carries some of them; fixed ones leave no trace.
-    path
-        The path around the pulleys, with signed radii; needed where there are tensioners.
-    gravity
-        Acceleration of gravity, m/s^2.
-
-    Returns
-    -------
-    Machines
-        Their profiles are those of `profile_arrays`.
-
-    Raises
-    ------
-    ModelError
-        If there are tensioners but no path.
-    """
+    """Arrays of everything on and behind the pulleys."""
     of_loads, of_links = _switching_numbers(pulleys)
     return Machines(
         profile_arrays(pulleys),
@@ -66,18 +44,7 @@ def machine_arrays(
 
 
 def profile_arrays(pulleys: Sequence[Pulley]) -> Profiles:
-    """Arrays of all that is prescribed over time.
-
-    Parameters
-    ----------
-    pulleys
-        The pulleys.
-
-    Returns
-    -------
-    Profiles
-        Profile p is that of pulley p; factors and commands of its loads, then of its hub chain, follow.
-    """
+    """Arrays of all that is prescribed over time."""
     own = [pulley.speed if pulley.prescribed else pulley.torque for pulley in pulleys]
     switching = [item for pulley in pulleys for item in pulley.switching if item is not None]
     return profile_rows([*own, *switching], [*(pulley.harmonics for pulley in pulleys), *([()] * len(switching))])

@@ -88,13 +88,7 @@ def _staying_belt(drive: Drive, elements: int) -> Belt:
 
 
 def without_hysteresis(system: System) -> System:
-    """The same drive with a belt that follows its strains without hysteresis.
-
-    Parameters
-    ----------
-    system
-        Any.
-    """
+    """The same drive with a belt that follows its strains without hysteresis."""
     if isinstance(system.element, Quintic):
         system = with_bending_loss(system, 0.0)
     return system._replace(hysteresis=system.hysteresis[:0].view(np.recarray))

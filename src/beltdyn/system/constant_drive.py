@@ -91,13 +91,6 @@ def constant_drive(system: System, time: float) -> System:
 
     Loads are taken by their means over the angle, and what acts on a tensioner only while it moves is left out. Each
     load has a schedule of its own.
-
-    Parameters
-    ----------
-    system
-        A system.
-    time
-        At which speeds, torques and schedules are taken, s.
     """
     loads, profiles = mean_loads(system.shaft_loads), system.profiles
     values = [interpreted(profile_value)(profiles, number, time)[0] for number in range(len(profiles.table) - 1)]
@@ -116,13 +109,7 @@ def constant_drive(system: System, time: float) -> System:
 
 
 def without_motion(tensioners: Records) -> Records:
-    """Tensioners without damping and dry friction.
-
-    Parameters
-    ----------
-    tensioners
-        Rows of tensioners.
-    """
+    """Tensioners without damping and dry friction."""
     still = tensioners.copy()
     for name in still.dtype.names or ():
         if "spring" in (still.dtype[name].names or ()):
@@ -148,15 +135,7 @@ def rigid_links(system: System) -> BoolArray:
 
 
 def with_speeds_unknown(system: System, held: Sequence[int] = ()) -> System:
-    """The same system with the speeds of its shafts and rims as unknowns, equal where springs couple them.
-
-    Parameters
-    ----------
-    system
-        A system.
-    held
-        Pulleys beside those of prescribed speed whose shafts have a given speed, for which their profiles stand then.
-    """
+    """The same system with the speeds of its shafts and rims as unknowns, equal where springs couple them."""
     bodies, group = system.bodies.copy(), np.arange(system.bodies.size)
     for link, rigid in zip(system.links, rigid_links(system), strict=True):
         if rigid:

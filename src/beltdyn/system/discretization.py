@@ -75,18 +75,7 @@ def discretize(belt: Belt, lengths: FloatArray | None = None) -> Discretization:
 
 
 def belt_section(belt: Belt) -> Section:
-    """Stiffness, damping and inertia of a belt's section.
-
-    Parameters
-    ----------
-    belt
-        The belt.
-
-    Returns
-    -------
-    Section
-        Factors of Eqs. 14 and 15, integrated over the section.
-    """
+    """Stiffness, damping and inertia of a belt's section."""
     return Section(
         stretch=belt.stretch_parameters,
         bending=belt.bending_stiffness,

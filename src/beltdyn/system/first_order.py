@@ -64,22 +64,7 @@ class JointConstraint:
 
 
 def joint_constraint(system: System) -> JointConstraint:
-    """Compute the matrices in brackets of Eq. 26 once.
-
-    Parameters
-    ----------
-    system
-        A belt whose joint is closed by multipliers.
-
-    Returns
-    -------
-    JointConstraint
-
-    Raises
-    ------
-    ModelError
-        If the belt has no such joint.
-    """
+    """Compute the matrices in brackets of Eq. 26 once."""
     if not system.joint:
         raise ModelError('the belt has no joint with multipliers. Set simulation.joint = "multipliers".')
     dof = len(system.scale)

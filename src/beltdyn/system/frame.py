@@ -174,15 +174,7 @@ def flowing(given: Staying, mass: FloatArray, vectors: tuple[int, ...], place: i
 
 
 def flow_record(vectors: int, coordinates: int) -> np.dtype[np.void]:
-    """Kind of the scratch arrays for the derivatives by velocity of one element.
-
-    Parameters
-    ----------
-    vectors
-        Number v of its vectors.
-    coordinates
-        Number 2 n of its coordinates.
-    """
+    """Kind of the scratch arrays for the derivatives by velocity of one element."""
     return record(
         rate=f"({vectors},2)f8",  # vectors D e
         by_speed=f"{coordinates}f8",  # derivative of the residual with respect to the unknown of the flow

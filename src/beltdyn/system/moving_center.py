@@ -192,20 +192,7 @@ def couple_center(
 
 
 def with_movers(system: System, pulleys: list[int]) -> System:
-    """Put pulleys on carriers whose motion is prescribed, behind the tensioners.
-
-    Parameters
-    ----------
-    system
-        A system.
-    pulleys
-        Numbers of pulleys that nothing carries.
-
-    Returns
-    -------
-    System
-        A coordinate more for each of them, at the end of states.
-    """
+    """Put pulleys on carriers whose motion is prescribed, behind the tensioners."""
     table, count = system.pulleys.copy(), len(system.tensioners)
     carriers = np.resize(system.tensioners, count + len(pulleys)) if count else records(TENSIONER, pulley=pulleys)
     for number, pulley in enumerate(pulleys, count):
@@ -222,26 +209,7 @@ def with_movers(system: System, pulleys: list[int]) -> System:
 def moving_to(
     system: System, state: State, first: int, centers: dict[int, tuple[float, float]], time: float
 ) -> tuple[System, State]:
-    """Let carriers begin to move at constant speed, so that centers are reached after a time; the others stand still.
-
-    Parameters
-    ----------
-    system
-        From `with_movers`.
-    state
-        Where it is.
-    first
-        Number of the first such carrier.
-    centers
-        By the number of a pulley, m.
-    time
-        s.
-
-    Returns
-    -------
-    system, state
-        The same places, and other speeds of centers.
-    """
+    """Let carriers begin to move at constant speed, so that centers are reached after a time."""
     table, position, velocity = system.tensioners.copy(), state.position.copy(), state.velocity.copy()
     for carrier in range(first, len(table)):
         pulley, place = int(table.pulley[carrier]), position.size - len(table) + carrier

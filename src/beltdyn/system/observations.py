@@ -204,17 +204,7 @@ def span_count(system: System) -> int:
 
 
 def new_observations(system: System, forces: BodyForces, shown: int) -> Observations:
-    """Make observations of states whose body forces are known.
-
-    Parameters
-    ----------
-    system
-        The system.
-    forces
-        One row for each state.
-    shown
-        Number of states that are shown.
-    """
+    """Make observations of states whose body forces are known."""
     curves = system.length.size * system.control.shape[1]
     sizes = {
         "pulley": system.pulleys.size,

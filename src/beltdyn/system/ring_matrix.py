@@ -118,22 +118,7 @@ _LANES = 16
 
 
 def ring_matrix(dof: int, nodes: int, border: int) -> RingMatrix:
-    """Make a zero matrix.
-
-    Parameters
-    ----------
-    dof
-        Number of unknowns of a node, even.
-    nodes
-        Number of nodes.
-    border
-        Number of unknowns in the border.
-
-    Returns
-    -------
-    RingMatrix
-        With room to solve it.
-    """
+    """Make a zero matrix."""
     size = dof + border
     width = (dof + size + _LANES - 1) // _LANES * _LANES
     return RingMatrix(

@@ -6,13 +6,6 @@ from math import exp, log
 def capstan_ratio(friction: float, angle: float) -> float:
     """Ratio e^(mu theta) of the tensions at the ends of an arc of sliding.
 
-    Parameters
-    ----------
-    friction
-        Coefficient of friction mu.
-    angle
-        theta, rad.
-
     Examples
     --------
     Half a turn with a friction of 0.5:
@@ -28,22 +21,6 @@ def tight_tension(
     slack: float, friction: float, angle: float, *, mass_per_length: float = 0.0, speed: float = 0.0
 ) -> float:
     """Tension T1 at the tight end: (T1 - rho A v^2) = (T2 - rho A v^2) e^(mu theta).
-
-    Parameters
-    ----------
-    slack
-        T2, N.
-    friction, angle
-        mu and theta, rad.
-    mass_per_length
-        rho A, kg/m.
-    speed
-        Speed v of the belt along the arc, m/s; the belt presses by its tension less rho A v^2.
-
-    Returns
-    -------
-    float
-        T1, N.
 
     Examples
     --------

@@ -17,44 +17,13 @@ from beltdyn.stretch import StretchParameters
 def layer_length(
     creep_rate_factor: float, transport_speed: float, law: StretchParameters, *, mass: float = 0.0, at: float = 1.0
 ) -> float:
-    """Reference length (dT/dg - rho A c^2) / (nu_s c) over which a slip velocity grows e-fold along an arc, m.
-
-    Parameters
-    ----------
-    creep_rate_factor
-        nu_s, kg/(m s).
-    transport_speed
-        c, m/s.
-    law
-        Parameters of the law of stretch.
-    mass
-        rho A, kg/m.
-    at
-        Stretch at which the law of tension is linearised.
-    """
+    """Reference length (dT/dg - rho A c^2) / (nu_s c) over which a slip velocity grows e-fold along an arc, m."""
     stiffness = float(law.tangent_stiffness(at)) - mass * transport_speed**2
     return stiffness / (creep_rate_factor * transport_speed)
 
 
 def tension_along_arc(x: FloatArray, entry: float, leaving: float, arc: float, layer: float) -> FloatArray:
-    """Tension along an arc, linearised and below the cap: T = T_in + (T_out - T_in) (e^(X/l) - 1) / (e^(a/l) - 1).
-
-    Parameters
-    ----------
-    x : ndarray
-        Reference coordinate X from the entry, m.
-    entry, leaving
-        Tensions T_in and T_out, N.
-    arc
-        Reference length a of the arc, m.
-    layer
-        Layer length l, m.
-
-    Returns
-    -------
-    ndarray
-        N.
-    """
+    """Tension along an arc, linearised and below the cap: T = T_in + (T_out - T_in) (e^(X/l) - 1) / (e^(a/l) - 1)."""
     return np.asarray(entry + (leaving - entry) * np.expm1(x / layer) / np.expm1(arc / layer))
 
 
@@ -69,15 +38,6 @@ def creep_speed_loss(tight: float, slack: float, law: StretchParameters, arc: fl
     With a growing exponential on each arc, (omega1 - omega2) R / c = (g1 - g2) coth(a / 2 l) and
     omega1 R / c = g1 + (g1 - g2) / (e^(a/l) - 1).  For l << a this is elastic creep, (T1 - T2) / EA; for l >> a it is
     the slip of an inextensible belt, 2 (T1 - T2) / (nu_s a) over the rim speed.
-
-    Parameters
-    ----------
-    tight, slack
-        T1, T2, N.
-    law
-        Parameters of the law of stretch.
-    arc, layer
-        Reference lengths a of each arc and l, m.
     """
     first, second = (float(law.stretch(end)) for end in (tight, slack))
     rim = first + (first - second) * exp(-arc / layer) / -expm1(-arc / layer)
@@ -91,20 +51,6 @@ def entry_creep(elastic: float, saturation: float, lengths: float) -> float:
     above v_c, the belt slides from v_c on, after n' layer lengths: v0 = v_c e^-n' with
     n' = n - (V dT / EA - v_c + v0) / v_c, which Lambert's function solves. The belt slips by v0 more, and friction
     takes v0 dT more.
-
-    Parameters
-    ----------
-    elastic
-        V dT / EA, by which the belt's speed changes along the arc, m/s, not negative.
-    saturation
-        v_c, m/s.
-    lengths
-        n, the arc over the layer length.
-
-    Returns
-    -------
-    float
-        m/s; v_c where the whole arc slides.
     """
     from scipy.special import lambertw
 
@@ -128,34 +74,7 @@ def creeping_arc(
     friction: float,
     creep_rate_factor: float,
 ) -> tuple[FloatArray, FloatArray]:
-    """Tension and friction along an arc with inertia and the Coulomb cap, integrated from the entry.
-
-    Parameters
-    ----------
-    x : ndarray
-        Reference coordinates from the entry, ascending from zero, m.
-    entry
-        Tension where the belt runs on, N.
-    rim_speed
-        omega R, m/s.
-    transport_speed
-        c, m/s.
-    law
-        Parameters of the law of stretch.
-    mass
-        rho A, kg/m.
-    radius
-        R, m.
-    friction
-        mu.
-    creep_rate_factor
-        nu_s, kg/(m s).
-
-    Returns
-    -------
-    tension, friction : ndarray
-        N and N/m.
-    """
+    """Tension and friction along an arc with inertia and the Coulomb cap, integrated from the entry."""
     from scipy.integrate import solve_ivp
 
     def friction_force(force: FloatArray, g: FloatArray) -> FloatArray:

@@ -16,13 +16,6 @@ def speed_loss(tight: float, slack: float, law: StretchParameters) -> float:
     Where the belt runs onto a pulley it adheres and has the speed of the rim: c g(T1) on the driver, c g(T2) on the
     driven pulley, with the same c, the reference length that passes per second.
 
-    Parameters
-    ----------
-    tight, slack
-        T1, T2, N.
-    law
-        Parameters of the law of stretch.
-
     Examples
     --------
     >>> from beltdyn.stretch import Linear
@@ -96,22 +89,6 @@ def gross_slip_tensions(
     T0 = rho A v^2, span l, T1 - T0 = (T2 - T0) e^(mu pi), and arcs with the mean (T1 - T2) / (mu pi),
 
         l (T1 - T0 + T2 - T0) + 2 R (T1 - T2) / mu = (2 l + 2 pi R) (T - T0).
-
-    Parameters
-    ----------
-    installed
-        T, tension at rest, N.
-    friction
-        mu.
-    distance, radius
-        Between the centres, and of both pulleys, m.
-    mass_per_length, speed
-        rho A (kg/m) and v (m/s).
-
-    Returns
-    -------
-    tuple of float
-        T1, T2, N.
 
     Examples
     --------

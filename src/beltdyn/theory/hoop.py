@@ -6,18 +6,6 @@ from math import sqrt
 def hoop_tension(mass_per_length: float, speed: float) -> float:
     """Centrifugal tension T = rho A v^2 (Routh 1860) of a running belt without contact.
 
-    Parameters
-    ----------
-    mass_per_length
-        rho A of the belt as it runs, kg/m.
-    speed
-        v, m/s.
-
-    Returns
-    -------
-    float
-        T, N.
-
     Examples
     --------
     >>> bd.theory.hoop.hoop_tension(mass_per_length=0.1, speed=20.0)
@@ -38,19 +26,6 @@ def hoop_stretch(
 
     With v = c g and rho A / g kg in a running metre the hoop tension is rho A c^2 g.  The belt carries it by stretch,
     EA (g^2 - 1) g / 2, and, as it was straight unstressed, by bending, 3/2 EI kappa^2 g (Eq. 14).
-
-    Parameters
-    ----------
-    transport_speed
-        Reference length that passes per second, c, m/s: angular speed times L / 2 pi.
-    axial_stiffness
-        EA, N.
-    mass_per_length
-        rho A of the unstretched belt, kg/m.
-    bending_stiffness
-        EI, N m^2.
-    turning
-        kappa = 2 pi / L, 1/m.
 
     Examples
     --------

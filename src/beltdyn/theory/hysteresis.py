@@ -38,48 +38,17 @@ STRETCH_SHARE: Final = 0.5 * pi
 
 
 def bending_loss(bending_stiffness: float, loss_factor: float, radii: FloatArray) -> FloatArray:
-    """Bending loss per metre of belt on each pulley, J/m, equal to a resisting force in N.
-
-    Parameters
-    ----------
-    bending_stiffness : float
-        E I, N m^2.
-    loss_factor : float
-        Of bending.
-    radii : ndarray
-        Radius R of the tension line on each pulley, m.
-    """
+    """Bending loss per metre of belt on each pulley, J/m, equal to a resisting force in N."""
     return np.asarray(BENDING_SHARE * loss_factor * bending_stiffness / np.asarray(radii) ** 2)
 
 
 def stretch_loss(axial_stiffness: float, loss_factor: float, tight: float, slack: float) -> float:
-    """Loss per metre of belt over a tension cycle from slack to tight and back, J/m.
-
-    Parameters
-    ----------
-    axial_stiffness : float
-        E A, N.
-    loss_factor : float
-        Of stretch.
-    tight, slack : float
-        Tensions T1 and T2, N.
-    """
+    """Loss per metre of belt over a tension cycle from slack to tight and back, J/m."""
     return BENDING_SHARE * loss_factor * (tight - slack) ** 2 / axial_stiffness
 
 
 def deepest(stiffness: float) -> float:
-    """Penetration at the ends of an arc over that along the arc.
-
-    Parameters
-    ----------
-    stiffness : float
-        q = E I k / T^2: of the springs that the belt is pressed on, above zero.
-
-    Returns
-    -------
-    float
-        r, not below 1.
-    """
+    """Penetration at the ends of an arc over that along the arc."""
     first, second = np.roots([1.0, -1.0, stiffness * (1.0 + 1e-9)])  # squares of the rates of decay, in sqrt(T / E I)
     rates = np.sqrt(np.array([first, second], dtype=complex))
     parts = np.linalg.solve([np.ones(2), rates**2 + rates**3], [-1.0, -stiffness])
@@ -90,21 +59,7 @@ def deepest(stiffness: float) -> float:
 def compression_loss(
     tension: float, bending_stiffness: float, contact_stiffness: float, loss_factor: float, radii: FloatArray
 ) -> FloatArray:
-    """Compression loss per metre of belt on each pulley, J/m.
-
-    Parameters
-    ----------
-    tension : float
-        T, N.
-    bending_stiffness : float
-        E I, N m^2.
-    contact_stiffness : float
-        k, force a metre over depth, N/m^2.
-    loss_factor : float
-        Of compression.
-    radii : ndarray
-        Radius R of the tension line on each pulley, m.
-    """
+    """Compression loss per metre of belt on each pulley, J/m."""
     depth = deepest(bending_stiffness * contact_stiffness / tension**2)
     energy = (2.0 * depth**2 - 1.0) * tension**2 / contact_stiffness
     return np.asarray(BENDING_SHARE * loss_factor * energy / np.asarray(radii) ** 2)

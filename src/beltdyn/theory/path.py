@@ -20,13 +20,6 @@ class OpenBelt(NamedTuple):
 def open_belt(distance: float, radii: tuple[float, float]) -> OpenBelt:
     """Path of length 2 D cos b + R1 (pi - 2 b) + R2 (pi + 2 b) around two pulleys, sin b = (R2 - R1) / D.
 
-    Parameters
-    ----------
-    distance
-        Between the centres, m.
-    radii
-        m.
-
     Examples
     --------
     >>> round(bd.theory.path.open_belt(distance=0.4, radii=(0.05, 0.1)).length, 4)

@@ -96,20 +96,7 @@ class RunningBelt:
 
 
 def run_steadily(drive: RunningDrive, points: int = 20001) -> RunningBelt:
-    """Solve the boundary-value problem.
-
-    Parameters
-    ----------
-    drive
-        The drive.
-    points
-        Number k of equally spaced points at which the solution is given.
-
-    Raises
-    ------
-    ConvergenceError
-        If no steady running is found, as beyond gross slip.
-    """
+    """Solve the boundary-value problem."""
     from scipy.integrate import solve_bvp
 
     coordinate, begin, parameters = _guess(drive)

@@ -16,19 +16,7 @@ _SMALLEST = 1e-12
 
 
 def sag_parameter(weight: float, length: float, tension: float, axial_stiffness: float) -> float:
-    """Irvine's parameter lambda^2 for the stiffening by sag, 1.
-
-    Parameters
-    ----------
-    weight
-        w, the part of the weight across the span per length, N/m.
-    length
-        l, m.
-    tension
-        T, N.
-    axial_stiffness
-        EA, N: the rate dN/dg of the law of stretch at that tension.
-    """
+    """Irvine's parameter lambda^2 for the stiffening by sag, 1."""
     sag = weight * length / tension
     return sag**2 * axial_stiffness / (tension * (1.0 + sag**2 / 8.0))
 
@@ -36,33 +24,13 @@ def sag_parameter(weight: float, length: float, tension: float, axial_stiffness:
 def lowest_frequency(
     length: float, tension: float, mass: float, *, bending: float = 0.0, sag_parameter: float = 0.0
 ) -> float:
-    """Lowest frequency of transverse vibration of a span in its plane, Hz.
-
-    Parameters
-    ----------
-    length
-        l, m.
-    tension
-        T, N.
-    mass
-        m, kg/m.
-    bending
-        EI, N m^2; the ends are supported simply.
-    sag_parameter
-        lambda^2.
-    """
+    """Lowest frequency of transverse vibration of a span in its plane, Hz."""
     wave = min(symmetric_root(sag_parameter), 2.0 * pi) / length
     return wave * sqrt((tension + bending * wave**2) / mass) / (2.0 * pi)
 
 
 def symmetric_root(sag_parameter: float) -> float:
-    """First root k of the symmetric swing, between pi and 3 pi, by bisection.
-
-    Parameters
-    ----------
-    sag_parameter
-        lambda^2.
-    """
+    """First root k of the symmetric swing, between pi and 3 pi, by bisection."""
     if sag_parameter < _SMALLEST:
         return pi
     low, high = 0.5 * pi, 1.5 * pi

@@ -49,15 +49,7 @@ class SlidingBelt(NamedTuple):
 
 
 def flutter_at(belt: SlidingBelt, wave_number: float) -> Flutter:
-    """The wave of a wave number q (1/m) that grows fastest, running either way.
-
-    Parameters
-    ----------
-    belt
-        What slides.
-    wave_number
-        q, 1/m.
-    """
+    """The wave of a wave number q (1/m) that grows fastest, running either way."""
     axial, radius = belt.axial_stiffness, belt.radius
     radial = np.array([belt.mass_per_length, belt.damping, belt.stiffness + axial / radius**2])
     along = np.array([belt.mass_per_length, 0.0, axial * wave_number**2])
@@ -70,13 +62,7 @@ def flutter_at(belt: SlidingBelt, wave_number: float) -> Flutter:
 
 
 def fastest_flutter(belt: SlidingBelt) -> Flutter:
-    """The fastest growing wave on an infinite arc, a bound for partly sliding arcs.
-
-    Parameters
-    ----------
-    belt
-        What slides.
-    """
+    """The fastest growing wave on an infinite arc, a bound for partly sliding arcs."""
     in_tune = np.sqrt(belt.stiffness / belt.axial_stiffness)
     waves = in_tune * np.linspace(0.0, _SHORTEST, _WAVES + 1)[1:]
     return max((flutter_at(belt, float(wave)) for wave in waves), key=lambda flutter: flutter.rate)

@@ -42,31 +42,6 @@ def static_tension(
     becomes straight: by 5/12 d lambda / R with lambda^2 = d (R - d) for penetration, by beta^3 / 12 R^2 with
     beta^2 = EI / T0 for bending.
 
-    Parameters
-    ----------
-    length
-        Unstretched length of the belt, m.
-    distance
-        Between the centres, m.
-    radii
-        R, m.
-    law
-        Parameters of the law of stretch.
-    contact_stiffness
-        k_p, N/m^2.
-    bending_stiffness
-        EI, N m^2.
-
-    Returns
-    -------
-    StaticTension
-        To first order in the ends of contact, which are short against R.
-
-    Raises
-    ------
-    ModelError
-        If the belt hangs slack.
-
     Examples
     --------
     >>> from beltdyn.stretch import Linear

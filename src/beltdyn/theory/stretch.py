@@ -8,23 +8,6 @@ from beltdyn.stretch import StretchParameters
 def stretch_with_penetration(length: float, path: float, law: StretchParameters, sinking: float) -> float:
     """Stretch g of a belt at rest with penetration: the root of g length + sinking T g = path, T of g.
 
-    Parameters
-    ----------
-    length
-        Of the unstretched belt, m.
-    path
-        Length of the path around the pulleys' rims, m, not below `length`.
-    law
-        Parameters of the law of stretch.
-    sinking
-        How much shorter the path becomes for each newton of T g, m/N: the sum over the pulleys of wrap angle / (R k_p)
-        where a belt that presses with T g / R per reference length sinks by T g / (R k_p).
-
-    Returns
-    -------
-    float
-        By Newton's method from path / length, between bounds that each step draws closer.
-
     Examples
     --------
     >>> from beltdyn.stretch import Linear

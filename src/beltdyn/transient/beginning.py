@@ -38,18 +38,7 @@ _TURNS = 5
 
 
 def steady_state_on(rest: Rest) -> State:
-    """Steady running at the beginning of a run, as near as the travelling mesh comes to it.
-
-    Parameters
-    ----------
-    rest
-        The drive at rest on that mesh.
-
-    Raises
-    ------
-    ConvergenceError
-        If there is no steady running.
-    """
+    """Steady running at the beginning of a run, as near as the travelling mesh comes to it."""
     standing = stand(rest.drive)
     search = SteadySearch(rest.drive, standing.system, standing.state, rest.drive.simulation.begin)
     search.run(standing)
@@ -57,20 +46,7 @@ def steady_state_on(rest: Rest) -> State:
 
 
 def taken_over(search: SteadySearch, system: System) -> State:
-    """The curve and motion of steady running on the nodes of another mesh, which travels with the belt.
-
-    Parameters
-    ----------
-    search
-        In steady running.
-    system
-        The same drive on the other mesh.
-
-    Returns
-    -------
-    State
-        The belt coordinate of the other mesh begins where that of the first one does, in the middle of a span.
-    """
+    """The curve and motion of steady running on the nodes of another mesh, which travels with the belt."""
     found, given, length = search.running(), search.constant, search.drive.belt_length
 
     def nodes(ahead: float) -> FloatArray:
@@ -92,19 +68,7 @@ class Held:
     def __call__(
         self, drive: Drive, system: System, state: State, integrator: Integrator, progress: Report | None, /
     ) -> Start:
-        """Settle.
-
-        Parameters
-        ----------
-        drive, system
-            Those of the run to come.
-        state
-            From `steady_state_on`.
-        integrator
-            Method of time integration.
-        progress
-            Whom to tell.
-        """
+        """Settle."""
         held = constant_drive(system, drive.simulation.begin)._replace(tensioners=system.tensioners)
         stops = np.arange(1.0, _WINDOWS * _TURNS + 1.0) * _window(drive, system, state)
         task = drive_task(drive, held, state, Statistics())
@@ -130,11 +94,6 @@ def settled(drive: Drive, integrator: Integrator) -> tuple[Drive, Frame]:
     """The drive with the instant and the mesh of the earlier run in which it begins, and its mesh with the reason.
 
     Where the drive leaves the mesh open, it is that of an earlier run, and travels where the integrator needs it.
-
-    Raises
-    ------
-    ModelError
-        If there is no such run, or it has no such state.
     """
     begun = with_instant(drive)
     if begun.simulation.frame != drive.simulation.frame:
@@ -156,18 +115,7 @@ def compile_ahead(drive: Drive) -> None:
 
 
 def mesh_of(drive: Drive, integrator: Integrator, progress: Report | None = None) -> Beginning:
-    """The mesh of a run, with the state on it where the mesh is found by that.
-
-    Parameters
-    ----------
-    drive, integrator, progress
-        As for `simulate`; from `settled`.
-
-    Raises
-    ------
-    ModelError, ConvergenceError
-        As `simulate`.
-    """
+    """The mesh of a run, with the state on it where the mesh is found by that."""
     settings = drive.simulation
     staying = drive.frame.stays
     if staying and not isinstance(integrator, GeneralizedAlpha):
@@ -188,23 +136,7 @@ def mesh_of(drive: Drive, integrator: Integrator, progress: Report | None = None
 def begin_on(
     mesh: Beginning, integrator: Integrator, progress: Report | None = None, begin: Begin | None = None
 ) -> Beginning:
-    """The state in which a run begins.
-
-    Parameters
-    ----------
-    mesh
-        From `mesh_of`.
-    integrator, progress
-        As for `simulate`.
-    begin
-        Goes on from there to the state with which an analysis begins; by default, a travelling mesh settles in
-        steady running if it begins so.
-
-    Raises
-    ------
-    ModelError, ConvergenceError
-        As `simulate`.
-    """
+    """The state in which a run begins."""
     settings = mesh.drive.simulation
     if mesh.drive.frame.stays or isinstance(settings.start, EarlierRun):
         found = mesh

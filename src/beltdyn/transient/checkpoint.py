@@ -72,26 +72,14 @@ class Packing:
         self.classes = {cls.__name__: cls for cls in classes}
 
     def pack(self, value: Any) -> bytes:
-        """Bytes of an object.
-
-        Raises
-        ------
-        ModelError
-            If it holds an object of a class that is not listed.
-        """
+        """Bytes of an object."""
         writer = _Writer(self)
         tree = json.dumps(writer.node(value), separators=(",", ":")).encode()
         content = b"".join([len(tree).to_bytes(_LENGTH, "little"), tree, *writer.arrays])
         return hashlib.sha256(content).digest() + content
 
     def unpack(self, data: bytes) -> Any:
-        """The object of some bytes.
-
-        Raises
-        ------
-        ModelError
-            If they are damaged, or hold anything that is not listed.
-        """
+        """The object of some bytes."""
         digest, content = data[:_DIGEST], memoryview(data)[_DIGEST:]
         if hashlib.sha256(content).digest() != digest:
             raise ModelError("its checksum does not match its content")
@@ -363,37 +351,13 @@ def checkpoint_file(path: Path) -> Path:
 
 
 def write_checkpoint(path: Path, point: Checkpoint) -> None:
-    """Write a checkpoint.
-
-    Parameters
-    ----------
-    path
-        The file; an earlier checkpoint there is replaced when the new one is complete.
-    point
-        The run.
-
-    Raises
-    ------
-    ModelError
-        If it cannot be written, or would replace a file that is no checkpoint.
-    """
+    """Write a checkpoint."""
     with atomic_path(path, is_checkpoint) as temporary:
         temporary.write_bytes(f"{_HEAD} {_made_by()}\n".encode() + _PACKING.pack(point))
 
 
 def read_checkpoint(path: Path) -> Checkpoint:
-    """Read a checkpoint.
-
-    Parameters
-    ----------
-    path
-        The file.
-
-    Raises
-    ------
-    ModelError
-        If there is none, it was written by another version, or is damaged.
-    """
+    """Read a checkpoint."""
     try:
         with open_file(path) as file:
             head, content = file.readline(_LONGEST_HEAD), file.read()

@@ -31,22 +31,7 @@ _FREE_OF_PULLEYS = frozenset({"speed", "harmonics", "torque", "load", "inertia",
 
 
 def instant_of(run: Run, at: float | str | None, name: str = "at") -> float:
-    """The instant at which the belt was recorded that is asked for, s.
-
-    Parameters
-    ----------
-    run
-        A run over time.
-    at
-        Such as "0.5 s", or in s; the last one by default.
-    name
-        What a message calls it.
-
-    Raises
-    ------
-    ModelError
-        If the belt was not recorded then.
-    """
+    """The instant at which the belt was recorded that is asked for, s."""
     run.require_output()
     run.require("nodal_velocities")
     run.require("body_velocity")
@@ -73,22 +58,7 @@ def staying_mesh(drive: Drive, run: Run) -> System:
 
 
 def recorded_state(run: Run, time: float, system: System) -> State:
-    """The state of a run.
-
-    Parameters
-    ----------
-    run
-        A run over time.
-    time
-        From `instant_of`, s.
-    system
-        Arrays of the same belt and bodies on the same mesh.
-
-    Returns
-    -------
-    State
-        Without accelerations.
-    """
+    """The state of a run."""
     seen = run.fields_at(time)
     state, first = at_rest(system, seen["nodal_coordinates"].values), system.first_body
     state.position[first:] = seen["body_position"].values
@@ -98,18 +68,7 @@ def recorded_state(run: Run, time: float, system: System) -> State:
 
 
 def with_instant(drive: Drive) -> Drive:
-    """The drive with the instant of the earlier run in which it begins, and its mesh; any other drive as it is.
-
-    Parameters
-    ----------
-    drive
-        The drive; without an instant, the run begins in the last state that was recorded.
-
-    Raises
-    ------
-    ModelError
-        If there is no such run, or it has no such state.
-    """
+    """The drive with the instant of the earlier run in which it begins, and its mesh; any other drive as it is."""
     start = drive.simulation.start
     if not isinstance(start, EarlierRun):
         return drive
@@ -120,24 +79,7 @@ def with_instant(drive: Drive) -> Drive:
 
 
 def begin_from(drive: Drive) -> Beginning:
-    """Begin in the state of an earlier run, on its mesh.
-
-    Parameters
-    ----------
-    drive
-        From `with_instant`.
-
-    Returns
-    -------
-    Beginning
-        With the belt, contact and tensioners of the earlier run, whose length is known. Angles of prescribed shafts go
-        on from those that they had.
-
-    Raises
-    ------
-    ModelError
-        If there is no such run, or it is one of another belt, on other pulleys or on another mesh.
-    """
+    """Begin in the state of an earlier run, on its mesh."""
     start = drive.simulation.start
     assert isinstance(start, EarlierRun)
     assert start.time is not None
@@ -182,13 +124,7 @@ def _opened(start: EarlierRun) -> Iterator[Run]:
 
 
 def _as_installed(drive: Drive, run: Run) -> Drive:
-    """The drive with the belt, the contact and the tensioners of the earlier run, in which its length was found.
-
-    Raises
-    ------
-    ModelError
-        If it differs from the drive of that run in more than it may.
-    """
+    """The drive with the belt, the contact and the tensioners of the earlier run, in which its length was found."""
     given = run.dataset.attrs.get("drive_as_given")
     earlier = loads(given) if given is not None else run.drive
     found = _difference(_fixed(drive), _fixed(earlier))
@@ -233,13 +169,7 @@ def _shown(value: Any) -> str:
 
 
 def _require_same_mesh(system: System, run: Run) -> None:
-    """Make sure that nodes and bodies of a drive are those of the earlier run.
-
-    Raises
-    ------
-    ModelError
-        If not.
-    """
+    """Make sure that nodes and bodies of a drive are those of the earlier run."""
     theirs, mine = run.dataset["node_coordinate"].values, point_coordinates(system)
     if mine.shape != theirs.shape or not np.allclose(mine, theirs, rtol=0.0, atol=1e-9 * float(theirs[-1])):
         raise ModelError(

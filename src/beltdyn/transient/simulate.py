@@ -106,26 +106,7 @@ def record_run(
     checkpoint: float = CHECKPOINT,
     **attributes: str,
 ) -> Run:
-    """Simulate a drive over time, for an analysis that says something of its own about the run.
-
-    Parameters
-    ----------
-    drive, output, progress, overwrite, integrator
-        As for `simulate`.
-    begin
-        Finds the state to begin with from that at rest.
-    watch
-        Is given all outputs, and may end the run by an error.
-    compare_steady, checkpoint
-        As for `simulate`.
-    **attributes
-        Global attributes of the dataset.
-
-    Returns
-    -------
-    Run
-        As `simulate` gives it.
-    """
+    """Simulate a drive over time, for an analysis that says something of its own about the run."""
     require_room(drive, Path(output) if output is not None else None)
     given = drive
     if compare_steady:
@@ -216,18 +197,7 @@ def _steady_losses(drive: Drive) -> dict[str, object]:
 
 
 def choose_integrator(drive: Drive) -> Integrator:
-    """The integrator that a drive file asks for.
-
-    Parameters
-    ----------
-    drive
-        The drive.
-
-    Returns
-    -------
-    Integrator
-        `GeneralizedAlpha` or a `StandardIntegrator`.
-    """
+    """The integrator that a drive file asks for."""
     return INTEGRATORS[drive.simulation.integrator](drive.simulation)
 
 

@@ -337,13 +337,7 @@ def _vectors(state: IntegratorState) -> list[FloatArray]:
 
 
 def output_names(drive: Drive) -> list[str]:
-    """Names of the outputs of a simulator, before there is one.
-
-    Parameters
-    ----------
-    drive : Drive
-        The drive.
-    """
+    """Names of the outputs of a simulator, before there is one."""
     of_pulleys = [f"{name}[{pulley.name}]" for name in _OF_PULLEYS for pulley in drive.pulleys]
     of_spans = [f"span_tension[{before}-{after}]" for before, after in drive.spans]
     of_tensioners = [f"tensioner_position[{one.pulley}]" for one in drive.moving_tensioners]

@@ -106,22 +106,7 @@ def sweep(
 
 
 def without_schedules(drive: Drive, at: float = _LATE) -> tuple[Drive, list[str]]:
-    """Let all that changes over time keep its value at an instant.
-
-    Parameters
-    ----------
-    drive
-        The drive.
-    at
-        The instant, s; by default one when nothing changes any more.
-
-    Returns
-    -------
-    drive : Drive
-        With constant speeds, torques and schedules.
-    held : list of str
-        What keeps its value, such as "alternator.load[1].schedule = 1".
-    """
+    """Let all that changes over time keep its value at an instant."""
     held = list[str]()
 
     def constant(part: _Part, name: str, **others: Any) -> _Part:
@@ -159,24 +144,7 @@ def _held(part: Part, at: float) -> Mapping[str, Any]:
 
 
 def run_up(drive: Drive, pulley: str, start: float, end: float, duration: float) -> Drive:
-    """Let the speed of a pulley rise linearly.
-
-    Parameters
-    ----------
-    drive
-        The drive.
-    pulley
-        Name of the pulley.
-    start, end
-        Speeds, rad/s.
-    duration
-        How long the rise takes, s.
-
-    Raises
-    ------
-    ModelError
-        If there is no such pulley, its speed is not prescribed, or the numbers make no run-up.
-    """
+    """Let the speed of a pulley rise linearly."""
     number = drive.number_of(pulley)
     if not drive.pulleys[number].prescribed:
         driven = [one.name for one in drive.pulleys if one.prescribed]

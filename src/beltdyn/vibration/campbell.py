@@ -94,13 +94,7 @@ class CampbellDiagram:
         self._bounds = list[float]()
 
     def take(self, run: Run | None) -> None:
-        """Take steady running at the next speed, or none.
-
-        Raises
-        ------
-        ConvergenceError
-            If it has no modes; the speed counts as one without any then.
-        """
+        """Take steady running at the next speed, or none."""
         seen, flutter, lines = None, complex(np.nan, np.nan), [np.nan] * len(self._excitations)
         try:
             if run is not None:

@@ -27,18 +27,6 @@ def speed_waves(drive: Drive, pulley: int) -> dict[float, complex]:
     """Waves in the angle of a shaft of prescribed speed.
 
     The speed m (1 + a cos(k m t + phi)) makes the angle a / k sin(k m t + phi) beside m t.
-
-    Parameters
-    ----------
-    drive
-        The drive.
-    pulley
-        Number of the pulley.
-
-    Returns
-    -------
-    dict
-        Order k -> amplitude of exp(i k theta), rad.
     """
     found = dict[float, complex]()
     for wave in drive.pulleys[pulley].harmonics:
@@ -48,22 +36,7 @@ def speed_waves(drive: Drive, pulley: int) -> dict[float, complex]:
 
 
 def torque_waves(drive: Drive, pulley: int, speed: float) -> dict[float, complex]:
-    """Waves in the torque of the loads of a shaft.
-
-    Parameters
-    ----------
-    drive
-        With constant schedules.
-    pulley
-        Number of the pulley.
-    speed
-        Of the shaft, rad/s.
-
-    Returns
-    -------
-    dict
-        Order k -> amplitude of exp(i k theta), N m.
-    """
+    """Waves in the torque of the loads of a shaft."""
     found = dict[float, complex]()
     for load in drive.pulleys[pulley].load:
         factor = 1.0 if load.schedule is None else float(load.schedule.at([0.0])[0])
@@ -80,13 +53,7 @@ def torque_orders(load: Load) -> list[float]:
 
 
 def averaged(drive: Drive) -> Drive:
-    """A drive whose torques over the angle of shafts are replaced by their means.
-
-    Parameters
-    ----------
-    drive
-        The drive.
-    """
+    """A drive whose torques over the angle of shafts are replaced by their means."""
     if not any(isinstance(load, AngleTable | AngleSpeedTable) for one in drive.pulleys for load in one.load):
         return drive
     return drive.replace(pulley=[one.replace(load=[_averaged(load) for load in one.load]) for one in drive.pulleys])
@@ -141,13 +108,7 @@ class Excitation(NamedTuple):
 
 
 def own_excitations(drive: Drive) -> list[Excitation]:
-    """What a drive has that excites it: harmonics, then turns of pulleys, which may be out of true, and of the belt.
-
-    Parameters
-    ----------
-    drive
-        With constant speeds, torques and schedules.
-    """
+    """What a drive has that excites it: harmonics, then turns of pulleys, which may be out of true, and of the belt."""
     found = list[Excitation]()
     for number, one in enumerate(drive.pulleys):
         found += [
@@ -165,22 +126,7 @@ def own_excitations(drive: Drive) -> list[Excitation]:
 
 
 def given_excitations(orders: str, drive: Drive, number: int) -> list[Excitation]:
-    """Orders of the rotation of a pulley that a user gives.
-
-    Parameters
-    ----------
-    orders
-        Such as "1, 2, 0.5".
-    drive
-        The drive.
-    number
-        Of the pulley.
-
-    Raises
-    ------
-    ModelError
-        If the text holds no numbers above zero.
-    """
+    """Orders of the rotation of a pulley that a user gives."""
     name = drive.pulleys[number].name
     found = [] if ".." in orders else [float(one) for one in numbers_in("orders", orders, "", 2)]
     if not found or found[0] <= 0.0:

@@ -82,20 +82,7 @@ class SeenModes(NamedTuple):
 
 
 def seen_modes(motions: SmallMotions, count: int) -> SeenModes:
-    """Modes of a drive about a state, as they are compared with those of other states.
-
-    Parameters
-    ----------
-    motions
-        The drive about the state.
-    count
-        How many, at most.
-
-    Raises
-    ------
-    ConvergenceError
-        If nothing swings.
-    """
+    """Modes of a drive about a state, as they are compared with those of other states."""
     values, coordinates = eigenmodes(motions, count)
     points = even_points(motions)
     found = [
@@ -164,13 +151,7 @@ class Tracks:
         return bool(self._last)
 
     def table(self, states: int) -> "ModeTable":
-        """The modes: columns in the order in which they begin, those of lower frequency first.
-
-        Parameters
-        ----------
-        states
-            How many states there will be; modes of those to come are not found.
-        """
+        """The modes: columns in the order in which they begin, those of lower frequency first."""
         places = np.full((states, len(self._last)), -1)
         agreed = np.full(places.shape, np.nan)
         for row, (own, agreement) in enumerate(zip(self._places, self._agreed, strict=True)):

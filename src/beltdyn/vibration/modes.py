@@ -81,15 +81,7 @@ class _Found(NamedTuple):
 
 
 def modes_about(motions: SmallMotions, count: int) -> Result:
-    """Find the modes of small motions about a state, with sliding and with stuck tensioners.
-
-    Parameters
-    ----------
-    motions
-        The drive about the state.
-    count
-        How many lightly damped modes to give, from the lowest frequency on.
-    """
+    """Find the modes of small motions about a state, with sliding and with stuck tensioners."""
     points, dry = belt_points(motions), dry_tensioners(motions.drive)
     found = [_find(motions, points, count, SLIDING if dry.size else "")]
     if dry.size:

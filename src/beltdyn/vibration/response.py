@@ -48,25 +48,7 @@ class Place(NamedTuple):
 
 
 def run_up_amplitudes(given: Run | Path | str, place: Place) -> Axes:
-    """Amplitudes of orders in a run-up, at the speeds of a response.
-
-    Parameters
-    ----------
-    given
-        Of `sweep`, or its file.
-    place
-        Which amplitudes.
-
-    Returns
-    -------
-    mapping
-        Name ``run_up_NAME_amplitude`` -> its variable and values; NaN outside of the speeds of the run-up.
-
-    Raises
-    ------
-    ModelError
-        If the run is of another drive, or too short.
-    """
+    """Amplitudes of orders in a run-up, at the speeds of a response."""
     run = given if isinstance(given, Run) else open_run(given)
     own = [str(one) for one in run.dataset["pulley"].values]
     if own != list(place.labels["pulley"]):
@@ -109,26 +91,7 @@ def _recorded(run: Run, name: str, number: int) -> "xr.DataArray":
 
 
 def measured_amplitudes(path: Path, place: Place) -> Axes:
-    """Measured amplitudes at the speeds of a response, by straight lines between the measured speeds.
-
-    Parameters
-    ----------
-    path
-        A CSV file: a column "speed [rpm]", and others such as "span_tension crank-idler order 2 [N]".
-    place
-        Which amplitudes.
-
-    Returns
-    -------
-    mapping
-        Name ``measured_NAME_amplitude`` -> its variable and values; NaN outside of the measured speeds, and where
-        nothing was measured.
-
-    Raises
-    ------
-    ModelError
-        If the file is no such table.
-    """
+    """Measured amplitudes at the speeds of a response, by straight lines between the measured speeds."""
     columns = read_headed("measured", path)
     at = [one.values("rad/s") for one in columns if one.what == _SPEED]
     if len(at) != 1 or np.any(np.diff(at[0]) <= 0.0):

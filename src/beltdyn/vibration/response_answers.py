@@ -55,22 +55,7 @@ class ForcedMotion:
     def answer(
         self, frequency: float, angles: Mapping[int, complex], torques: Mapping[int, complex]
     ) -> dict[str, ComplexArray]:
-        """Amplitudes of results.
-
-        Parameters
-        ----------
-        frequency
-            Angular frequency w, rad/s.
-        angles
-            Number of a pulley of prescribed speed -> amplitude of the angle of its shaft, rad.
-        torques
-            Number of another pulley -> amplitude of a torque on its shaft, N m.
-
-        Returns
-        -------
-        dict
-            Of the names of results, complex amplitudes of exp(i w t), in the unit of the result.
-        """
+        """Amplitudes of results."""
         from scipy.sparse.linalg import splu
 
         stiffness, damping, mass = self._tangents
@@ -182,17 +167,7 @@ class Answers:
         self._frequency = np.full((count, len(self.excitations)), np.nan)
 
     def take(self, row: int, run: Run, motion: ForcedMotion) -> None:
-        """Take the responses at a speed.
-
-        Parameters
-        ----------
-        row
-            Number of the speed.
-        run
-            Steady running there.
-        motion
-            Small motions about it.
-        """
+        """Take the responses at a speed."""
         for place, one in enumerate(self.excitations):
             hertz = one.frequency(run)
             speed = float(run.dataset[one.turning][-1, one.pulley])
@@ -243,13 +218,7 @@ class Answers:
         return found
 
     def warnings(self, means: Mapping[str, NDArray[Any]]) -> list[str]:
-        """Where vibrations are too large for a linear response: where the belt would go slack.
-
-        Parameters
-        ----------
-        means
-            Arrays of the operating points.
-        """
+        """Where vibrations are too large for a linear response: where the belt would go slack."""
         total = np.abs(self._found["span_tension"]).sum(axis=1)
         with np.errstate(invalid="ignore"):
             slack = total > means["span_tension"]

@@ -34,18 +34,7 @@ if TYPE_CHECKING:
 
 
 def require_mesh_that_stays(run: Run) -> None:
-    """Make sure that a run has states that stay.
-
-    Parameters
-    ----------
-    run
-        A run over time.
-
-    Raises
-    ------
-    ModelError
-        If the mesh of the run travels.
-    """
+    """Make sure that a run has states that stay."""
     if not run.drive.frame.stays:
         raise ModelError(
             'modes need a run on a staying mesh, but this run has simulation.frame = "travelling", whose nodes '
@@ -55,24 +44,7 @@ def require_mesh_that_stays(run: Run) -> None:
 
 
 def state_of(run: Run, time: float) -> tuple[System, State, float]:
-    """A drive at an instant of a run, with speeds, torques and schedules as they are then.
-
-    Parameters
-    ----------
-    run
-        A run on a staying mesh.
-    time
-        From `instant_of`, s.
-
-    Returns
-    -------
-    system : System
-        From `constant_drive`; its belt flows at the speed.
-    state : State
-        Position and velocity.
-    speed : float
-        Length of unstretched belt that passes in a second, m/s.
-    """
+    """A drive at an instant of a run, with speeds, torques and schedules as they are then."""
     given = staying_mesh(run.drive, run)
     flowing = flowing_system(given, np.array(run.dataset.attrs[DIRECTION]))
     moving, place = recorded_state(run, time, flowing), flowing.frame.place
@@ -136,13 +108,7 @@ class SmallMotions(NamedTuple):
         yield together, _LITTLE_FORCE
 
     def with_stuck(self, tensioners: Sequence[int] | IntArray) -> "SmallMotions":
-        """The same drive with tensioners that dry friction holds.
-
-        Parameters
-        ----------
-        tensioners
-            Their numbers.
-        """
+        """The same drive with tensioners that dry friction holds."""
         places = self.system.bodies.size - self.system.tensioners.size + np.asarray(tensioners, dtype=int)
         stuck = self.bodies[places]
         order = np.arange(self.stiffness.shape[0])
@@ -166,18 +132,6 @@ def about_rest(drive: Drive) -> SmallMotions:
 
     Where it touches them, springs hold it along the rim, a hundred times as stiff as those of the normal force or more.
     The hysteresis of the belt is left out: its stress has no tangent there.
-
-    Parameters
-    ----------
-    drive
-        The drive.
-
-    Raises
-    ------
-    ModelError
-        If its belt is open.
-    ConvergenceError
-        If no static equilibrium is found.
     """
     if drive.ends:
         raise ModelError("the belt is open, but modes need a closed belt. Simulate the drive with `beltdyn run`.")
@@ -185,13 +139,7 @@ def about_rest(drive: Drive) -> SmallMotions:
 
 
 def about_standing(rest: Standing) -> SmallMotions:
-    """The same as `about_rest` of a drive that is at rest already.
-
-    Parameters
-    ----------
-    rest
-        It at rest.
-    """
+    """The same as `about_rest` of a drive that is at rest already."""
     held = without_hysteresis(constant_drive(standing(rest.system), 0.0))
     held.profiles.segment.offset[:] = 0.0
     smooth = held.pulleys.copy()
@@ -211,30 +159,14 @@ def _sticking_rate(tension: float, system: System) -> float:
 
 
 def about_steady(run: Run, *, all_shafts: bool = False) -> SmallMotions:
-    """A drive in steady running.
-
-    Parameters
-    ----------
-    run
-        From `steady_state`.
-    all_shafts
-        Whether motions of shafts of prescribed speed are among the unknowns, too.
-    """
+    """A drive in steady running."""
     search = search_from(run.drive, run, float(run.dataset.attrs["steady_at"]))
     search.resume()
     return _in_motion(run.drive, search.constant, search.state, search.belt_parameter, all_shafts=all_shafts)
 
 
 def about_instant(run: Run, time: float) -> SmallMotions:
-    """A drive at an instant of a run over time, as if it stayed in that state.
-
-    Parameters
-    ----------
-    run
-        On a staying mesh.
-    time
-        From `instant_of`, s.
-    """
+    """A drive at an instant of a run over time, as if it stayed in that state."""
     return _in_motion(run.drive, *state_of(run, time))
 
 
@@ -251,15 +183,7 @@ def _in_motion(drive: Drive, system: System, state: State, speed: float, *, all_
 
 
 def _linearised(drive: Drive, held: System, state: State, speed: float) -> SmallMotions:
-    """Linearise a drive with constant torques, on a staying mesh, with the damping of its tensioners.
-
-    Parameters
-    ----------
-    drive, held, state
-        The drive, its system and its state.
-    speed
-        Length of belt that passes in a second, m/s.
-    """
+    """Linearise a drive with constant torques, on a staying mesh, with the damping of its tensioners."""
     tensioners = drive_system(drive).tensioners.copy()
     for kind in tensioners.dtype.names or ():
         for name in _DRY if "spring" in (tensioners.dtype[kind].names or ()) else ():

@@ -13,17 +13,7 @@ class FrictionParameters(Protocol):
     """Parameters of a friction law, a named tuple of numbers with its saturation."""
 
     def saturation(self, normal: ArrayLike, friction: ArrayLike, rim: ArrayLike) -> FloatArray:
-        """Slip velocity at which friction saturates, m/s.
-
-        Parameters
-        ----------
-        normal
-            Normal force, N/m.
-        friction
-            Coulomb coefficient mu.
-        rim
-            Speed of the rim, m/s.
-        """
+        """Slip velocity at which friction saturates, m/s."""
 
     def smoothed(self, factor: float) -> Any:
         """The same law with its saturation at a slip velocity larger by a factor."""

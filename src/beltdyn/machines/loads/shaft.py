@@ -29,17 +29,7 @@ class ShaftLoads(NamedTuple):
 
 
 def shaft_loads(loads: Sequence[Sequence[Load]], profiles: Sequence[tuple[int, int]], first_state: int) -> ShaftLoads:
-    """Loads of all pulleys, concatenated.
-
-    Parameters
-    ----------
-    loads
-        Those of each pulley.
-    profiles
-        Numbers of the profiles that are the factor and the command of each load, or `NO_SCHEDULE`.
-    first_state
-        Place of the first state of a controller among the bodies.
-    """
+    """Loads of all pulleys, concatenated."""
     found = [load for group in loads for load in group]
     first, harmonic = harmonic_rows([load.harmonics for load in found])
     own = [np.asarray(load.numbers, dtype=float) for load in found]
@@ -55,13 +45,7 @@ def shaft_loads(loads: Sequence[Sequence[Load]], profiles: Sequence[tuple[int, i
 
 
 def mean_loads(loads: ShaftLoads) -> ShaftLoads:
-    """Loads by their means over shaft angles.
-
-    Parameters
-    ----------
-    loads
-        Of all pulleys.
-    """
+    """Loads by their means over shaft angles."""
     table, numbers, kinds = loads.table.copy(), loads.numbers.copy(), list(KINDS.items())
     for row, following in pairwise(loads.table):
         name, kind = kinds[row.kind]

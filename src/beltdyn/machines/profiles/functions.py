@@ -37,15 +37,7 @@ class Profiles(NamedTuple):
 
 
 def profile_rows(profiles: Sequence[Profile | None], harmonics: Sequence[Sequence[Harmonic]]) -> Profiles:
-    """Profiles, concatenated.
-
-    Parameters
-    ----------
-    profiles
-        The profiles; None is zero.
-    harmonics
-        Those of each profile.
-    """
+    """Profiles, concatenated."""
     pieces = [_NOTHING if profile is None else profile.integrated for profile in profiles]
     first, waves = harmonic_rows(harmonics)
     return Profiles(
@@ -121,19 +113,7 @@ def profile_integral(profiles: Profiles, number: int, time: float) -> float:
 
 
 def go_on(profiles: Profiles, numbers: Sequence[int], time: float, values: Sequence[float]) -> None:
-    """Continue integrals from given values at a time, as for angles of prescribed speeds.
-
-    Parameters
-    ----------
-    profiles
-        The profiles, changed in place.
-    numbers
-        Which of them.
-    time
-        s.
-    values
-        Integral of each of them then, such as an angle in rad.
-    """
+    """Continue integrals from given values at a time, as for angles of prescribed speeds."""
     for number, value in zip(numbers, values, strict=True):
         rows = slice(profiles.table[number].segment, profiles.table[number + 1].segment)
         profiles.segment.integral[rows] += value - interpreted(profile_integral)(profiles, number, time)

@@ -56,15 +56,7 @@ def tensioner_row(tensioner: MovingTensioner, pulley: int, center: FloatArray, g
 
 
 def free_slide(pulley: int, center: tuple[float, float]) -> np.record:
-    """Row of `TENSIONER` of a carrier that slides along a line without spring, friction and stops.
-
-    Parameters
-    ----------
-    pulley
-        Number of the pulley that it carries.
-    center
-        Where that is at coordinate zero, m.
-    """
+    """Row of `TENSIONER` of a carrier that slides along a line without spring, friction and stops."""
     made = row(TENSIONER, pulley=pulley, kind=list(_MOVING).index("sliding"))
     spring = {"creep_speed": 1.0, "lower": -np.inf, "upper": np.inf}
     fill(made["sliding"], {"center": center, "direction": (1.0, 0.0), "spring": spring})

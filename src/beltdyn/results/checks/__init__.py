@@ -69,22 +69,7 @@ CHECKS: tuple[Check, ...] = (
 
 
 def find(recorded: Recorded, drive: Drive, resolution: Resolution | None) -> list[Finding]:
-    """Check a result.
-
-    Parameters
-    ----------
-    recorded : Recorded
-        The results.
-    drive : Drive
-        The drive.
-    resolution : Resolution or None
-        How well its mesh resolves tension and contact; None if there is no output.
-
-    Returns
-    -------
-    list of Finding
-        The findings.
-    """
+    """Check a result."""
     if resolution is None:
         return [NOTHING_RECORDED]
     evidence = Evidence(recorded, drive, resolution)

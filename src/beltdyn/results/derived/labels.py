@@ -12,40 +12,12 @@ from beltdyn.results.schema import TIMES
 
 
 def labelled(values: NDArray[Any], like: xr.DataArray, units: str, long_name: str) -> xr.DataArray:
-    """Give an array the dimensions and coordinates of another one, and its own unit and name.
-
-    Parameters
-    ----------
-    values : ndarray
-        The values, of the shape of `like`.
-    like : DataArray
-        Whose dimensions and coordinates they have.
-    units, long_name : str
-        Unit and meaning, fit for the label of an axis.
-    """
+    """Give an array the dimensions and coordinates of another one, and its own unit and name."""
     return like.copy(data=values).assign_attrs(units=units, long_name=long_name)
 
 
 def window(run: Run, start: float | None = None, end: float | None = None) -> xr.Dataset:
-    """Take the outputs from one instant to another, both included, and those of fields between them.
-
-    Parameters
-    ----------
-    run : Run
-        The run.
-    start, end : float, optional
-        s; the first and the last output by default.
-
-    Returns
-    -------
-    xarray.Dataset
-        With at least one output.
-
-    Raises
-    ------
-    ModelError
-        If there is no output between the two.
-    """
+    """Take the outputs from one instant to another, both included, and those of fields between them."""
     run.require_output()
     dataset = run.dataset.sel({name: slice(start, end) for name in TIMES})
     if dataset.sizes["time"] == 0:

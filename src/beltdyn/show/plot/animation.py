@@ -86,24 +86,7 @@ def animate(
 
 @contextmanager
 def film(figure: Figure, path: Path, frame_rate: int, overwrite: bool) -> Iterator[Callable[[], None]]:
-    """Write an animation: what is given takes the figure as it is as the next picture.
-
-    Parameters
-    ----------
-    figure : Figure
-        The figure.
-    path : Path
-        The file, GIF or MP4.
-    frame_rate : int
-        Pictures shown per second.
-    overwrite : bool
-        Replace any regular file.
-
-    Raises
-    ------
-    ModelError
-        If the format is unknown or needs a program that is missing, or the file cannot be written.
-    """
+    """Write an animation: what is given takes the figure as it is as the next picture."""
     with mpl.rc_context({"animation.ffmpeg_path": _ffmpeg()}):
         writer = _writer(path, frame_rate)
         require_replaceable(path, is_marked, overwrite)

@@ -74,17 +74,7 @@ def draw_pivot(ax: Axes, pivot: ArrayLike) -> None:
 
 
 def draw_stops(ax: Axes, drive: Drive, carrier: Carrier) -> None:
-    """Draw the way of a tensioned pulley from stop to stop, dotted, and its rim at both, dashed.
-
-    Parameters
-    ----------
-    ax : Axes
-        Where to draw.
-    drive : Drive
-        The drive.
-    carrier : Carrier
-        The tensioner with its pulley; nothing is drawn of one without stops.
-    """
+    """Draw the way of a tensioned pulley from stop to stop, dotted, and its rim at both, dashed."""
     if carrier.tensioner.stops is None:
         return
     lower, upper = carrier.tensioner.stops
@@ -147,13 +137,7 @@ class DrivePicture:
         _frame(ax, run)
 
     def show(self, instant: xr.Dataset) -> None:
-        """Move everything to an instant.
-
-        Parameters
-        ----------
-        instant : xarray.Dataset
-            The result at one time.
-        """
+        """Move everything to an instant."""
         self._belt.set_segments(list(centerline(self._kind, instant["nodal_coordinates"].values, self._lengths)))
         self._belt.set_array(instant["belt_tension"].values)
         centers = instant["pulley_center"].values if "pulley_center" in instant else self._centers

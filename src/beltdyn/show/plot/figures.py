@@ -24,27 +24,7 @@ _PNG_DPI = 200
 
 
 def save(figure: Figure, path: Path, overwrite: bool = False) -> Path:
-    """Write a figure.
-
-    Parameters
-    ----------
-    figure : Figure
-        The figure.
-    path : Path
-        The file, whose suffix is the format; a figure of beltdyn that is there is replaced.
-    overwrite : bool
-        Replace any regular file.
-
-    Returns
-    -------
-    Path
-        The file.
-
-    Raises
-    ------
-    ModelError
-        If the format is unknown, the file cannot be written, or would replace one that is no figure of ours.
-    """
+    """Write a figure."""
     formats = figure.canvas.get_supported_filetypes()
     if path.suffix.lower().lstrip(".") not in formats:
         raise ModelError(
@@ -58,20 +38,7 @@ def save(figure: Figure, path: Path, overwrite: bool = False) -> Path:
 
 
 def data_uri(figure: Figure, file_format: Literal["svg", "png"] = "svg") -> str:
-    """Write a figure as an address that holds it, for the attribute ``src`` of a page's ``img``.
-
-    Parameters
-    ----------
-    figure : Figure
-        The figure.
-    file_format : {"svg", "png"}
-        PNG for figures with very many points.
-
-    Returns
-    -------
-    str
-        The same for the same figure.
-    """
+    """Write a figure as an address that holds it, for the attribute ``src`` of a page's ``img``."""
     stream = io.BytesIO()
     with rc_context({"svg.hashsalt": MARK, "path.simplify_threshold": 0.3}):
         metadata = {"Date": None} if file_format == "svg" else None
@@ -162,13 +129,7 @@ def _number(results: Sequence[Result], pulley: str | int) -> int:
 
 
 def chosen_by_default(results: Sequence[Result]) -> tuple[str, ...]:
-    """Give the names of the default figures.
-
-    Parameters
-    ----------
-    results : sequence of Result
-        One or more; of several, those figures that compare them.
-    """
+    """Give the names of the default figures."""
     reading = [name for name in _READING if name in (known := _known(results))]
     figures = {name: FIGURES[name] for name in dict.fromkeys([*reading, *known])}
     return tuple(

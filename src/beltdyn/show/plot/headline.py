@@ -39,24 +39,7 @@ def overlay(
     ax: Axes | None,
     shows: Sequence[bool] | None = None,
 ) -> Axes:
-    """Draw results on one pair of axes: a color for each thing that is drawn, a line style for each result.
-
-    Parameters
-    ----------
-    draw : callable
-        ``draw(result, ax) -> Axes``.
-    results : sequence of Result
-        Two or more.
-    ax : Axes or None
-        Where to draw; a new figure by default.
-    shows : sequence of bool, optional
-        Which results have what is drawn, such as a pulley; by default all of them. The others leave out their lines.
-
-    Returns
-    -------
-    Axes
-        The axes.
-    """
+    """Draw results on one pair of axes: a color for each thing that is drawn, a line style for each result."""
     names, drawn, titles = names_of_results(results), dict[int, list[Line2D]](), list[str]()
     notes, limits = list[Text](), list[tuple[float, float]]()
     for number, result in enumerate(results):
@@ -97,18 +80,7 @@ def overlay(
 
 
 def names_of_results(results: Sequence[Result]) -> list[str]:
-    """Name results so that each is told from the others.
-
-    Parameters
-    ----------
-    results : sequence of Result
-        The results.
-
-    Returns
-    -------
-    list of str
-        The names of their drives or files; or what differs in their drive files, at most two keys; or their numbers.
-    """
+    """Name results so that each is told from the others."""
     for name in (name_of, file_name):
         names = [name(result) for result in results]
         if all(names) and len(set(names)) == len(names):
@@ -121,18 +93,7 @@ def names_of_results(results: Sequence[Result]) -> list[str]:
 
 
 def given_keys(result: Result) -> dict[str, Any]:
-    """Give the numbers and texts of a drive file with their paths.
-
-    Parameters
-    ----------
-    result : Result
-        The drive is taken as it was before its length or take-up was found for an installed tension.
-
-    Returns
-    -------
-    dict
-        Path, such as "pulley[driver].radius" -> value.
-    """
+    """Give the numbers and texts of a drive file with their paths."""
     text = result.dataset.attrs.get("drive_as_given")
     drive = loads(text, base=result.path.parent if result.path else None) if text else result.drive
     return dict(_keys(drive.data))
@@ -214,18 +175,7 @@ def headlines(results: Sequence[Result]) -> str:
 
 
 def headline(result: Result) -> str:
-    """Describe the drive of a result and its operating point.
-
-    Parameters
-    ----------
-    result : Result
-        Of a run with at least one output, or of another analysis.
-
-    Returns
-    -------
-    str
-        Such as "fan: motor 1440 rpm, 2.21 kW in"; without a name where a drive in memory has none.
-    """
+    """Describe the drive of a result and its operating point."""
     if isinstance(result, Run):
         point = _range(result) or _operating_point(result)
     elif isinstance(result, StaticResult):

@@ -236,22 +236,7 @@ def lines(
 
 
 def envelope(variable: xr.DataArray, ax: Axes, parts: int = 100) -> Axes:
-    """Draw lines as `lines` does, but what vibrates as a band from least to largest values, and their medians.
-
-    Parameters
-    ----------
-    variable : DataArray
-        Over time and a dimension with names; NaN where there is no value.
-    ax : Axes
-        Where to draw.
-    parts : int
-        Number of equal parts of the time, in each of which least, largest and median values are taken.
-
-    Returns
-    -------
-    Axes
-        The axes.
-    """
+    """Draw lines as `lines` does, but what vibrates as a band from least to largest values, and their medians."""
     vibrating = vibrates(variable)
     time = variable["time"].values
     part = np.minimum((parts * (time - time[0]) / np.ptp(time)).astype(int), parts - 1) if len(time) > 1 else time * 0

@@ -19,15 +19,7 @@ _ROW, _GAP, _ABOVE = 13.0, 6.0, 11.0
 
 
 def name_lines(ax: Axes, lines: Sequence[Artist] | None = None) -> None:
-    """Write the legend of axes above them, in as many columns as fit; names longer than the axes below the figure.
-
-    Parameters
-    ----------
-    ax : Axes
-        The axes. A title at the left moves above the legend.
-    lines : sequence of Artist, optional
-        What is named, with its labels; by default all that has one.
-    """
+    """Write the legend of axes above them, in as many columns as fit; names longer than the axes below the figure."""
     lines = ax.get_legend_handles_labels()[0] if lines is None else lines
     names = [str(line.get_label()) for line in lines]
     if not names:
@@ -44,15 +36,7 @@ def name_lines(ax: Axes, lines: Sequence[Artist] | None = None) -> None:
 
 
 def name_once(page: Figure, title: str = "") -> None:
-    """Gather the legends of panels into one below them, in which each name stands once.
-
-    Parameters
-    ----------
-    page : Figure
-        The figure, with all its panels drawn.
-    title : str
-        What stands above the names.
-    """
+    """Gather the legends of panels into one below them, in which each name stands once."""
     named = dict[str, Artist]()
     for ax in page.axes:
         box = ax.get_legend()

@@ -98,23 +98,6 @@ def figure(
     """Register a figure under the name of the function that draws it, and draw it in the style of this package.
 
     A figure that is drawn on axes of its own gets a headline, with the drive and its operating point.
-
-    Parameters
-    ----------
-    by_default : callable
-        Whether it is drawn where no figures are chosen: `on_request`, `always`, `over_time`, or a function of the run.
-    arrange : callable
-        ``arrange(draw, run, choice) -> Figure`` lays its panels out where it is saved; one panel by default.
-    of : tuple of str
-        Kinds of the results that it is drawn of, names of analyses: of runs by default.
-    compares : bool or callable
-        Whether it takes a sequence of results too, whose lines are laid over each other; or what draws several:
-        ``compares(results, ax) -> Axes``.
-
-    Returns
-    -------
-    callable
-        The decorator of ``draw(run, ..., ax=None) -> Axes``, which refuses results of other kinds.
     """
 
     def register(draw: Callable[P, Axes]) -> Callable[P, Axes]:
@@ -167,25 +150,7 @@ def pulleys_of(results: Sequence[Result]) -> tuple[str, ...]:
 
 
 def require_results(name: str, given: Result | Sequence[Result]) -> list[Result]:
-    """Make sure that a figure can be drawn of a result, or of several.
-
-    Parameters
-    ----------
-    name : str
-        Name of the figure.
-    given : Result or sequence of Result
-        What it is to show.
-
-    Returns
-    -------
-    list of Result
-        One or more.
-
-    Raises
-    ------
-    ModelError
-        If there is none, a kind is none of those that it is drawn of, or it does not compare results.
-    """
+    """Make sure that a figure can be drawn of a result, or of several."""
     results = [given] if isinstance(given, Result) else list(given)
     if not results:
         raise ModelError(f"the figure {name!r} needs at least one result.")
@@ -201,22 +166,7 @@ def require_results(name: str, given: Result | Sequence[Result]) -> list[Result]
 
 
 def require_kind(name: str, result: Result, kinds: tuple[str, ...]) -> None:
-    """Make sure that a figure can be drawn of a result.
-
-    Parameters
-    ----------
-    name : str
-        Name of the figure.
-    result : Result
-        The result.
-    kinds : tuple of str
-        Kinds of results that it is drawn of.
-
-    Raises
-    ------
-    ModelError
-        If its kind is none of these.
-    """
+    """Make sure that a figure can be drawn of a result."""
     if result.kind not in kinds:
         has = [other for other, one in FIGURES.items() if result.kind in one.of]
         raise ModelError(

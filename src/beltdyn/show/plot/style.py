@@ -86,18 +86,7 @@ _RULES: dict[Any, Any] = {
 
 
 def styled(function: Callable[P, R]) -> Callable[P, R]:
-    """Make a function draw in the style of this package.
-
-    Parameters
-    ----------
-    function : callable
-        A function that draws.
-
-    Returns
-    -------
-    callable
-        The same function, with the style in force while it runs.
-    """
+    """Make a function draw in the style of this package."""
 
     @wraps(function)
     def draw(*args: P.args, **kwargs: P.kwargs) -> R:
@@ -115,36 +104,12 @@ def set_log_scale(ax: Axes) -> None:
 
 
 def new_figure(size: tuple[float, float] = SIZE) -> Figure:
-    """Make a figure that belongs to no window, for files.
-
-    Parameters
-    ----------
-    size : tuple of float
-        Width and height, inches.
-
-    Returns
-    -------
-    Figure
-        An empty figure.
-    """
+    """Make a figure that belongs to no window, for files."""
     return Figure(figsize=size, layout="constrained")
 
 
 def axes_or_new(ax: Axes | None, size: tuple[float, float] = SIZE) -> Axes:
-    """Give the axes to draw on.
-
-    Parameters
-    ----------
-    ax : Axes or None
-        The caller's axes, or None for a new figure.
-    size : tuple of float
-        Width and height of a new figure, inches.
-
-    Returns
-    -------
-    Axes
-        The axes.
-    """
+    """Give the axes to draw on."""
     return plt.subplots(figsize=size, layout="constrained")[1] if ax is None else ax
 
 
@@ -156,34 +121,12 @@ def polar_or_new(ax: Axes | None, size: tuple[float, float] = POLAR_SIZE) -> Axe
 
 
 def unit(variable: xr.DataArray) -> str:
-    """Give the unit of a variable as it is printed.
-
-    Parameters
-    ----------
-    variable : DataArray
-        A variable of a result.
-
-    Returns
-    -------
-    str
-        Such as "N·m".
-    """
+    """Give the unit of a variable as it is printed."""
     return str(variable.attrs["units"]).replace(" ", "·")
 
 
 def label(variable: xr.DataArray) -> str:
-    """Give the label of an axis.
-
-    Parameters
-    ----------
-    variable : DataArray
-        A variable of a result.
-
-    Returns
-    -------
-    str
-        Such as "Span tension [N]"; of a ratio without unit.
-    """
+    """Give the label of an axis."""
     name, units = str(variable.attrs["long_name"]), unit(variable)
     return name if units == "1" else f"{name} [{units}]"
 
@@ -205,15 +148,7 @@ def reserve(ax: Axes, text: str) -> None:
 
 
 def note(ax: Axes, text: str) -> None:
-    """Write below the label of the horizontal axis, at the right, where it covers nothing.
-
-    Parameters
-    ----------
-    ax : Axes
-        Where to write.
-    text : str
-        In few lines.
-    """
+    """Write below the label of the horizontal axis, at the right, where it covers nothing."""
     ax.annotate(
         text, (1.0, 0.0), (0.0, -_BELOW), "axes fraction", "offset points", ha="right", va="top", fontsize=8, gid=NOTE
     )
@@ -250,61 +185,20 @@ _COLUMNS = 3
 
 
 def one_panel(draw: Callable[..., Axes], run: Result, choice: object) -> Figure:
-    """Lay out a figure of one panel.
-
-    Parameters
-    ----------
-    draw : callable
-        ``draw(run, ax=None) -> Axes``.
-    run : Result
-        What is drawn.
-    choice : Choice
-        Not needed.
-
-    Returns
-    -------
-    Figure
-        The figure.
-    """
+    """Lay out a figure of one panel."""
     figure = new_figure()
     draw(run, ax=figure.add_subplot())
     return figure
 
 
 def rows(items: Sequence[Item], most: int = _COLUMNS) -> list[list[Item]]:
-    """Break a sequence into rows of nearly the same length.
-
-    Parameters
-    ----------
-    items : sequence
-        One or more.
-    most : int
-        Items of a row at most.
-
-    Returns
-    -------
-    list of list
-        The rows.
-    """
+    """Break a sequence into rows of nearly the same length."""
     columns = ceil(len(items) / ceil(len(items) / most))
     return [list(items[first : first + columns]) for first in range(0, len(items), columns)]
 
 
 def panels(calls: Sequence[Sequence[Callable[..., Axes]]], *, sharey: bool = True) -> Figure:
-    """Draw rows of panels; the last row may be shorter.
-
-    Parameters
-    ----------
-    calls : sequence of sequence of callable
-        Rows of ``call(ax=...)``.
-    sharey : bool
-        Whether the panels of a row have the same vertical scale.
-
-    Returns
-    -------
-    Figure
-        The figure.
-    """
+    """Draw rows of panels; the last row may be shorter."""
     columns = len(calls[0])
     figure = new_figure((_PANEL[0] * columns, _PANEL[1] * len(calls)))
     grid = figure.subplots(len(calls), columns, squeeze=False, sharey="row" if sharey else False)

@@ -29,25 +29,7 @@ _SHOWN = {**SHOWN_UNITS, "m": ("mm", 1e3)}
 
 
 def names_of(run: Run, variable: str) -> list[str]:
-    """Give the names of what a variable over time is recorded for.
-
-    Parameters
-    ----------
-    run : Run
-        The run.
-    variable : str
-        Its name, or "hub_load".
-
-    Returns
-    -------
-    list of str
-        Of pulleys, spans or tensioners.
-
-    Raises
-    ------
-    ModelError
-        If there is no such variable.
-    """
+    """Give the names of what a variable over time is recorded for."""
     known = {
         str(name): str(values.dims[1])
         for name, values in run.dataset.data_vars.items()
@@ -61,28 +43,7 @@ def names_of(run: Run, variable: str) -> list[str]:
 
 
 def series(run: Run, variable: str, of: str | int) -> xr.DataArray:
-    """One variable over time, filtered if it was recorded so.
-
-    Parameters
-    ----------
-    run : Run
-        The run.
-    variable : str
-        Its name, or "hub_load", the magnitude of the hub force.
-    of : str or int
-        Name or number of the pulley, span or tensioner.
-
-    Returns
-    -------
-    DataArray
-        Speeds in rpm, displacements in mm, angles in degrees, others in the unit of the dataset. Its attribute ``of``
-        is the name of what it belongs to.
-
-    Raises
-    ------
-    ModelError
-        If there is no such variable, or nothing of that name; or the run holds no output.
-    """
+    """One variable over time, filtered if it was recorded so."""
     run.require_output()
     names = names_of(run, variable)
     if of in names:

@@ -67,15 +67,7 @@ class Swing(NamedTuple):
 
 
 def swing(result: Result, mode: int) -> Swing:
-    """How parts move in a mode, at a size that is seen.
-
-    Parameters
-    ----------
-    result : Result
-        Of `modes`.
-    mode : int
-        Which one, from 1 on.
-    """
+    """How parts move in a mode, at a size that is seen."""
     one, drive = result.dataset.sel(mode=mode), result.drive
     size = _DRAWN * float(np.ptp(extent_of(drive, drive.path), axis=0).max())
     belt = size * _complex(one["belt_shape"].values)[:, None] * one["point_normal"].values

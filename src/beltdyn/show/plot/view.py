@@ -37,20 +37,7 @@ _LINE = 10.0
 
 
 def spread(low: float, high: float, unit: str = "") -> tuple[float, float]:
-    """Widen a range to the least one in which changes mean something.
-
-    Parameters
-    ----------
-    low, high : float
-        Least and largest value.
-    unit : str
-        Their unit; "%" of what is at most 100 % does not go beyond that.
-
-    Returns
-    -------
-    low, high : float
-        The range itself where it is wide enough; one that is nowhere negative stays so.
-    """
+    """Widen a range to the least one in which changes mean something."""
     least = max(LEAST_SHARE * max(abs(low), abs(high)), _LEAST.get(unit, 0.0))
     missing = least - (high - low)
     if missing <= 0.0:
@@ -79,19 +66,7 @@ def show_enough(ax: Axes) -> None:
 
 
 def draw_limit(ax: Axes, value: float, text: str, upper: bool | None = None) -> None:
-    """Draw a limit across axes, with its words; words alone at the edge where the line would squeeze all else.
-
-    Parameters
-    ----------
-    ax : Axes
-        Axes with all that they show, and the label of the vertical axis.
-    value : float
-        The limit.
-    text : str
-        What it is, with its value.
-    upper : bool, optional
-        Whether its words stand above it, as those of an upper limit; by default above what is in the upper half.
-    """
+    """Draw a limit across axes, with its words; words alone at the edge where the line would squeeze all else."""
     fitted = ax.get_autoscaley_on()
     low, high = map(float, ax.dataLim.intervaly)
     low, high = spread(low, high, unit_of(ax)) if fitted else ax.get_ylim()

@@ -62,39 +62,14 @@ class SideBySide(NamedTuple):
 
 
 def compared(results: Sequence[Result]) -> list[SideBySide]:
-    """Set the key numbers of results side by side.
-
-    Parameters
-    ----------
-    results : sequence of Result
-        One or more.
-
-    Returns
-    -------
-    list of SideBySide
-        Those that any of them knows.
-    """
+    """Set the key numbers of results side by side."""
     known = [{one.key: one for one in key_numbers(result)} for result in results]
     names = {key: one.name for numbers in known for key, one in numbers.items()}
     return [SideBySide(name, key, [numbers.get(key) for numbers in known]) for key, name in names.items()]
 
 
 def verdict(results: Sequence[Result]) -> tuple[str, str]:
-    """Compare results with their limits.
-
-    Parameters
-    ----------
-    results : sequence of Result
-        One or more.
-
-    Returns
-    -------
-    kind : {"pass", "fail", "open"}
-        "fail" also after gross slip or a slack span at any time, "open" if no limit is given, or a
-        tensioner was on a stop.
-    words : str
-        In a sentence.
-    """
+    """Compare results with their limits."""
     judged = [one.passes for result in results for one in key_numbers(result) if one.passes is not None]
     kept = sum(judged)
     happened = [one for result in results for one in _incidents(result)]
@@ -132,17 +107,7 @@ def limit_in_words(number: KeyNumber | None) -> str:
 
 
 def in_unit(value: float, unit: str, sign: str = "") -> str:
-    """Format a key number with four digits and its unit.
-
-    Parameters
-    ----------
-    value : float
-        The number.
-    unit : str
-        Its unit, "1" for a pure number, "%" for a share.
-    sign : str
-        "+" to write the sign of a positive number too.
-    """
+    """Format a key number with four digits and its unit."""
     if np.isnan(value):
         return "–"
     if unit == "%":
@@ -201,31 +166,12 @@ def write_report(results: Result | Sequence[Result], path: Path | str, overwrite
 
 
 def require_report(path: Path, overwrite: bool = False) -> None:
-    """Make sure that a report would replace nothing but a report.
-
-    Parameters
-    ----------
-    path : Path
-        The HTML file.
-    overwrite : bool
-        Whether any regular file may be replaced.
-
-    Raises
-    ------
-    ModelError
-        If it would.
-    """
+    """Make sure that a report would replace nothing but a report."""
     require_replaceable(path, _is_report, overwrite)
 
 
 def report_file(files: Sequence[Path]) -> Path:
-    """The report of result files where none is named: beside the first, and named after it.
-
-    Parameters
-    ----------
-    files : sequence of Path
-        One result file or more.
-    """
+    """The report of result files where none is named: beside the first, and named after it."""
     first, *more = files
     others = f"-and-{more[0].stem if len(more) == 1 else f'{len(more)}-more'}" if more else ""
     return first.with_name(f"{first.stem}{others}.html")

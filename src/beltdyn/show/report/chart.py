@@ -301,18 +301,7 @@ _FONT = "12px"
 
 
 def charts(figure: Figure) -> list[Any]:
-    """Make a chart of each panel of a figure.
-
-    Parameters
-    ----------
-    figure : Figure
-        As it is drawn on paper.
-
-    Returns
-    -------
-    list of bokeh.plotting.figure
-        Nothing where a panel shows more than lines: such a figure is best as it is.
-    """
+    """Make a chart of each panel of a figure."""
     panels = [ax for ax in figure.axes if ax.get_visible()]
     return [_chart(ax) for ax in panels] if panels and all(map(can_be_charted, panels)) else []
 
@@ -422,27 +411,7 @@ class Shown(NamedTuple):
 
 @styled
 def charted(results: Sequence[Result], names: Sequence[str] | None = None) -> tuple[list[Shown], dict[str, Any]]:
-    """Draw figures of results.
-
-    Parameters
-    ----------
-    results : sequence of Result
-        One or more, which are compared.
-    names : sequence of str, optional
-        Names of the figures; by default those that these results have by default.
-
-    Returns
-    -------
-    shown : list of Shown
-        The figures.
-    charts : dict
-        Place on the page -> chart of Bokeh.
-
-    Raises
-    ------
-    ModelError
-        If there is no figure of such a name.
-    """
+    """Draw figures of results."""
     shown: list[Shown] = []
     models: dict[str, Any] = {}
     if unknown := [name for name in names or () if name not in FIGURES]:

@@ -141,20 +141,7 @@ _ROOM = 1.5
 
 
 def swinging(result: Result) -> dict[str, Any]:
-    """Give the first modes of a drive, to be drawn at any phase.
-
-    Parameters
-    ----------
-    result : Result
-        Of `modes`.
-
-    Returns
-    -------
-    dict
-        Ready for JSON, lengths in m. ``modes`` has of each its ``name`` and ``color``, and ways as real and imaginary
-        parts: of the ``center`` of each pulley in x and y, its ``angle``, rad, and of the ``belt`` in x and y at each
-        ``place``, as whole numbers of 16 bits between minus and plus ``size``, in base64.
-    """
+    """Give the first modes of a drive, to be drawn at any phase."""
     drive, numbers = result.drive, shown_modes(result)
     swings = [swing(result, one) for one in numbers]
     size, extent = swings[0].size, extent_of(drive, drive.path)

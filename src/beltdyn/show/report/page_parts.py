@@ -25,18 +25,7 @@ def library() -> str:
 
 
 def embedded(parts: Mapping[str, Any]) -> str:
-    """Write what the page's script reads, safe inside a page.
-
-    Parameters
-    ----------
-    parts : mapping
-        Place on the page -> a chart of Bokeh, or a mapping of plain values.
-
-    Returns
-    -------
-    str
-        JSON without the letter that begins a tag: of charts a document of Bokeh, and where its parts stand.
-    """
+    """Write what the page's script reads, safe inside a page."""
     content: Any = dict(parts)
     if parts and not all(isinstance(part, dict) for part in parts.values()):
         content = _document(parts)
@@ -63,18 +52,7 @@ _MOST_DIFFERENCES = 40
 
 
 def origin(result: Result) -> list[tuple[str, str]]:
-    """Facts about how a result was made.
-
-    Parameters
-    ----------
-    result : Result
-        The result.
-
-    Returns
-    -------
-    list of (str, str)
-        Versions, hour, hashes, settings and the statement on mesh.
-    """
+    """Facts about how a result was made."""
     said = result.dataset.attrs
     packages = ("beltdyn", "numba", "numpy", "scipy", "python")
     versions = ", ".join(f"{name} {said[f'{name}_version']}" for name in packages if f"{name}_version" in said)
@@ -104,18 +82,7 @@ def analysis_of(result: Result) -> str:
 
 
 def differing_keys(results: Sequence[Result]) -> list[tuple[str, list[str]]]:
-    """Give the keys of drive files in which drives differ, with their values.
-
-    Parameters
-    ----------
-    results : sequence of Result
-        One or more.
-
-    Returns
-    -------
-    list of (str, list of str)
-        Path of the key, and its value in each drive; at most forty.
-    """
+    """Give the keys of drive files in which drives differ, with their values."""
     given = [given_keys(result) for result in results]
     keys = dict.fromkeys(key for one in given for key in one)
     values = {key: [show(one[key]) if key in one else "by default" for one in given] for key in keys}

@@ -11,20 +11,7 @@ _QUARTER = 4.0
 
 
 def tensioning(drive: Drive, specified: float | None = None) -> list[tuple[str, str]]:
-    """Say how to tension a belt at rest: its tension, and how a span vibrates and deflects with it.
-
-    Parameters
-    ----------
-    drive : Drive
-        The drive, with its belt length or take-up.
-    specified : float, optional
-        The tension at rest that its file asks for, N; by default as estimated.
-
-    Returns
-    -------
-    list of (str, str)
-        Facts of the longest span; nothing where no estimate of the belt at rest is found, or it is slack.
-    """
+    """Say how to tension a belt at rest: its tension, and how a span vibrates and deflects with it."""
     try:
         found = install(drive)
     except (BeltdynError, ValueError):
