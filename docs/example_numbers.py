@@ -137,7 +137,8 @@ def crossed_belt_drive(run: Run) -> Iterator[Number]:
     speed = -300.0 * radii[0] / radii[1] * (1.0 - loss)
     yield Number("lathe, rpm", float(speed), summary.pulleys[1].speed / RPM, 0.2)
     yield from slip_and_efficiency(run, 0.05)
-    limit = limit_force(run, 250.0, 0) * float(radii[1]) / 11.0
+    pull = summary.spans[0].tension - summary.spans[1].tension
+    limit = limit_between_fixed_centers(run, 250.0) / abs(pull)
     yield Number("capstan margin", limit, summary.pulleys[1].margin, 0.03 * limit)
 
 
@@ -220,9 +221,6 @@ def flat_belt_idler(run: Run) -> Iterator[Number]:
     torque = force * float(drive.radii[0])
     yield Number("torque of the motor, N m", torque, summary.pulleys[0].shaft_torque, 0.01 * torque)
     yield from slip_and_efficiency(run, 0.05)
-    turning = 0.5 * float(drive.frictions[0] * moved(drive, position).path.wrap_angles[0])
-    margin = (2.0 * pressing + force) * tanh(turning) / force
-    yield Number("capstan margin of the motor", margin, summary.pulleys[0].margin, 0.03 * margin)
 
 
 def worth_of_the_idler(run: Run, _: Path) -> Iterator[str]:
@@ -308,6 +306,20 @@ def losses_of_the_belt(drive: Drive) -> FloatArray:
     """Force by which bending on to each pulley and off, and compression on it, hold the belt back, N."""
     bent = bending_loss(drive.belt.bending_stiffness, drive.belt.bending_loss_factor, np.abs(drive.radii))
     return bent + compression_losses(drive)
+
+
+def limit_between_fixed_centers(run: Run, tension: float) -> float:
+    """Largest difference of tensions where both pulleys have the same wrap and friction, from the belt's length, N.
+
+    `gross_slip_tensions` of unequal radii: spans and arcs, which slide, keep the mean of the tension at rest.
+    """
+    drive, speed = run.drive, summarize(run).spans[0].belt_speed
+    pressing = tension - drive.belt.mass_per_length * speed**2
+    friction, wrap_angle = float(drive.frictions[0]), float(drive.path.wrap_angles[0])
+    ratio = capstan_ratio(friction, wrap_angle)
+    free, radii = float(np.sum(drive.path.span_lengths)), float(np.sum(np.abs(drive.radii)))
+    stretched = 0.5 * free * (ratio + 1.0) + radii * (ratio - 1.0) / friction
+    return pressing * (free + radii * wrap_angle) * (ratio - 1.0) / stretched
 
 
 def limit_force(run: Run, tension: float, pulley: int) -> float:

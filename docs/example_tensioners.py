@@ -18,6 +18,7 @@ from beltdyn.model import Path
 from beltdyn.model.carrier import moved
 from beltdyn.results import summarize
 from beltdyn.results.derived import capstan_margins
+from beltdyn.theory.capstan import capstan_ratio
 from beltdyn.theory.elastic_creep import slip_arc
 
 STEP = 1e-5
@@ -80,6 +81,19 @@ class Arm:
         """Position in which spring and belt agree at a difference of tensions, rad."""
         places = self.resting - 0.05, self.resting + 0.3
         return float(brentq(lambda place: self.surplus(place, self.slack(place), pull), *places))
+
+    def margin(self, pull: float, number: int) -> float:
+        """Factor on a difference of tensions at which the belt slides on the whole arc of a pulley."""
+
+        def missing(factor: float) -> float:
+            position = self.balance(factor * pull)
+            holding = capstan_ratio(float(self.drive.frictions[number]), float(self.path(position).wrap_angles[number]))
+            return (self.slack(position) - self.lifted) * (holding - 1.0) - factor * pull
+
+        factor = 1.0
+        while missing(factor) > 0.0:
+            factor *= 1.1
+        return float(brentq(missing, factor / 1.1, factor))
 
 
 def arm_of(run: bd.Run) -> Arm:
@@ -151,7 +165,7 @@ def tensioner_stop(run: bd.Run) -> Iterator[Number]:
     """The arm's moment gives the slack tension; in the stroke the stop holds the arm, and the belt's length does."""
     drive, arm = run.drive, arm_of(run)
     (spring,), (load,), radius = drive.tensioners, drive.pulleys[2].load, float(drive.radii[2])
-    bent, friction = float(losses_of_the_belt(drive)[2]), float(drive.frictions[2])
+    bent = float(losses_of_the_belt(drive)[2])
     for when, share, instants in (("idling", 0.2, slice(0.35, 0.434)), ("stroke", 1.0, slice(0.66, 0.744))):
         pull = share * load.constant / radius + bent
         position = arm.balance(pull)
@@ -165,9 +179,8 @@ def tensioner_stop(run: bd.Run) -> Iterator[Number]:
         one, other = slack + pull - arm.lifted, slack - arm.lifted
         hub = sqrt(one**2 + other**2 - 2.0 * one * other * cos(wrapped))
         yield Number(f"{when}: hub load of the press, N", hub, force, 0.015 * hub)
-        margin = (one + other) * tanh(0.5 * friction * wrapped) / pull
-        margins = capstan_margins(run, instants.start, instants.stop).sel(pulley="press")
-        yield Number(f"{when}: capstan margin of the press", margin, float(margins.mean()), 0.02 * margin)
+    margin, margins = arm.margin(pull, 2), capstan_margins(run, 0.66, 0.744).sel(pulley="press")
+    yield Number("stroke: capstan margin of the press", margin, float(margins.mean()), 0.02 * margin)
     meets = brentq(lambda torque: arm.balance(torque / radius + bent) - spring.stops[1], 11.0, 55.0)
     steady = summarize(bd.steady_state(drive.with_({"pulley[press].load[1].constant": meets}), at=0.6))
     reached = np.degrees(steady.tensioners[0].position)

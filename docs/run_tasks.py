@@ -1,8 +1,9 @@
-"""Run the Python blocks of docs/tasks, and write below each what it prints: `python docs/run_tasks.py`."""
+"""Run the Python blocks of docs/tasks, and write below each what it prints: `python docs/run_tasks.py [PAGE...]`."""
 
 import contextlib
 import io
 import re
+import sys
 import tempfile
 from collections.abc import Iterator
 from importlib.resources import files
@@ -19,15 +20,17 @@ def pages() -> list[Path]:
 
 
 def printed(page: Path) -> Iterator[tuple[str, str]]:
-    """Run the blocks of a page one after another, in the working directory, which gets the drive file that they read.
+    """Run the blocks of a page one after another, in the working directory, which gets the drive files that they read.
 
     Yields
     ------
     said, found : str
         What stands below a block, and what it prints.
     """
-    name = "alternator_drive.toml"
-    Path(name).write_text(files("beltdyn").joinpath("examples", name).read_text(encoding="utf-8"), encoding="utf-8")
+    alternator = files("beltdyn").joinpath("examples", "alternator_drive.toml").read_text(encoding="utf-8")
+    Path("alternator_drive.toml").write_text(alternator, encoding="utf-8")
+    new = files("beltdyn.cli").joinpath("new_drive.toml").read_text(encoding="utf-8")
+    Path("drive.toml").write_text(new, encoding="utf-8")
     names: dict[str, Any] = {}
     for code, said in _BLOCK.findall(page.read_text(encoding="utf-8")):
         with contextlib.redirect_stdout(io.StringIO()) as stream:
@@ -36,8 +39,11 @@ def printed(page: Path) -> Iterator[tuple[str, str]]:
 
 
 def main() -> None:
-    """Write what is printed into the pages."""
+    """Write what is printed into the pages, or into those whose names are arguments."""
+    chosen = sys.argv[1:]
     for page in pages():
+        if chosen and page.stem not in chosen:
+            continue
         with tempfile.TemporaryDirectory() as folder, contextlib.chdir(folder):
             told = [found for _, found in printed(page)]
         text = page.read_text(encoding="utf-8")

@@ -1,4 +1,4 @@
-"""The study of docs/examples/tensioner_study.md: its numbers and its picture."""
+"""The study of docs/examples/accessory_drive.md: its numbers and its picture."""
 
 import sys
 import time

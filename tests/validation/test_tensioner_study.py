@@ -1,4 +1,4 @@
-"""What docs/examples/tensioner_study.md says: pivot and spring of a tensioner for the least hub load."""
+"""What docs/examples/accessory_drive.md says of the study: pivot and spring of a tensioner for the least hub load."""
 
 import numpy as np
 import pytest
