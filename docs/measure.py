@@ -487,7 +487,7 @@ def friction_peaks() -> Iterator[Row]:
         yield f"{stiffness:.0e}", *(f"{value:.0f} N/m" for value in (level, *rises, by_hand))
 
 
-# docs/tutorial.md
+# docs/tutorial.md and docs/accuracy.md
 
 
 @measurement("tutorial-loads")
@@ -498,18 +498,6 @@ def tutorial_loads() -> Iterator[Row]:
         run = bd.simulate(tutorial(driven={"torque": {"kind": "cosine_ramp", "value": -load, **RISE}}))
         slack, tight = mean(run, "span_tension", 0.1)
         yield f"{load:g}", f"{mean(run, 'pulley_speed', 0.1)[DRIVEN]:.4f}", f"{slack:.1f}", f"{tight:.1f}"
-
-
-@measurement("tutorial-table")
-def tutorial_table() -> Iterator[Row]:
-    """The drive of `beltdyn new` with the speed of a table, raised within 0.6 s and within 0.3 s."""
-    yield "raised within", "least span tension", "steps, rejected", "time"
-    for times, values in (
-        ((0.0, 0.6, 0.7, 1.0), (0.0, 12.0, 12.0, 9.0)),
-        ((0.0, 0.3, 0.6, 0.8), (0.0, 12.0, 12.0, 9.0)),
-    ):
-        run = bd.simulate(tutorial(driver={"speed": {"kind": "table", "times": times, "values": values}}))
-        yield f"{times[1]} s", f"{float(run.dataset['span_tension'].min()):.1f} N", steps(run), seconds(run)
 
 
 @measurement("tutorial-elements")

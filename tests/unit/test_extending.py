@@ -51,10 +51,11 @@ class Example(NamedTuple):
 
 
 def _block(page: Path, found: re.Match[str]) -> Block:
+    caption = found["caption"].replace("\\", "")
     if found["file"]:
         file = page.parent / found["file"]
-        return Block(found["caption"], file.read_text(encoding="utf-8"), file, is_file=True)
-    return Block(found["caption"], found["text"].removeprefix("\n"), page, is_file=False)
+        return Block(caption, file.read_text(encoding="utf-8"), file, is_file=True)
+    return Block(caption, found["text"].removeprefix("\n"), page, is_file=False)
 
 
 def _examples(page: Path) -> Iterator[Example]:

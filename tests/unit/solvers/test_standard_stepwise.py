@@ -1,4 +1,4 @@
-"""One-step methods with step control; docs/extending/integrator.md fits the order of one."""
+"""One-step methods with step control; docs/extending/analysis.md fits the order of one."""
 
 import numpy as np
 import pytest
