@@ -219,7 +219,17 @@ def test_the_tutorial_prints_what_it_says(
     assert told == 1
 
 
-@pytest.mark.parametrize("page", run_tasks.pages(), ids=lambda page: page.stem)
+COSTLY_TASKS = {"design", "python"}
+"""Tasks that optimise, calibrate and simulate over time."""
+
+
+@pytest.mark.parametrize(
+    "page",
+    [
+        pytest.param(page, id=page.stem, marks=[pytest.mark.slow] if page.stem in COSTLY_TASKS else [])
+        for page in run_tasks.pages()
+    ],
+)
 def test_tasks_print_what_they_say(page: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """The same words, and numbers to 2 % and a unit of the last digit."""
     monkeypatch.chdir(tmp_path)
