@@ -3,8 +3,9 @@
 from matplotlib.axes import Axes
 
 from beltdyn.results import Run
+from beltdyn.show.plot.legends import name_lines
 from beltdyn.show.plot.registry import figure
-from beltdyn.show.plot.style import axes_or_new, color, dash, label, name_lines
+from beltdyn.show.plot.style import axes_or_new, color, dash, label
 
 
 @figure()
