@@ -8,10 +8,9 @@ from importlib.metadata import version as version_of
 from itertools import product
 from pathlib import Path
 from threading import Lock
-from typing import Any, NamedTuple
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
-import xarray as xr
 
 from beltdyn.analyses import Analysis
 from beltdyn.designs.named_results import unit_of, values_of
@@ -20,6 +19,9 @@ from beltdyn.errors import BeltdynError, ModelError
 from beltdyn.model import Drive
 from beltdyn.parts.messages import suggest
 from beltdyn.results import Result, Run
+
+if TYPE_CHECKING:
+    import xarray as xr
 
 # Results of any analysis as named numbers, such as "hub_load[driven]" and "largest(span_tension[a-b])"
 

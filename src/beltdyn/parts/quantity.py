@@ -6,14 +6,16 @@ from dataclasses import dataclass
 from functools import lru_cache
 from math import isfinite
 from types import MappingProxyType
-from typing import Annotated, get_args
+from typing import TYPE_CHECKING, Annotated, get_args
 
 import numpy as np
-import pint
 from pydantic import BeforeValidator, Strict, StringConstraints
 
 from beltdyn.arrays import FloatArray
 from beltdyn.errors import ModelError
+
+if TYPE_CHECKING:
+    import pint
 
 # A number, then a unit made of names with one-digit exponents, so that no text makes the unit parser compute.
 _NUMBER = re.compile(r"\s*(?P<number>[+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?)\s*(?P<unit>.*?)\s*", re.DOTALL)

@@ -16,6 +16,8 @@ from beltdyn.errors import ModelError
 from beltdyn.parts.text_file import open_file
 from beltdyn.results.checksums import find_checksums
 
+_LONGEST_REASON = 200
+
 # One writer for a file at a time
 
 _OURS: ContextVar[frozenset[Path]] = ContextVar("_OURS", default=frozenset())
@@ -228,3 +230,12 @@ def make_folder(folder: Path) -> Path:
     except OSError as error:
         raise ModelError(f"the folder {folder} cannot be created ({error.strerror}). Choose another folder.") from error
     return folder
+
+
+def unreadable(path: Path, error: Exception) -> str:
+    """Message for a file that cannot be read as a result."""
+    reason = " ".join(str(getattr(error, "strerror", None) or error).split())[:_LONGEST_REASON]
+    said = f"{path} cannot be read as a result file: {reason or type(error).__name__}."
+    if lock_file(target_of(path)).exists():
+        return f"{said} A run is writing it, or was killed while doing so: try again in a moment."
+    return f"{said} Give a file written by `beltdyn run`; if it is such a file, it is damaged: run the drive again."

@@ -2,62 +2,25 @@
 
 from collections.abc import Mapping
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import h5py
 import numpy as np
-import xarray as xr
 from numpy.typing import NDArray
-from xarray.backends.h5netcdf_ import H5NetCDFArrayWrapper, H5NetCDFStore
-from xarray.core.indexing import LazilyIndexedArray
 
 from beltdyn.analyses import RUN
 from beltdyn.errors import ModelError
-from beltdyn.results.atomic import lock_file, target_of
+from beltdyn.results.atomic import unreadable
 from beltdyn.results.checksums import DamageError, verify
 from beltdyn.results.layout import Layout
 from beltdyn.results.schema import AXIS_NAMES, COORDINATES, DERIVED, FORMAT, OPTIONAL, TIMES, VARIABLES, Variable
 from beltdyn.results.staged_file import is_marked
 
-# Values in a result file, read where they are used; what keeps them from being read is told of the file
-
-
-def open_values(path: Path) -> xr.Dataset:
-    """Open a file of HDF5; values that cannot be read later raise a `ModelError`."""
-    store = _Store.open(path)
-    try:
-        return xr.open_dataset(store, decode_times=False)
-    except BaseException:
-        store.close()
-        raise
-
-
-class _Values(H5NetCDFArrayWrapper):
-    """The values of a variable."""
-
-    __slots__ = ()
-
-    def _getitem(self, key: Any) -> Any:
-        try:
-            return super()._getitem(key)  # type: ignore[no-untyped-call]
-        except Exception as error:  # readers of HDF5 raise many unrelated types where bytes are wrong
-            raise ModelError(unreadable(Path(self.datastore.ds.filename), error)) from error
-
-
-class _Store(H5NetCDFStore):
-    """A file whose values are `_Values`."""
-
-    __slots__ = ()
-
-    def open_store_variable(self, name: str, var: Any) -> xr.Variable:
-        variable: xr.Variable = super().open_store_variable(name, var)  # type: ignore[no-untyped-call]
-        return variable.copy(data=LazilyIndexedArray(_Values(name, self)))  # type: ignore[no-untyped-call,arg-type]
-
+if TYPE_CHECKING:
+    import xarray as xr
 
 _OURS = ("drive", "status")
 """Global attributes that every result has."""
-
-_LONGEST_REASON = 200
 
 
 def build_dataset(layout: Layout, arrays: Mapping[str, NDArray[Any]], attributes: Mapping[str, Any]) -> "xr.Dataset":
@@ -96,6 +59,8 @@ def complete_dataset(path: Path, dataset: "xr.Dataset") -> "xr.Dataset":
 
 def read_dataset(path: Path) -> "xr.Dataset":
     """Open a result file of any kind lazily."""
+    from beltdyn.results.stored_values import open_values
+
     try:
         require_intact(path)
         dataset = open_values(path)
@@ -126,15 +91,6 @@ def require_intact(path: Path) -> None:
 def kind_of(dataset: "xr.Dataset") -> str:
     """Kind of a result: the name of the analysis. The first files, all of runs, have none."""
     return str(dataset.attrs.get("kind", RUN))
-
-
-def unreadable(path: Path, error: Exception) -> str:
-    """Message for a file that cannot be read as a result."""
-    reason = " ".join(str(getattr(error, "strerror", None) or error).split())[:_LONGEST_REASON]
-    said = f"{path} cannot be read as a result file: {reason or type(error).__name__}."
-    if lock_file(target_of(path)).exists():
-        return f"{said} A run is writing it, or was killed while doing so: try again in a moment."
-    return f"{said} Give a file written by `beltdyn run`; if it is such a file, it is damaged: run the drive again."
 
 
 def _check_attributes(path: Path, dataset: "xr.Dataset") -> None:

@@ -4,8 +4,9 @@ Along the last axis lie pulleys, spans or contact points. Span i leaves pulley i
 last one reaches pulley 0.
 """
 
+from typing import TYPE_CHECKING
+
 import numpy as np
-import xarray as xr
 from numpy.typing import ArrayLike
 
 from beltdyn.arrays import BoolArray, FloatArray, IntArray
@@ -13,6 +14,9 @@ from beltdyn.contact.bezier import BINOMIALS
 from beltdyn.elements import ELEMENTS, ElementKind
 from beltdyn.model import Drive
 from beltdyn.model.path import span_directions, span_points, wrap_angles
+
+if TYPE_CHECKING:
+    import xarray as xr
 
 # Places on the arcs of pulleys, from circles alone
 

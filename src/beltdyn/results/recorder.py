@@ -9,8 +9,8 @@ from numpy.typing import NDArray
 
 from beltdyn.errors import LostOutputError, ModelError, OutputError
 from beltdyn.results import netcdf
-from beltdyn.results.atomic import OutputLock, atomic_path, require_replaceable, target_of, unwritable
-from beltdyn.results.dataset import build_dataset, checked_outputs, is_result, open_dataset, require_intact, unreadable
+from beltdyn.results.atomic import OutputLock, atomic_path, require_replaceable, target_of, unreadable, unwritable
+from beltdyn.results.dataset import build_dataset, checked_outputs, is_result, open_dataset, require_intact
 from beltdyn.results.layout import Layout
 from beltdyn.results.schema import TIMES
 

@@ -10,8 +10,8 @@ from numpy.typing import ArrayLike
 from beltdyn.analyses import STEADY_KINDS
 from beltdyn.errors import ModelError
 from beltdyn.model import Drive, loads
-from beltdyn.results.atomic import atomic_path
-from beltdyn.results.dataset import is_result, kind_of, unreadable
+from beltdyn.results.atomic import atomic_path, unreadable
+from beltdyn.results.dataset import is_result, kind_of
 from beltdyn.results.netcdf import write_dataset
 from beltdyn.results.provenance import STAYING, mesh_used, provenance
 from beltdyn.results.schema import Variable

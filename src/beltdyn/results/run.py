@@ -5,17 +5,17 @@ from contextlib import contextmanager
 from dataclasses import replace
 from functools import cached_property
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 import h5py
 import numpy as np
-import xarray as xr
 
 from beltdyn.analyses import RUN, STATIC
 from beltdyn.errors import ModelError
 from beltdyn.model import ERROR_LIMITS, Drive, layer_lengths
-from beltdyn.results.atomic import stamp
+from beltdyn.results.atomic import stamp, unreadable
 from beltdyn.results.checks import Finding, find
-from beltdyn.results.dataset import complete_dataset, kind_of, open_dataset, read_dataset, unreadable
+from beltdyn.results.dataset import complete_dataset, kind_of, open_dataset, read_dataset
 from beltdyn.results.provenance import (
     MESH,
     Resolution,
@@ -26,6 +26,9 @@ from beltdyn.results.provenance import (
 )
 from beltdyn.results.result import Result, build_result, drive_of
 from beltdyn.results.schema import COORDINATES, DERIVED, VARIABLES, InMemory, Recorded, Variable
+
+if TYPE_CHECKING:
+    import xarray as xr
 
 # Results of static equilibrium: tensions, contact forces and hub loads
 

@@ -3,13 +3,15 @@
 from collections.abc import Mapping
 from dataclasses import dataclass
 from types import MappingProxyType
-from typing import Any, Protocol
+from typing import TYPE_CHECKING, Any, Protocol
 
 import numpy as np
-import xarray as xr
 from numpy.typing import NDArray
 
 from beltdyn.parts.quantity import SHOWN_UNITS
+
+if TYPE_CHECKING:
+    import xarray as xr
 
 FORMAT = (1, 3)
 """Version of the result file: the major number grows when earlier readers would misread a file, the minor number when a

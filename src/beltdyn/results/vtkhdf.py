@@ -4,17 +4,19 @@ from collections.abc import Iterator
 from contextlib import suppress
 from itertools import pairwise
 from pathlib import Path
-from typing import NamedTuple
+from typing import TYPE_CHECKING, NamedTuple
 
 import h5py
 import numpy as np
-import xarray as xr
 
 from beltdyn.arrays import FloatArray, IntArray
 from beltdyn.results.atomic import MARK, atomic_path, require_replaceable
 from beltdyn.results.mechanics import curve_points, element_lengths, recorded_kind
 from beltdyn.results.run import Run
 from beltdyn.results.staged_file import staged_hdf5
+
+if TYPE_CHECKING:
+    import xarray as xr
 
 # The drive as surfaces in space over time: the belt as a ribbon, pulleys as cylinders that turn
 

@@ -3,10 +3,9 @@
 import math
 import re
 from collections.abc import Iterable, Sequence
-from typing import NamedTuple
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
-import xarray as xr
 
 from beltdyn.analyses import STUDY
 from beltdyn.parts.messages import aligned
@@ -16,6 +15,9 @@ from beltdyn.results.result import Result
 from beltdyn.results.run import Run
 from beltdyn.results.schema import VARIOUS, attribute, in_words, runs_steadily, shown_unit
 from beltdyn.results.summary import FAILURE, Compared, Summary, steady_comparison, summarize
+
+if TYPE_CHECKING:
+    import xarray as xr
 
 # Parts of a sheet
 

@@ -3,10 +3,9 @@
 import re
 from collections.abc import Mapping, Sequence
 from pathlib import Path
-from typing import Any, NamedTuple
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
-import xarray as xr
 
 from beltdyn.arrays import FloatArray
 from beltdyn.errors import ModelError
@@ -21,6 +20,9 @@ from beltdyn.solvers.progress import Report
 from beltdyn.vibration.excitation import Excitation, averaged
 from beltdyn.vibration.modes import SLIDING, STUCK
 from beltdyn.vibration.response_answers import RESPONSES, Answers, ForcedMotion
+
+if TYPE_CHECKING:
+    import xarray as xr
 
 # What is put beside a linear response: amplitudes of the same orders in a run-up, and measured ones
 

@@ -9,7 +9,7 @@ import pytest
 import xarray as xr
 
 from beltdyn.errors import ModelError
-from beltdyn.results.dataset import open_values
+from beltdyn.results.stored_values import open_values
 
 
 @pytest.fixture
