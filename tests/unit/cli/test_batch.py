@@ -109,7 +109,7 @@ def test_exit_codes(
     simulated(*endings)
     found, output, message = run_main(words(files))
     assert found == code
-    assert ("what was computed is kept" in output) is (code == 130)
+    assert ("The results computed so far are kept" in output) is (code == 130)
     for file, ending in zip(files, endings, strict=True):
         assert ending.status in output
         assert (f"error: {file}: {ending.error}" in message) is bool(ending.error)

@@ -71,7 +71,7 @@ def test_check_of_the_papers_drive(run_main: RunMain, drive_file: Path) -> None:
     code, output, _ = run_main(["check", str(drive_file)])
     assert code == 0
     tension = float(equilibrium(load(drive_file)).dataset.span_tension.mean())
-    for part in ("1.2763 m", "0.281%", "28.19 N", f"{tension:.4g} N: ", "5.8%", "180.0°", "0.3829"):
+    for part in ("1.2763 m", "0.281%", "28.19 N", f"{tension:.4g} N (", "5.8%", "180.0°", "0.3829"):
         assert part in output
     assert "warning: the belt has too few elements for peak pressure" in output
     assert "warning: the contact between belt and pulleys is so soft that it reduces the belt tension by 5.8%" in output

@@ -60,7 +60,7 @@ def test_derivatives_against_modes_found_anew(drive: Drive, running: Running, pa
     allowed = 1e-5 * np.maximum(np.abs(expected), np.abs([running.value(name) for name in NAMES]))
     allowed[len(NAMES) // 2 :] += 1.5e-7
     assert np.all(np.abs(followed - expected) <= allowed)
-    assert np.abs(expected[0]) > 100.0 * allowed[0]  # there is an effect to be compared
+    assert np.any(np.abs(expected) > 100.0 * allowed)  # there is an effect to be compared
 
 
 def drive_value(drive: Drive, path: str) -> float:

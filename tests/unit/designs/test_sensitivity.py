@@ -143,7 +143,7 @@ def test_numbers_of_a_drive(loaded: Drive) -> None:
     [
         ({"of": "efficency"}, "efficiency"),
         ({"of": "efficiency", "about": "rest"}, "efficiency"),
-        ({"about": "standing"}, 'Give "steady" or "rest"'),
+        ({"about": "standing"}, 'must be "steady" or "rest"'),
         ({"numbers": "belt.widht"}, "belt.width"),
     ],
 )

@@ -49,5 +49,5 @@ def test_a_fixed_tensioner_has_no_row() -> None:
 
 
 def test_a_wrong_kind_is_told_of_with_those_that_there_are() -> None:
-    with pytest.raises(ModelError, match="Choose one of angle_speed_table, angle_table, band_brake"):
+    with pytest.raises(ModelError, match="Choose one of band_brake, brake, function"):
         Pulley(**FREE, load=[{"kind": "nothing"}])

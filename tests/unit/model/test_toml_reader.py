@@ -51,6 +51,8 @@ def test_tables_are_read_beside_the_drive_file(drive_file: Path) -> None:
 def test_schema_knows_every_group() -> None:
     schema = json_schema()
     assert set(schema["properties"]) == {
+        "author",
+        "project",
         "belt",
         "pulley",
         "contact",

@@ -25,7 +25,7 @@ def test_sliding_for_a_turn_of_the_belt_ends_it(drive: Drive) -> None:
     turn = drive.belt_length / rim
     watch = SlipThrough(drive, 0)
     watch(outputs(drive, [0.0, 0.9 * turn], 0.1 * rim))
-    with pytest.raises(SlipError, match=r"driven slips through.*10% of the speed of driver's rim.*3 N m.*80 and 40 N"):
+    with pytest.raises(SlipError, match=r"driven is in gross slip.*10% of the rim speed of driver.*3 N m.*80 and 40 N"):
         watch(outputs(drive, [1.1 * turn], 0.1 * rim))
 
 

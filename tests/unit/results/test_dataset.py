@@ -111,7 +111,7 @@ def test_a_file_without_a_part_of_the_core_is_refused(change: Callable[..., Path
 
 
 def test_a_later_format_is_refused(change: Callable[..., Path]) -> None:
-    with pytest.raises(ModelError, match=r"has format 2\.3, written by beltdyn 9\.1: .* Install a newer beltdyn\."):
+    with pytest.raises(ModelError, match=r"has format 2\.3, written by beltdyn 9\.1; .* Install a newer beltdyn\."):
         open_run(change(lambda file: file.attrs.update(format="2.3", beltdyn_version="9.1")))
 
 

@@ -65,7 +65,7 @@ def test_a_disk_must_hold_the_results(
     if fits:
         require_room(drive, tmp_path / "run.nc")
     else:
-        with pytest.raises(ModelError, match=r"of the disk of .* Write them to another disk, lengthen simulation"):
+        with pytest.raises(ModelError, match=r"of the disk of .* Write them to another disk, increase simulation"):
             require_room(drive, tmp_path / "run.nc")
 
 
@@ -80,7 +80,7 @@ def test_memory_must_hold_them_twice(
     if fits:
         require_room(drive, None)
     else:
-        with pytest.raises(ModelError, match=r"of memory, .* Write them to a file \(output=...\), lengthen"):
+        with pytest.raises(ModelError, match=r"of memory, .* Write them to a file \(output=...\), increase"):
             require_room(drive, None)
 
 

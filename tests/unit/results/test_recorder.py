@@ -74,7 +74,7 @@ def test_result_that_lacks_the_place_of_its_tensioner_is_refused(
     recorder = MemoryRecorder(replace(layout, tensioners=("driven",)), attributes)
     with recorder.dataset() as dataset:
         dataset.drop_vars("tensioner_position").to_netcdf(tmp_path / "other.nc", engine="h5netcdf")
-    with pytest.raises(ModelError, match="holds no `tensioner_position`"):
+    with pytest.raises(ModelError, match="has no `tensioner_position`"):
         open_run(tmp_path / "other.nc")
 
 

@@ -62,7 +62,7 @@ def test_its_file_holds_the_same(rest: StaticResult, tmp_path: Path) -> None:
 
 def test_figures_of_one_instant_show_it(rest: StaticResult, tmp_path: Path) -> None:
     drawn = [path.stem for path in plot.save_all(rest, tmp_path)]
-    assert drawn == ["configuration", "contact_forces", "contact_pressure"]
+    assert drawn == ["configuration", "contact_pressure"]
     arc = contact_arc(rest, "driven")
     on = rest.dataset.contact_pulley.values == 1
     assert float(arc.normal_force.sum()) == pytest.approx(float(rest.dataset.normal_force.values[on].sum()), rel=1e-5)

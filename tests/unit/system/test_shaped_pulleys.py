@@ -77,5 +77,5 @@ def test_tangent_by_the_angle_of_the_driven_pulley(
 
 
 def test_a_surface_that_reaches_the_shaft_is_refused(drive_of: Drive) -> None:
-    with pytest.raises(ModelError, match=r"reaches 0\.09 m beyond"):
+    with pytest.raises(ModelError, match=r"deviates by 0\.09 m"):
         drive_of.pulleys[0].replace(surface={"kind": "eccentric", "eccentricity": 0.09})

@@ -100,7 +100,7 @@ def test_the_belt_is_drawn_straight_from_node_to_node(run: Run) -> None:
 
 def test_every_figure_is_drawn(run: Run, tmp_path: Path) -> None:
     paths = plot.save_all(run, tmp_path)
-    assert "contact_forces" in [path.stem for path in paths]
+    assert "contact_pressure" in [path.stem for path in paths]
     assert not plt.get_fignums()
 
 

@@ -76,7 +76,7 @@ def test_work_is_done_between_two_outputs(steady: Run, wear: Callable[..., xr.Da
 @pytest.mark.parametrize("wear", [wear_by_arc, wear_by_belt])
 def test_work_that_was_not_recorded(steady: Run, wear: Callable[..., xr.DataArray]) -> None:
     older = Run(steady.dataset.drop_vars(["friction_work_on_arc", "friction_work_on_belt"]), steady.drive)
-    with pytest.raises(ModelError, match="holds no `friction_work_on_"):
+    with pytest.raises(ModelError, match="has no `friction_work_on_"):
         wear(older)
 
 
