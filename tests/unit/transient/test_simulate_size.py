@@ -53,7 +53,7 @@ def test_no_room_is_said_before(change: Change, tmp_path: Path, monkeypatch: pyt
     with pytest.raises(ModelError, match=r"need .*kB of the disk of .*only 10 kB are free.*output_interval"):
         simulate(change(), tmp_path / "run.nc")
     assert not list(tmp_path.iterdir())
-    with pytest.raises(ModelError, match=r"of memory, only 10 kB are free.*Write them to a file"):
+    with pytest.raises(ModelError, match=r"of memory, but only 10 kB are free.*Write them to a file"):
         simulate(change())
 
 

@@ -304,7 +304,7 @@ def wear_by_belt(run: Run, ax: Axes | None = None) -> Axes:
     Examples
     --------
     >>> bd.plot.wear_by_belt(run).get_xlabel()
-    "Belt coordinate of the element's middle, unstretched [m]"
+    'Belt coordinate of the element midpoint, unstretched [m]'
     """
     ax = axes_or_new(ax)
     wear = derived.wear_by_belt(run)
