@@ -143,7 +143,7 @@ def test_check_of_a_belt_as_sold(run_main: RunMain, tmp_path: Path) -> None:
     assert code == 0
     unstretched = (1.194 + 2 * np.pi * 0.0012) / (1 + 125.0 / 5000.0)
     assert f"belt length {unstretched:.5g} m unstretched" in words
-    assert "nominal length 1.194 m under 250 N between two pulleys, 2.500% longer than unstretched" in words
+    assert "nominal length 1.194 m under 250 N between two pulleys, stretched by 2.500%" in words
     assert "motor prescribed cw" in words
     assert "drum free cw" in words
 
