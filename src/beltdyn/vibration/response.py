@@ -20,6 +20,7 @@ from beltdyn.solvers.progress import Report
 from beltdyn.vibration.excitation import Excitation, averaged
 from beltdyn.vibration.modes import SLIDING, STUCK
 from beltdyn.vibration.response_answers import RESPONSES, Answers, ForcedMotion
+from beltdyn.vibration.response_range import SMALL_ERROR
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -195,7 +196,9 @@ def response(
     Result
         Along ``speed`` (rad/s, of the pulley in the attribute ``pulley``), ``excitation`` and pulley, span or tensioner
         amplitudes ``NAME_amplitude`` and phases ``NAME_phase``: NAME is its mean, and amplitude times
-        cos(order times the angle of the exciting shaft + phase) beside.
+        cos(order times the angle of the exciting shaft + phase) beside. Along ``speed`` also the range of the linear
+        response: ``tension_ripple``, ``largest_friction_used``, ``stop_used``, ``friction_change``, and
+        ``amplitude_error``, the estimated error of amplitudes over the largest one, with a warning above 5 %.
 
     Raises
     ------
@@ -222,7 +225,7 @@ def response(
         raise ModelError(
             f"speed = {speed!r} must not be negative: speeds are positive in the pulley's sense of rotation."
         )
-    answers = Answers(exciting, number, speeds)
+    answers = Answers(exciting, number, speeds, stuck=dry_tensioners == STUCK)
     place, beside = Place(speeds, number, answers.excitations, labels_of(given)), dict[str, Any]()
     if compare is not None:
         beside |= run_up_amplitudes(compare, place)
@@ -232,7 +235,7 @@ def response(
     with OperatingPoints("response", given, axes, output, progress, overwrite, names=_KEPT) as table:
         title = f"Response of {drive.title} over the speed of {name}"
         table.attributes = {"title": title, "drive_as_given": drive.text, "pulley": name}
-        table.attributes["dry_tensioners"] = dry_tensioners
+        table.attributes |= {"dry_tensioners": dry_tensioners, "linear_range": str(SMALL_ERROR)}
         table.more, table.derive = answers.coordinates, lambda arrays: {**answers.variables(), **beside}
 
         def take(index: tuple[int, ...], run: Run | None) -> None:

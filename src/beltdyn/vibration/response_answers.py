@@ -1,7 +1,7 @@
 """Amplitudes and phases of results over speed, of each excitation."""
 
-from collections.abc import Mapping
-from typing import TYPE_CHECKING, Any
+from collections.abc import Mapping, Sequence
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -13,10 +13,13 @@ from beltdyn.parts.quantity import RPM
 from beltdyn.points.operating_points import Axes, labels_of
 from beltdyn.results import Run, Variable
 from beltdyn.results.mid_span import mid_span_displacements
+from beltdyn.system.build import drive_system
+from beltdyn.system.constant_drive import dry_friction_of
 from beltdyn.system.observations import Observations
 from beltdyn.system.observe import observe
 from beltdyn.vibration.excitation import LOAD, SPEED, Excitation, own_excitations, speed_waves, torque_waves
-from beltdyn.vibration.small_motions import about_steady, dry_tensioners
+from beltdyn.vibration.response_range import SMALL_ERROR, Range, SteadyValues, friction_dashpots, range_of
+from beltdyn.vibration.small_motions import SmallMotions, about_steady, dry_tensioners
 
 if TYPE_CHECKING:
     from scipy.sparse import csc_array
@@ -26,7 +29,20 @@ if TYPE_CHECKING:
 
 _SMALL = 1e-6
 """Largest displacement of a node with which results are differenced, over the smallest radius."""
-_OBSERVED = ("pulley_torque", "shaft_torque", "hub_force", "span_tension", "belt_speed")
+_OBSERVED = ("pulley_torque", "shaft_torque", "hub_force", "span_tension", "belt_speed", "pulley_center")
+_ROUNDS, _SETTLED = 60, 1e-3
+"""Rounds in which amplitudes with dry friction settle, at most, and the relative change that ends them."""
+
+
+class Excited(NamedTuple):
+    """A harmonic excitation."""
+
+    frequency: float
+    """Angular frequency w, rad/s."""
+    angles: Mapping[int, complex]
+    """Number of a pulley of prescribed speed -> amplitude of exp(i w t) of the angle of its shaft, rad."""
+    torques: Mapping[int, complex]
+    """Number of another pulley -> amplitude of a torque on its shaft, N m."""
 
 
 class ForcedMotion:
@@ -42,42 +58,94 @@ class ForcedMotion:
 
     def __init__(self, run: Run, stuck: bool) -> None:
         self._motions = about_steady(run, all_shafts=True)
-        held = self._motions.with_stuck(dry_tensioners(run.drive)) if stuck else self._motions
-        self._bodies, self._tangents = held.bodies, (held.stiffness, held.damping, held.mass)
-        shafts = np.asarray(self._motions.system.pulleys.shaft)
-        self._shafts = self._bodies[shafts]
-        driven = np.array([one.prescribed for one in run.drive.pulleys])
-        self._driven = np.flatnonzero(driven)
-        self._free = np.setdiff1d(np.arange(held.stiffness.shape[0]), self._shafts[driven])
+        self._held = self._motions.with_stuck(dry_tensioners(run.drive)) if stuck else self._motions
+        self._pulley_shafts = np.asarray(self._motions.system.pulleys.shaft)
+        self._driven = np.flatnonzero([one.prescribed for one in run.drive.pulleys])
         state = self._motions.state
         self._still = self._seen(state.position[None].copy(), state.velocity[None].copy())
 
-    def answer(
-        self, frequency: float, angles: Mapping[int, complex], torques: Mapping[int, complex]
-    ) -> dict[str, ComplexArray]:
-        """Amplitudes of results."""
-        from scipy.sparse.linalg import splu
-
-        stiffness, damping, mass = self._tangents
-        matrix: csc_array = (stiffness + 1j * frequency * damping - frequency**2 * mass).tocsr()
-        moved, load = np.zeros((2, matrix.shape[0]), complex)
-        for target, given in ((moved, angles), (load, torques)):
-            for pulley, amplitude in given.items():
-                target[self._shafts[pulley]] += amplitude
-        rows = matrix[self._free]
-        moved[self._free] = splu(rows[:, self._free].tocsc()).solve((load - matrix @ moved)[self._free])
-        found = self._results(moved, frequency)
-        for pulley, amplitude in torques.items():
+    def answer(self, excited: Excited) -> dict[str, ComplexArray]:
+        """Complex amplitudes of results."""
+        moved, forces, _ = self._solved(self._held, excited)
+        found = self._results(self._held, moved, excited.frequency)
+        for pulley, amplitude in excited.torques.items():
             found["shaft_torque"][pulley] += amplitude
-        found["shaft_torque"][self._driven] = (matrix @ moved)[self._shafts[self._driven]]
+        found["shaft_torque"][self._driven] = forces[self._held.bodies[self._pulley_shafts[self._driven]]]
         return found
 
-    def _results(self, moved: ComplexArray, frequency: float) -> dict[str, ComplexArray]:
+    def range_of(self, excitations: Sequence[Excited], answers: Sequence[Mapping[str, ComplexArray]]) -> Range:
+        """How far the answers to excitations that act together are from what the linear equations hold for."""
+        tensions, positions = (
+            np.array([one[name] for one in answers]) for name in ("span_tension", "tensioner_position")
+        )
+        still, state = self._still, self._motions.state
+        drive, last = self._motions.drive, state.position.size - self._motions.system.tensioners.size
+        values = SteadyValues(
+            still["span_tension"][0], still["belt_speed"][0], still["pulley_center"][0], state.position[last:]
+        )
+        rubbed = np.abs(tensions).sum(axis=0)
+        if dry_tensioners(drive).size:
+            rubbed = np.abs(self._rubbed(excitations)).sum(axis=0)
+        return range_of(drive, values, [one.frequency for one in excitations], tensions, positions, rubbed)
+
+    def _rubbed(self, excitations: Sequence[Excited]) -> ComplexArray:
+        """Amplitudes of span tensions with dry friction of tensioners, as dashpots that take the same work."""
+        motions, tensioners = self._motions, drive_system(self._motions.drive).tensioners
+        friction = 0.5 * sum(dry_friction_of(tensioners, one) for one in ("tensioning_friction", "yielding_friction"))
+        creep = dry_friction_of(tensioners, "creep_speed")
+        places = motions.bodies[motions.system.bodies.size - tensioners.size :]
+        solved = [self._solved(motions, one, places) for one in excitations]
+        dashpots = np.zeros(friction.size)
+        for _ in range(_ROUNDS):
+            slowed = [
+                moved
+                - by_force
+                @ np.linalg.solve(
+                    np.eye(places.size) + 1j * one.frequency * dashpots[:, None] * by_force[places],
+                    1j * one.frequency * dashpots * moved[places],
+                )
+                for (moved, _, by_force), one in zip(solved, excitations, strict=True)
+            ]
+            velocity = np.sqrt(
+                sum(np.abs(one.frequency * moved[places]) ** 2 for moved, one in zip(slowed, excitations, strict=True))
+            )
+            before, dashpots = dashpots, friction_dashpots(friction, creep, velocity)
+            if np.all(np.abs(dashpots - before) <= _SETTLED * dashpots):
+                break
+        return np.array(
+            [
+                self._results(motions, moved, one.frequency)["span_tension"]
+                for moved, one in zip(slowed, excitations, strict=True)
+            ]
+        )
+
+    def _solved(
+        self, motions: SmallMotions, excited: Excited, places: ArrayLike = ()
+    ) -> tuple[ComplexArray, ComplexArray, ComplexArray]:
+        """Amplitudes of the unknowns, the forces on them, and what unit forces on some of them move, in columns."""
+        from scipy.sparse.linalg import splu
+
+        frequency, shafts = excited.frequency, motions.bodies[self._pulley_shafts]
+        matrix: csc_array = (motions.stiffness + 1j * frequency * motions.damping - frequency**2 * motions.mass).tocsr()
+        free = np.setdiff1d(np.arange(matrix.shape[0]), shafts[self._driven])
+        moved, load = np.zeros((2, matrix.shape[0]), complex)
+        for target, given in ((moved, excited.angles), (load, excited.torques)):
+            for pulley, amplitude in given.items():
+                target[shafts[pulley]] += amplitude
+        factors = splu(matrix[free][:, free].tocsc())
+        moved[free] = factors.solve((load - matrix @ moved)[free])
+        chosen = np.asarray(places, dtype=int)
+        by_force = np.zeros((matrix.shape[0], chosen.size), complex)
+        unit = (free[:, None] == chosen).astype(complex)
+        by_force[free] = factors.solve(unit) if chosen.size else unit
+        return moved, matrix @ moved, by_force
+
+    def _results(self, motions: SmallMotions, moved: ComplexArray, frequency: float) -> dict[str, ComplexArray]:
         """Amplitudes of results from those of the unknowns: derivatives of what is observed, along both parts."""
         system = self._motions.system
         position = np.zeros(system.first_body + system.bodies.size, complex)
         position[: system.first_body] = moved[: system.first_body]
-        position[system.first_body :] = np.where(self._bodies >= 0, moved[self._bodies], 0.0)
+        position[system.first_body :] = np.where(motions.bodies >= 0, moved[motions.bodies], 0.0)
         velocity = 1j * frequency * position
         real = self._derivative(position.real, velocity.real)
         imaginary = self._derivative(position.imag, velocity.imag)
@@ -136,6 +204,8 @@ class Answers:
         Number of the pulley whose speed is prescribed.
     speeds : ndarray, shape (n,)
         Its speeds, rad/s.
+    stuck
+        Whether dry friction holds tensioners; else it is left out.
 
     Raises
     ------
@@ -143,8 +213,8 @@ class Answers:
         If nothing excites it.
     """
 
-    def __init__(self, drive: Drive, number: int, speeds: FloatArray) -> None:
-        self._drive, self._speeds, self._labels = drive, speeds, labels_of(drive)
+    def __init__(self, drive: Drive, number: int, speeds: FloatArray, *, stuck: bool = False) -> None:
+        self._drive, self._speeds, self._labels, self._stuck = drive, speeds, labels_of(drive), stuck
         count = speeds.size
         driven = {number, *(place for place, one in enumerate(drive.pulleys) if one.prescribed)}
         self.excitations = [
@@ -165,20 +235,25 @@ class Answers:
             for name, one in known.items()
         }
         self._frequency = np.full((count, len(self.excitations)), np.nan)
+        self._ranges: list[Range | None] = [None] * count
 
     def take(self, row: int, run: Run, motion: ForcedMotion) -> None:
         """Take the responses at a speed."""
+        excitations, answers = list[Excited](), list[dict[str, ComplexArray]]()
         for place, one in enumerate(self.excitations):
             hertz = one.frequency(run)
             speed = float(run.dataset[one.turning][-1, one.pulley])
             backward = speed < 0.0  # the angle falls: exp(i k theta) is exp(-i w t)
             wave = self._wave(one, speed)
             given = {one.pulley: wave.conjugate() if backward else wave}
-            angles, torques = (given, {}) if one.cause == SPEED else ({}, given)
-            found = motion.answer(2.0 * np.pi * hertz, angles, torques)
+            excited = Excited(2.0 * np.pi * hertz, *((given, {}) if one.cause == SPEED else ({}, given)))
+            found = motion.answer(excited)
             self._frequency[row, place] = hertz
             for name, values in self._found.items():
                 values[row, place] = np.conj(found[name]) if backward else found[name]
+            excitations.append(excited)
+            answers.append(found)
+        self._ranges[row] = motion.range_of(excitations, answers)
 
     def _wave(self, one: Excitation, speed: float) -> complex:
         """Amplitude of an excitation over the angle of its shaft, rad or N m, at a speed of the shaft, rad/s."""
@@ -215,23 +290,66 @@ class Answers:
             label = f"Amplitude of {one.long_name[0].lower()}{one.long_name[1:]}: maximum sum of all orders"
             largest = np.fmax.reduce(total, axis=0)
             found[f"largest_{name}_amplitude"] = Variable(one.dims, self._units(one.units), label), largest
+        return found | self._range_variables()
+
+    def _range_variables(self) -> Axes:
+        """How far the vibrations at each speed are from what a linear response holds for."""
+        known = {
+            "tension_ripple": Variable(("speed", "span"), "1", "Tension amplitude, sum of all orders, over its mean"),
+            "largest_friction_used": Variable(("speed", "pulley"), "1", "Maximum share of friction used"),
+            "stop_used": Variable(("speed", "tensioner"), "1", "Amplitude of the tensioner over its way to a stop"),
+            "friction_change": Variable(("speed",), "1", "Change of tension amplitudes by dry friction of tensioners"),
+            "amplitude_error": Variable(("speed",), "1", "Estimated error of amplitudes"),
+        }
+        own = dict(zip(known, Range._fields, strict=True))
+        found = dict[str, tuple[Variable, ArrayLike]]()
+        for name, one in known.items():
+            size = [len(self._labels[dim]) for dim in one.dims[1:]]
+            if 0 not in size:
+                blank = np.full(size, np.nan)
+                values = [blank if there is None else getattr(there, own[name]) for there in self._ranges]
+                found[name] = one, np.array(values)
         return found
 
     def warnings(self, means: Mapping[str, NDArray[Any]]) -> list[str]:
-        """Where vibrations are too large for a linear response: where the belt would go slack."""
-        total = np.abs(self._found["span_tension"]).sum(axis=1)
-        with np.errstate(invalid="ignore"):
-            slack = total > means["span_tension"]
-        if not slack.any():
+        """Where vibrations are too large for a linear response, why, and by how much amplitudes may err."""
+        errors = np.array([np.nan if one is None else one.error for one in self._ranges])
+        beyond = np.flatnonzero(errors > SMALL_ERROR)
+        if not beyond.size:
             return []
-        row, span = np.unravel_index(np.nanargmax(np.where(slack, total / means["span_tension"], 0.0)), slack.shape)
+        row = int(np.nanargmax(errors))
+        first, last = RPM * self._speeds[beyond[[0, -1]]]
+        where = f"between {first:.4g} and {last:.4g} rpm" if beyond.size > 1 else f"at {first:.4g} rpm"
+        error = errors[row]
+        much = f"by about {100.0 * error:.2g}%" if error < 1.0 else "by more than their own size"
         return [
-            f"at {np.count_nonzero(slack.any(axis=1))} speeds spans would go slack; the worst is at "
-            f"{RPM * self._speeds[row]:.4g} rpm, where the tension of {self._labels['span'][span]} oscillates "
-            f"by up to {total[row, span]:.4g} N about {means['span_tension'][row, span]:.4g} N. The linear "
-            "analysis overestimates the amplitudes there. Simulate a run-up with `beltdyn sweep` and add it "
-            "with --compare."
+            f"the linear response is beyond its range at {beyond.size} of {np.count_nonzero(np.isfinite(errors))} "
+            f"speeds, {where}. Worst at {RPM * self._speeds[row]:.4g} rpm, where amplitudes may err {much}: "
+            f"{'; '.join(self._causes(row, means))}. Simulate a run-up with `beltdyn sweep` and add it with --compare."
         ]
+
+    def _causes(self, row: int, means: Mapping[str, NDArray[Any]]) -> list[str]:
+        """What a linear response leaves out at a speed, in words."""
+        there, found = self._ranges[row], list[str]()
+        assert there is not None
+        span = int(np.nanargmax(there.ripple))
+        slack = ", so that the span goes slack" if there.ripple[span] > 1.0 else ""
+        found.append(
+            f"the tension of {self._labels['span'][span]} oscillates by {100.0 * there.ripple[span]:.3g}% of its mean "
+            f"{means['span_tension'][row, span]:.4g} N{slack}"
+        )
+        slides = [name for name, used in zip(self._labels["pulley"], there.friction_used, strict=True) if used >= 1.0]
+        if slides:
+            found.append(f"the whole arc of {' and '.join(slides)} slides in a part of each period")
+        stops = [name for name, used in zip(self._labels["tensioner"], there.stop_used, strict=True) if used >= 1.0]
+        if stops:
+            found.append(f"the tensioner of {' and '.join(stops)} reaches a stop")
+        if there.friction_change > SMALL_ERROR:
+            found.append(
+                f"dry friction of tensioners, which this response {'takes to hold' if self._stuck else 'leaves out'}, "
+                f"changes tension amplitudes by {100.0 * there.friction_change:.2g}%"
+            )
+        return found
 
     def _units(self, units: str) -> str:
         """The unit of a result, for tensioners that of those of the drive."""

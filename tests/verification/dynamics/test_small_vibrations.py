@@ -9,13 +9,15 @@ import pytest
 import beltdyn as bd
 from beltdyn.arrays import ComplexArray, FloatArray
 from beltdyn.model import Drive
+from beltdyn.parts.quantity import RPM
+from beltdyn.points.changed_drive import at_speed, held_at
 from beltdyn.results import Run
 from beltdyn.solvers.eigenvalues import Pencil, all_eigenvalues, nearest, pencil
 from beltdyn.solvers.flutter import Vibrations, flutter_shift
 from beltdyn.state.steady import steady_state
 from beltdyn.vibration.modes import modes
 from beltdyn.vibration.response import response
-from beltdyn.vibration.response_answers import ForcedMotion
+from beltdyn.vibration.response_answers import Excited, ForcedMotion
 from beltdyn.vibration.small_motions import SmallMotions, about_steady
 from validation.published.cases import better, loaded_two_pulley
 
@@ -88,6 +90,111 @@ def test_forced_vibrations_over_time(measured: Callable[..., None]) -> None:
         np.testing.assert_allclose(np.exp(1j * (phase - linear[f"{name}_phase"].values)), 1.0, atol=5e-3)
 
 
+FIXED_CENTERS = """
+[belt]
+profile = "PK"
+ribs = 6
+friction = {friction}
+installed_tension = "350 N"
+[[pulley]]
+name = "crank"
+center = [0, 0]
+radius = "75 mm"
+speed = "1500 rpm"
+[[pulley]]
+name = "alternator"
+center = [0.0, 0.30]
+radius = "{radius} mm"
+inertia = "35 kg cm^2"
+load = [{{ kind = "resistance", constant = "{load} N m" }}]
+[simulation]
+duration = 0.5
+output_interval = "0.25 ms"
+"""
+
+
+def drive_beyond(name: str) -> Drive:
+    """A drive whose harmonics of the crank are beyond the range of a linear response, at the end of its ramps."""
+    if name == "idle":
+        given = bd.example("alternator_drive")
+        load = [{"kind": "resistance", "constant": 0.2}]
+        return given.replace(pulley=[one.replace(load=load) if one.load else one for one in given.pulleys])
+    if name == "fixed":
+        return bd.loads(FIXED_CENTERS.format(friction=0.35, radius=28, load=7))
+    if name == "near its limit":
+        return bd.loads(FIXED_CENTERS.format(friction=0.14, radius=40, load=10))
+    return bd.example(name)
+
+
+def order_2_over_time(drive: Drive, rpm: float, wave: float, duration: float) -> FloatArray:
+    """Amplitudes of order 2 of the span tensions in the last 0.15 s, from steady running with constant loads on."""
+    constant = at_speed(held_at(drive, None), 0, rpm / RPM)
+    crank, *others = constant.pulleys
+    wavy = crank.replace(harmonics=[{"order": 2, "amplitude": wave}])
+    settings = {"duration": duration, "output_interval": 2.5e-4, "start": "steady"}
+    run = bd.simulate(constant.replace(pulley=[wavy, *others], simulation=settings)).dataset
+    last = run.time.values > duration - 0.15
+    angle = 2.0 * rpm / RPM * run.time.values[last]
+    waves = [part(k * angle) for k in (1, 2, 3, 4) for part in (np.cos, np.sin)]
+    parts = np.linalg.lstsq(np.column_stack([np.ones(angle.size), *waves]), run.span_tension.values[last])[0]
+    return np.asarray(np.hypot(parts[1], parts[2]))
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize(
+    ("name", "rpm", "wave"),
+    [
+        ("alternator_drive", 1400.0, 0.002),
+        ("alternator_drive", 1400.0, 0.005),
+        ("alternator_drive", 1400.0, 0.01),
+        ("alternator_drive", 1600.0, 0.01),
+        ("idle", 1400.0, 0.002),
+        ("idle", 1400.0, 0.005),
+        ("fixed", 1500.0, 0.01),
+        ("fixed", 1900.0, 0.002),
+        ("near its limit", 1900.0, 0.003),
+        ("near its limit", 1900.0, 0.006),
+        ("near its limit", 2400.0, 0.001),
+    ],
+)
+def test_a_linear_response_errs_by_no_more_than_it_says(
+    name: str, rpm: float, wave: float, measured: Callable[..., None]
+) -> None:
+    """Of the largest tension amplitude, beside 2 % of mesh and time steps; within its range by no more than those."""
+    drive = drive_beyond(name)
+    crank, *others = drive.pulleys
+    wavy = crank.replace(harmonics=[{"order": 2, "amplitude": wave}])
+    linear = response(drive.replace(pulley=[wavy, *others]), speed=f"{rpm} rpm")
+    amplitude = linear.dataset.span_tension_amplitude.values[0, 0]
+    seen, estimate = order_2_over_time(drive, rpm, wave, 0.45), float(linear.dataset.amplitude_error[0])
+    error = float(np.max(np.abs(amplitude - seen)) / amplitude.max())
+    measured(linear=amplitude.max(), seen=seen[amplitude.argmax()], error=error, estimate=estimate)
+    assert error < estimate + 0.025
+    assert any("beyond its range" in one for one in linear.warnings) == (estimate > 0.05)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize(("rpm", "wave"), [(1200.0, 0.005), (1350.0, 0.01)])
+def test_dry_friction_of_a_tensioner_as_dashpot(rpm: float, wave: float, measured: Callable[..., None]) -> None:
+    """The arm of the accessory drive, held by its friction under order 2 alone: the dashpot has the same effect."""
+    given = bd.example("accessory_drive")
+    smooth = [one.replace(load=[load.replace(harmonics=()) for load in one.load]) for one in given.pulleys]
+    drive = given.replace(pulley=smooth)
+    crank, *others = drive.pulleys
+    wavy = drive.replace(pulley=[crank.replace(harmonics=[{"order": 2, "amplitude": wave}]), *others])
+    linear = response(wavy, speed=f"{rpm} rpm")
+    amplitude = linear.dataset.span_tension_amplitude.values[0, 0]
+    seen = order_2_over_time(drive, rpm, wave, 0.5)
+    change = float(np.max(np.abs(amplitude - seen)) / amplitude.max())
+    expected = float(linear.dataset.friction_change[0])
+    measured(change=change, expected=expected)
+    assert expected == pytest.approx(change, abs=0.02)
+    assert any("dry friction of tensioners, which this response leaves out" in one for one in linear.warnings)
+    held = response(wavy, speed=f"{rpm} rpm", dry_tensioners="stuck").dataset
+    np.testing.assert_allclose(held.span_tension_amplitude.values[0, 0], seen, atol=0.02 * amplitude.max())
+    assert float(held.friction_change[0]) < 0.02
+
+
 STIFFNESS, DAMPING, ROTOR = 200.0, 0.05, 3e-3
 HUBS: dict[str, dict[str, Any]] = {
     "isolator": {"kind": "isolator", "stiffness": STIFFNESS, "damping": DAMPING, "inertia": ROTOR},
@@ -105,7 +212,7 @@ def test_rotor_behind_its_rim(kind: str) -> None:
     spring, damper = (STIFFNESS, DAMPING) if kind == "isolator" else (0.0, HUBS[kind]["locking_damping"])
     own = np.sqrt(STIFFNESS / ROTOR)
     for frequency in own * np.array([0.3, 0.9, 1.0, 1.1, 3.0]):
-        found = motion.answer(float(frequency), {0: 1e-3}, {})
+        found = motion.answer(Excited(float(frequency), {0: 1e-3}, {}))
         rate = spring + 1j * frequency * damper
         expected = rate / (rate - frequency**2 * ROTOR)
         assert found["shaft_speed"][1] / found["pulley_speed"][1] == pytest.approx(expected, rel=1e-6)
@@ -119,7 +226,7 @@ def test_rotor_behind_a_decoupler() -> None:
     drive = better(loaded_two_pulley()).replace(pulley=[driver, driven.replace(hub=links, inertia=0.05)])
     motion = ForcedMotion(steady_state(drive), stuck=False)
     for frequency in np.sqrt(STIFFNESS / ROTOR) * np.array([0.3, 0.9, 1.0, 1.1, 1.5, 2.0, 3.0]):
-        found = motion.answer(float(frequency), {0: 1e-3}, {})
+        found = motion.answer(Excited(float(frequency), {0: 1e-3}, {}))
         clutch, spring = 1j * frequency * HUBS["decoupler"]["locking_damping"], STIFFNESS + 1j * frequency * DAMPING
         balance = [
             [clutch + spring - frequency**2 * part, -spring],

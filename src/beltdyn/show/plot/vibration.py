@@ -23,6 +23,7 @@ from beltdyn.show.plot.registry import Choice, always, figure
 from beltdyn.show.plot.style import (
     INK,
     PALE,
+    SHADE,
     Dash,
     axes_or_new,
     color,
@@ -386,12 +387,26 @@ def _all_panels(draw: Callable[..., Axes], result: Result, choice: Choice) -> Fi
     return page
 
 
+def _shade_beyond_range(ax: Axes, result: Result, speed: FloatArray) -> None:
+    """Shade the speeds (rpm) at which the estimated error of amplitudes is more than that of a linear response."""
+    dataset = result.dataset
+    if "amplitude_error" not in dataset:
+        return
+    limit = float(dataset.attrs["linear_range"])
+    between = 0.5 * (speed[1:] + speed[:-1])
+    edges = np.concatenate([speed[:1], between, speed[-1:]])
+    label = f"beyond linear range (error above {100.0 * limit:g}%)"
+    for row in np.flatnonzero(dataset["amplitude_error"].values > limit):
+        ax.axvspan(edges[row], edges[row + 1], color=SHADE, linewidth=0.0, zorder=0, label=label)
+        label = "_"
+
+
 @figure(always, _all_panels, of=("response",))
 def response(result: Result, variable: str = "span_tension", of: str | int = 0, *, ax: Axes | None = None) -> Axes:
     """Draw the amplitudes of a result over speed, a line for each excitation, and their sum.
 
     The sum is that of all amplitudes, as if they met. Dashed lines are the same orders of a run-up, and circles those
-    that were measured, where they were put beside.
+    that were measured, where they were put beside. Shaded speeds are beyond the range of a linear response.
 
     Parameters
     ----------
@@ -429,6 +444,7 @@ def response(result: Result, variable: str = "span_tension", of: str | int = 0, 
     ax, speed = axes_or_new(ax), RPM * dataset["speed"].values
     unit, factor = _SHOWN.get(str(dataset[name].attrs["units"]), (str(dataset[name].attrs["units"]), 1.0))
     linear = factor * dataset[name].values[:, :, place]
+    _shade_beyond_range(ax, result, speed)
     ax.plot(speed, linear.sum(axis=1), color=INK, linewidth=0.9, label="sum of amplitudes")
     for number, one in enumerate(dataset["excitation"].values):
         ax.plot(speed, linear[:, number], color=color(number), label=str(one))

@@ -35,6 +35,20 @@ def test_lines_and_marks(found: bd.Result, ax: Axes) -> None:
     assert ax.get_ylabel() == "Amplitude [N]"
 
 
+def test_speeds_beyond_the_linear_range_are_shaded(found: bd.Result, ax: Axes) -> None:
+    plot.response(found, ax=ax)
+    assert not ax.patches
+    dataset = found.dataset.copy()
+    dataset["amplitude_error"] = found.dataset.amplitude_error.copy(data=[0.01, 0.2])
+    ax.clear()
+    plot.response(bd.Result(dataset, found.drive), ax=ax)
+    (shade,) = ax.patches
+    first, last = dataset.speed.values * 30.0 / np.pi
+    left, right = shade.get_path().get_extents().transformed(shade.get_patch_transform()).intervalx
+    assert (left, right) == pytest.approx((0.5 * (first + last), last))
+    assert shade.get_label() == "beyond linear range (error above 5%)"
+
+
 def test_speeds_in_rpm(found: bd.Result, ax: Axes) -> None:
     plot.response(found, "pulley_speed", "driver", ax=ax)
     np.testing.assert_allclose(np.asarray(ax.lines[1].get_ydata())[-1], 0.002 * 120.0 * 30.0 / np.pi)
