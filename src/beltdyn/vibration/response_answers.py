@@ -91,7 +91,8 @@ class ForcedMotion:
     def _rubbed(self, excitations: Sequence[Excited]) -> ComplexArray:
         """Amplitudes of span tensions with dry friction of tensioners, as dashpots that take the same work."""
         motions, tensioners = self._motions, drive_system(self._motions.drive).tensioners
-        friction = 0.5 * sum(dry_friction_of(tensioners, one) for one in ("tensioning_friction", "yielding_friction"))
+        senses = ("tensioning_friction", "yielding_friction")
+        friction = np.mean([dry_friction_of(tensioners, one) for one in senses], axis=0)
         creep = dry_friction_of(tensioners, "creep_speed")
         places = motions.bodies[motions.system.bodies.size - tensioners.size :]
         solved = [self._solved(motions, one, places) for one in excitations]
@@ -290,7 +291,7 @@ class Answers:
             label = f"Amplitude of {one.long_name[0].lower()}{one.long_name[1:]}: maximum sum of all orders"
             largest = np.fmax.reduce(total, axis=0)
             found[f"largest_{name}_amplitude"] = Variable(one.dims, self._units(one.units), label), largest
-        return found | self._range_variables()
+        return {**found, **self._range_variables()}
 
     def _range_variables(self) -> Axes:
         """How far the vibrations at each speed are from what a linear response holds for."""

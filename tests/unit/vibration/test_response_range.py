@@ -34,7 +34,7 @@ def looked_at(drive: Drive, tensions: Any, frequencies: Any = (100.0,), **others
     return range_of(drive, still, frequencies, amplitudes, np.zeros((len(amplitudes), 0), complex), rubbed)
 
 
-def used_by(drive: Drive, tight: float, slack: float) -> FloatArray:
+def used_by(drive: Drive, tight: float | FloatArray, slack: float | FloatArray) -> FloatArray:
     """Share of friction used between two tensions, by Euler's formula."""
     lifted = drive.belt.mass_per_length * SPEED**2
     return np.asarray(np.log((tight - lifted) / (slack - lifted)) / (drive.frictions * drive.path.wrap_angles))

@@ -74,11 +74,14 @@ def mean_torques(evidence: Evidence) -> Iterator[Finding]:
 def off_steady_running(evidence: Evidence) -> Iterator[Finding]:
     """Errors of losses and slip by settings of mesh and steps: steady running refines its mesh until it resolves."""
     attributes = evidence.recorded.attrs
-    found = [*_off_losses(evidence), *_off_slips(evidence)] if STEADY_LOSSES in attributes else []
+    if STEADY_LOSSES not in attributes:
+        return
+    losses, slips = list(_off_losses(evidence)), list(_off_slips(evidence))
+    found, wrong = losses + slips, ["losses and efficiency"] * bool(losses) + ["slip"] * bool(slips)
     if found:
         yield Finding(
             f"against steady running, on a mesh that resolves it, {listing(found)}.",
-            "Losses, efficiency and slip are wrong by as much.",
+            f"{listing(wrong).capitalize()} {'are' if losses else 'is'} wrong by as much.",
             f"Leave out {attributes[COARSE_SETTINGS]}, or take them from `beltdyn steady`.",
         )
 
@@ -101,7 +104,7 @@ def _off_slips(evidence: Evidence) -> Iterator[str]:
     off = np.nan_to_num([one.slip for one in evidence.pulleys] - steady) / largest
     worst = int(np.argmax(np.abs(off)))
     if abs(off[worst]) > LOSS_LIMIT:
-        yield f"the slip of {evidence.pulleys[worst].name} by {off[worst]:+.1%} of the largest slip"
+        yield f"the slip of {evidence.pulleys[worst].name} is off by {off[worst]:+.1%} of the largest slip"
 
 
 def begun_by_means(evidence: Evidence) -> Iterator[Finding]:
