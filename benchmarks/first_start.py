@@ -56,7 +56,7 @@ def main() -> None:
             file.write_text(short.text, encoding="utf-8")
             total, llvm = map(float, _started([sys.executable, "-c", ONE_CORE, str(file)], folder, "one").split())
             begun = time.perf_counter()
-            _started([sys.executable, "-c", COMMAND, "run", str(file)], folder, "all")
+            _started([sys.executable, "-c", COMMAND, "simulate", str(file)], folder, "all")
             wall = time.perf_counter() - begun
         table.add_row(name, *(f"{value:.1f}" for value in (total, llvm, total - llvm, wall)))
     Console().print(table)

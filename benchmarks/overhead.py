@@ -1,4 +1,4 @@
-"""What a warm `beltdyn run` costs besides integration: a run of ten steps in its own process, kernels on the disk."""
+"""Cost of a warm `beltdyn simulate` besides integration: a run of ten steps in its own process, kernels on the disk."""
 
 import resource
 import statistics
@@ -31,11 +31,11 @@ def main() -> None:
         file.write_text(drive.text, encoding="utf-8")
         for _ in range(ROUNDS + 1):
             before, begun = processor_time(), time.perf_counter()
-            subprocess.run([sys.executable, "-c", COMMAND, "run", file], capture_output=True, check=True)
+            subprocess.run([sys.executable, "-c", COMMAND, "simulate", file], capture_output=True, check=True)
             elapsed.append(time.perf_counter() - begun)
             processor.append(processor_time() - before)
     clock, cores = (statistics.median(times[1:]) for times in (elapsed, processor))
-    Console().print(f"a warm `beltdyn run` of a few steps: {clock:.2f} s, {cores:.2f} s of processor time")
+    Console().print(f"a warm `beltdyn simulate` of a few steps: {clock:.2f} s, {cores:.2f} s of processor time")
 
 
 if __name__ == "__main__":

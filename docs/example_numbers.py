@@ -139,7 +139,7 @@ def crossed_belt_drive(run: Run) -> Iterator[Number]:
     yield from slip_and_efficiency(run, 0.05)
     pull = summary.spans[0].tension - summary.spans[1].tension
     limit = limit_between_fixed_centers(run, 250.0) / abs(pull)
-    yield Number("capstan margin", limit, summary.pulleys[1].margin, 0.03 * limit)
+    yield Number("slip safety", limit, summary.pulleys[1].slip_safety, 0.03 * limit)
 
 
 def washing_machine(run: Run) -> Iterator[Number]:
@@ -282,7 +282,7 @@ def slip_through(run: Run) -> Iterator[Number]:
     sliding = np.abs(run.dataset["sliding_speed"].sel(time=slice(0.6, None))).max("pulley")
     since = float(sliding["time"][int((sliding.values > 0.001 * rim).argmax())])
     yield Number("time at which it slips through, s", 0.6 + limit / load.constant, since, 0.03)
-    yield Number("capstan margin at the end", 1.0, summarize(run).pulleys[1].margin, 0.02)
+    yield Number("slip safety at the end", 1.0, summarize(run).pulleys[1].slip_safety, 0.02)
 
 
 def slip_and_efficiency(run: Run, tolerance: float) -> Iterator[Number]:

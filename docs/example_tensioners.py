@@ -17,7 +17,7 @@ from beltdyn.arrays import FloatArray
 from beltdyn.model import Path
 from beltdyn.model.carrier import moved
 from beltdyn.results import summarize
-from beltdyn.results.derived import capstan_margins
+from beltdyn.results.derived import slip_safety
 from beltdyn.theory.capstan import capstan_ratio
 from beltdyn.theory.elastic_creep import slip_arc
 
@@ -82,7 +82,7 @@ class Arm:
         places = self.resting - 0.05, self.resting + 0.3
         return float(brentq(lambda place: self.surplus(place, self.slack(place), pull), *places))
 
-    def margin(self, pull: float, number: int) -> float:
+    def safety(self, pull: float, number: int) -> float:
         """Factor on a difference of tensions at which the belt slides on the whole arc of a pulley."""
 
         def missing(factor: float) -> float:
@@ -120,8 +120,8 @@ def conveyor(run: bd.Run) -> Iterator[Number]:
     yield Number("sum of the tensions, N", total, high + low, 0.005 * total)
     yield Number("difference of the tensions, N", apart, high - low, 0.005 * apart)
     yield Number("ΔT/EA, %", 100.0 * apart / belt.axial_stiffness, 100.0 * creep(run), 0.001)
-    margin = weight.preload * tanh(0.5 * pi * float(drive.frictions[1])) / apart
-    yield Number("capstan margin", margin, summary.pulleys[1].margin, 0.01 * margin)
+    safety = weight.preload * tanh(0.5 * pi * float(drive.frictions[1])) / apart
+    yield Number("slip safety", safety, summary.pulleys[1].slip_safety, 0.01 * safety)
     hanging = run.dataset["mid_span_displacement"].sel(time=slice(summary.start, None)).mean("time")
     for which, tension in (("tail-head", tight), ("head-tail", slack)):
         sag = weighing * length**2 / (8.0 * tension)
@@ -179,8 +179,8 @@ def tensioner_stop(run: bd.Run) -> Iterator[Number]:
         one, other = slack + pull - arm.lifted, slack - arm.lifted
         hub = sqrt(one**2 + other**2 - 2.0 * one * other * cos(wrapped))
         yield Number(f"{when}: hub load of the press, N", hub, force, 0.015 * hub)
-    margin, margins = arm.margin(pull, 2), capstan_margins(run, 0.66, 0.744).sel(pulley="press")
-    yield Number("stroke: capstan margin of the press", margin, float(margins.mean()), 0.02 * margin)
+    safety, safeties = arm.safety(pull, 2), slip_safety(run, 0.66, 0.744).sel(pulley="press")
+    yield Number("stroke: slip safety of the press", safety, float(safeties.mean()), 0.02 * safety)
     meets = brentq(lambda torque: arm.balance(torque / radius + bent) - spring.stops[1], 11.0, 55.0)
     steady = summarize(bd.steady_state(drive.with_({"pulley[press].load[1].constant": meets}), at=0.6))
     reached = np.degrees(steady.tensioners[0].position)

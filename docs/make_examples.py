@@ -45,24 +45,22 @@ class Example(NamedTuple):
 EXAMPLES: Mapping[str, Example] = MappingProxyType(
     {
         "two_pulley": Example(("speeds", "span_tensions", "contact_forces"), by_hand.two_pulley),
-        "unequal_radii": Example(("speeds", "torques", "slip", "capstan_margins"), by_hand.unequal_radii),
-        "fan_direct_start": Example(
-            ("speeds", "torques", "span_tensions", "capstan_margins"), by_hand.fan_direct_start
-        ),
+        "unequal_radii": Example(("speeds", "torques", "slip", "slip_safety"), by_hand.unequal_radii),
+        "fan_direct_start": Example(("speeds", "torques", "span_tensions", "slip_safety"), by_hand.fan_direct_start),
         "crossed_belt": Example(("configuration", "speeds", "slip"), by_hand.crossed_belt_drive),
         "washing_machine": Example(
-            ("speeds", "span_tensions", "capstan_margins"), by_hand.washing_machine, by_hand.slip_on_a_small_pulley
+            ("speeds", "span_tensions", "slip_safety"), by_hand.washing_machine, by_hand.slip_on_a_small_pulley
         ),
         "flat_belt_idler": Example(
-            ("span_tensions", "contact_pressure", "capstan_margins", "tensioners"),
+            ("span_tensions", "contact_pressure", "slip_safety", "tensioners"),
             by_hand.flat_belt_idler,
             by_hand.worth_of_the_idler,
         ),
-        "band_brake": Example(("span_tensions", "configuration", "capstan_margins"), by_hand.band_brake),
+        "band_brake": Example(("span_tensions", "configuration", "slip_safety"), by_hand.band_brake),
         "conveyor": Example(("configuration", "span_tensions", "tensioners"), tensioned.conveyor),
         "alternator_drive": Example(("speeds", "span_tensions", "tensioners", "hub_loads"), tensioned.alternator_drive),
-        "tensioner_stop": Example(("span_tensions", "tensioners", "capstan_margins"), tensioned.tensioner_stop),
-        "slip_through": Example(("speeds", "torques", "capstan_margins", "slip"), by_hand.slip_through),
+        "tensioner_stop": Example(("span_tensions", "tensioners", "slip_safety"), tensioned.tensioner_stop),
+        "slip_through": Example(("speeds", "torques", "slip_safety", "slip"), by_hand.slip_through),
         "accessory_drive": Example(
             ("speeds", "span_tensions", "tensioners", "slip", "hub_loads"), accessory.numbers, accessory.study
         ),

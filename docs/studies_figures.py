@@ -19,9 +19,9 @@ def main() -> None:
     drive = bd.load(str(files("beltdyn") / "examples" / "alternator_drive.toml"))
     ends = [PRELOAD | {"steps": 2}, TORQUE | {"steps": 2}, *MORE]
     studies = (
-        bd.ParameterStudy(analysis="steady", results=RESULTS, number=[PRELOAD, TORQUE]),
-        bd.ParameterStudy(analysis="steady", results=RESULTS, number=ends, sampling="one_at_a_time"),
-        bd.ParameterStudy(analysis="steady", results=RESULTS, number=ends, sampling="saltelli", points=16),
+        bd.ParameterStudy(analysis="steady_state", results=RESULTS, number=[PRELOAD, TORQUE]),
+        bd.ParameterStudy(analysis="steady_state", results=RESULTS, number=ends, sampling="one_at_a_time"),
+        bd.ParameterStudy(analysis="steady_state", results=RESULTS, number=ends, sampling="saltelli", points=16),
     )
     for study in studies:
         bd.plot.save_all(bd.study(study, drive), PICTURES)

@@ -13,13 +13,12 @@ from beltdyn.analyses import ANALYSES as _ANALYSES
 __version__ = "0.1.0"
 
 _load, _names, _listed = lazy_loader.attach_stub(__name__, __file__)
-_functions = {analysis.public_name: analysis for analysis in _ANALYSES.values()}
-__all__ = sorted({*_listed, *_functions})
+__all__ = sorted({*_listed, *_ANALYSES})
 
 
 def __getattr__(name: str) -> Any:
-    return _functions[name].function if name in _functions else _load(name)
+    return _ANALYSES[name].function if name in _ANALYSES else _load(name)
 
 
 def __dir__() -> list[str]:
-    return sorted({*_names(), *_functions})
+    return sorted({*_names(), *_ANALYSES})

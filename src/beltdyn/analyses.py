@@ -6,11 +6,14 @@ from inspect import signature
 from pathlib import Path
 from typing import Any, NamedTuple
 
-RUN, STATIC = "run", "static"
+RUN, EQUILIBRIUM = "run", "equilibrium"
 """Kinds of results with a class of their own: results over time of any analysis, and results at rest."""
 
 STUDY = "study"
 """Kind of the results of a parameter study."""
+
+SIMULATE = "simulate"
+"""Name of the analysis whose result file has the name of the drive file alone."""
 
 
 class Analysis(NamedTuple):
@@ -18,22 +21,24 @@ class Analysis(NamedTuple):
 
     Attributes
     ----------
-    name : str
-        Name of the command, and of the kind of its results; those over time are of the kind `RUN`.
     place : str
         "MODULE:FUNCTION"; the function is ``beltdyn.FUNCTION`` too.
     purpose : str
-        What it tells, in one line for the help of the command line.
+        What it computes, in one line for the help of the command line.
     """
 
-    name: str
     place: str
     purpose: str
 
     @property
-    def public_name(self) -> str:
-        """Name of the function."""
+    def name(self) -> str:
+        """Name of the function, and of the kind of its results unless they are over time, of the kind `RUN`."""
         return self.place.partition(":")[2]
+
+    @property
+    def command(self) -> str:
+        """The word of the command line, and of the names of result files."""
+        return self.name.replace("_", "-")
 
     @property
     def function(self) -> Callable[..., Any]:
@@ -54,7 +59,7 @@ class Analysis(NamedTuple):
 
     def result_file(self, drive_file: Path) -> Path:
         """The default result file of a drive file."""
-        return drive_file.with_name(f"{drive_file.stem}{'' if self.name == RUN else f'-{self.name}'}.nc")
+        return drive_file.with_name(f"{drive_file.stem}{'' if self.name == SIMULATE else f'-{self.command}'}.nc")
 
     def write(self, drive: Any, path: Path, progress: Any = None, overwrite: bool = False, **options: Any) -> Any:
         """Analyse a drive and write the results to a file.
@@ -72,38 +77,30 @@ class Analysis(NamedTuple):
 
 
 _ALL = (
-    Analysis(RUN, "beltdyn.transient.simulate:simulate", "Simulate drives over time."),
-    Analysis("sweep", "beltdyn.transient.sweep:sweep", "Simulate a run-up through a range of speeds."),
-    Analysis(STATIC, "beltdyn.state.equilibrium:equilibrium", "Find the static equilibrium of a drive."),
-    Analysis("steady", "beltdyn.state.steady:steady_state", "Compute the steady running of a drive."),
-    Analysis("map", "beltdyn.points.operating_map:operating_map", "Compute operating points over speed and load."),
+    Analysis("beltdyn.transient.simulate:simulate", "Simulate drives over time."),
+    Analysis("beltdyn.transient.sweep:sweep", "Simulate a run-up through a range of speeds."),
+    Analysis("beltdyn.state.equilibrium:equilibrium", "Find the static equilibrium of a drive."),
+    Analysis("beltdyn.state.steady:steady_state", "Compute the steady running of a drive."),
+    Analysis("beltdyn.points.operating_map:operating_map", "Compute operating points over speed and load."),
+    Analysis("beltdyn.points.traction:traction", "Compute the traction curve of a pulley (slip over torque)."),
+    Analysis("beltdyn.points.duty:duty", "Compute the operating points of a duty cycle, and their means."),
     Analysis(
-        "traction", "beltdyn.points.traction:traction", "Compute the traction curve of a pulley (slip over torque)."
-    ),
-    Analysis("duty", "beltdyn.points.duty:duty", "Compute the operating points of a duty cycle, and their means."),
-    Analysis(
-        "tensioner",
         "beltdyn.points.tensioner_sheet:tensioner_sheet",
         "Compute tensioner positions and tensions over the range of belt lengths.",
     ),
-    Analysis(
-        "sensitivity",
-        "beltdyn.designs.sensitivity:sensitivity",
-        "Compute the sensitivity of results to each input.",
-    ),
-    Analysis("modes", "beltdyn.vibration.modes:modes", "Compute natural modes: frequencies, damping, shapes."),
-    Analysis("optimize", "beltdyn.designs.optimize:optimize", "Optimize parameters of a drive for a goal."),
-    Analysis("calibrate", "beltdyn.designs.calibrate:calibrate", "Fit parameters of a drive to measured results."),
-    Analysis(
-        "campbell", "beltdyn.vibration.campbell:campbell", "Compute natural modes over speed, and critical speeds."
-    ),
-    Analysis(
-        "response", "beltdyn.vibration.response:response", "Compute forced vibrations under harmonics, over speed."
-    ),
+    Analysis("beltdyn.designs.sensitivity:sensitivity", "Compute the sensitivity of results to each input."),
+    Analysis("beltdyn.vibration.modes:modes", "Compute natural modes: frequencies, damping, shapes."),
+    Analysis("beltdyn.designs.optimize:optimize", "Optimize parameters of a drive for a goal."),
+    Analysis("beltdyn.designs.calibrate:calibrate", "Fit parameters of a drive to measured results."),
+    Analysis("beltdyn.vibration.campbell:campbell", "Compute natural modes over speed, and critical speeds."),
+    Analysis("beltdyn.vibration.response:response", "Compute forced vibrations under harmonics, over speed."),
     # one line each
 )
 
-STEADY_KINDS = ("map", "traction", "duty", "tensioner", "sensitivity", "modes", "campbell", "response")
+STEADY_KINDS = (
+    *("operating_map", "traction", "duty", "tensioner_sheet"),
+    *("sensitivity", "modes", "campbell", "response"),
+)
 """Kinds of results at rest or in steady running on a staying mesh."""
 
 ANALYSES = {analysis.name: analysis for analysis in _ALL}

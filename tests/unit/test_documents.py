@@ -16,7 +16,7 @@ import pytest
 import run_tasks
 import tomli_w
 
-from beltdyn.analyses import ANALYSES, RUN, STATIC
+from beltdyn.analyses import ANALYSES, EQUILIBRIUM, RUN
 from beltdyn.cli import main
 from beltdyn.designs.designs import free_number
 from beltdyn.designs.residuals import read_measured
@@ -295,7 +295,7 @@ def test_commands_run_one_after_another(document: str, tmp_path: Path, monkeypat
         if words[0] in ("sweep", "optimize") or any("-sweep" in word or "-optimize" in word for word in words):
             continue
         with pytest.raises(SystemExit) as ended:
-            main([*words, "--at", "1"] if words[0] in ("steady", "map", "traction") else words)
+            main([*words, "--at", "1"] if words[0] in ("steady-state", "operating-map", "traction") else words)
         assert ended.value.code == 0, words
         for file in tmp_path.glob("*.toml"):
             drive = file.read_text(encoding="utf-8")
@@ -352,7 +352,7 @@ def test_the_page_on_figures_names_every_one() -> None:
     rest = re.search(r"Of a drive at rest there are (.*?)\.", section, re.DOTALL)
     assert rest is not None
     named = set(re.findall(r"`(\w+)`", rest.group(1)))
-    assert named == {name for name, figure in FIGURES.items() if STATIC in figure.of and RUN in figure.of}
+    assert named == {name for name, figure in FIGURES.items() if EQUILIBRIUM in figure.of and RUN in figure.of}
 
 
 def test_the_commands_page_has_every_analysis() -> None:

@@ -98,7 +98,7 @@ def shown(notebook: Path) -> Shown:
 
 
 def test_drives_and_results_show_themselves_as_html(shown: Shown) -> None:
-    kinds = {"drive": None, "run": "Run", "steady": "Steady running", "modes": "Modes", "equilibrium": "Static"}
+    kinds = {"drive": None, "run": "Run", "steady": "Steady running", "modes": "Modes", "equilibrium": "Equilibrium"}
     for name, kind in kinds.items():
         html = shown[name]["text/html"]
         assert Page(html).tags.count("circle") == 2, name

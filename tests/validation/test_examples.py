@@ -11,7 +11,7 @@ from make_examples import EXAMPLES, simulated
 import beltdyn as bd
 from beltdyn import simulate
 from beltdyn.results import summarize
-from beltdyn.results.derived import capstan_margins
+from beltdyn.results.derived import slip_safety
 
 CLOSURE = 5e-3
 """Of the energy put in, at any time."""
@@ -83,7 +83,7 @@ def test_the_idler_carries_what_slips_without_it() -> None:
     bare = summarize(slipping)
     assert any("the belt slides on the whole arc" in text for text in bare.warnings)
     assert bare.pulleys[1].slip > 0.1
-    assert capstan_margins(slipping, 1.1, 1.6)[:, 0].values == pytest.approx(1.0, abs=0.005)
+    assert slip_safety(slipping, 1.1, 1.6)[:, 0].values == pytest.approx(1.0, abs=0.005)
     more = summarize(simulate(with_load(run.drive, 240.0)))
     assert not any("the belt slides on the whole arc" in text for text in more.warnings)
     assert more.pulleys[2].slip < 0.03

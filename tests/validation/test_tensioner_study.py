@@ -37,5 +37,5 @@ def test_the_best_drive_found_anew_from_rest_is_the_same() -> None:
         point = result.dataset.point.values[number + (10 if load == 1.0 else 0)]
         for name, one in zip(pulleys, summarize(run).pulleys, strict=True):
             assert best_at(result, f"hub_load[{name}]", point) == pytest.approx(one.hub_load, rel=0.01)
-            if np.isfinite(one.margin):
-                assert best_at(result, f"slip_safety[{name}]", point) == pytest.approx(one.margin, rel=0.01)
+            if np.isfinite(one.slip_safety):
+                assert best_at(result, f"slip_safety[{name}]", point) == pytest.approx(one.slip_safety, rel=0.01)

@@ -23,8 +23,8 @@ assert found.warnings == []
 
 Path("tight.toml").write_text(bd.dumps(tight), encoding="utf-8")
 with pytest.raises(SystemExit) as ended:
-    main(["natural", "tight.toml", "--count", "3"])
+    main(["natural-frequencies", "tight.toml", "--count", "3"])
 assert ended.value.code == 0
-saved = bd.open_result("tight-natural.nc")
-assert saved.kind == "natural"
+saved = bd.open_result("tight-natural-frequencies.nc")
+assert saved.kind == "natural_frequencies"
 assert np.allclose(saved.dataset.frequency, frequency[:3])

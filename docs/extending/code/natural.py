@@ -68,7 +68,7 @@ def natural_frequencies(drive: Drive, *, count: int = 10) -> Result:
     }
     labels = {"mode": np.arange(1, len(chosen) + 1), "part": ["real", "imaginary"], "axis": ["x", "y"]}
     return build_result(
-        "natural",
+        "natural_frequencies",
         rest.drive,
         {name: (variable, results[name]) for name, variable in _VARIABLES.items()},
         {name: (variable, labels[name]) for name, variable in _COORDINATES.items()},

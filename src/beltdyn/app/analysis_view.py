@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple, get_args
 from docstring_parser import parse
 from nicegui import app, ui
 
-from beltdyn.analyses import ANALYSES, RUN
+from beltdyn.analyses import ANALYSES, SIMULATE
 from beltdyn.app.jobs import Job, Outcome
 from beltdyn.app.numbers_view import show_parts
 from beltdyn.app.session import Session
@@ -146,7 +146,7 @@ class AnalysisView:
         names = offered()
         with ui.row().classes("w-full items-center gap-2 q-mt-md"):
             self._name = ui.select(
-                {name: f"{name}: {about}" for name, about in names.items()}, value=RUN, label="analysis"
+                {name: f"{name}: {about}" for name, about in names.items()}, value=SIMULATE, label="analysis"
             )
             self._name.props("dense options-dense").classes("grow").style("max-width: min(30em, 100%)").mark("analysis")
             self._name.on_value_change(self._ask_options)

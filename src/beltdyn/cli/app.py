@@ -29,7 +29,7 @@ app = App(
     version=__version__,
     help="Simulate belt drives: speeds, torques, tensions, slip and contact forces, from one drive file.",
     help_epilogue="Start with `beltdyn demo`, or `beltdyn new`, `beltdyn check drive.toml` and "
-    "`beltdyn run drive.toml`.",
+    "`beltdyn simulate drive.toml`.",
     suppress_keyboard_interrupt=False,
 )
 _COMMANDS: tuple[Callable[..., object] | Analysis, ...] = (
@@ -39,7 +39,7 @@ _COMMANDS: tuple[Callable[..., object] | Analysis, ...] = (
 )
 for position, one in enumerate(_COMMANDS):
     if isinstance(one, Analysis):
-        app.command(App(name=one.name, help=one.purpose, sort_key=position))
+        app.command(App(name=one.command, help=one.purpose, sort_key=position))
     else:
         app.command(one, sort_key=position)
 
@@ -70,10 +70,11 @@ def main(arguments: Sequence[str] | None = None) -> None:
 
 
 def _exit_code(arguments: Sequence[str] | None) -> int:
-    for name in ANALYSES.keys() & set(sys.argv[1:2] if arguments is None else arguments[:1]):
-        if app[name].default_command is None:  # its function is imported here, where it is used
-            app[name].default(analysis_command(ANALYSES[name]))
-            app[name].help = None  # that of the function says more
+    words = sys.argv[1:2] if arguments is None else arguments[:1]
+    for one in (one for one in ANALYSES.values() if one.command in words):
+        if app[one.command].default_command is None:  # its function is imported here, where it is used
+            app[one.command].default(analysis_command(one))
+            app[one.command].help = None  # that of the function says more
     try:
         action: Final = "return_int_as_exit_code_else_zero"
         return app(arguments, print_error=False, exit_on_error=False, result_action=action) or 0

@@ -54,8 +54,8 @@ def read_given(analysis: Analysis, file: Path) -> "Drive | Run":
     found = open_result(file)
     if not isinstance(found, Run):
         raise ModelError(
-            f"{file} holds results of {found.kind}, not of a run. Give the result file of `beltdyn run` or "
-            "`beltdyn steady`, or a drive file."
+            f"{file} holds results of {found.kind}, not of a run. Give the result file of `beltdyn simulate` or "
+            "`beltdyn steady-state`, or a drive file."
         )
     return found
 

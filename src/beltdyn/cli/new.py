@@ -34,7 +34,7 @@ def new(
     target = file or Path(f"{name}.toml")
     refuse_existing(target)
     write_text(target, text)
-    show(f"Written: {target}   (edit it, then: beltdyn check {target}; beltdyn run {target})")
+    show(f"Written: {target}   (edit it, then: beltdyn check {target}; beltdyn simulate {target})")
 
 
 def refuse_existing(file: Path) -> None:

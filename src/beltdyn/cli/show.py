@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 from cyclopts import Parameter
 
-from beltdyn.analyses import ANALYSES, RUN
+from beltdyn.analyses import ANALYSES, SIMULATE
 from beltdyn.cli.console import show
 from beltdyn.cli.new import refuse_existing, write_text
 from beltdyn.cli.output import analyse_to, ended
@@ -35,7 +35,7 @@ def export(
     Parameters
     ----------
     file
-        The result file, NetCDF, written by `beltdyn run` or another analysis.
+        The result file, NetCDF, written by `beltdyn simulate` or another analysis.
     vtk
         Belt and pulleys over time for ParaView and VTK, FILE-belt.vtkhdf and FILE-pulleys.vtkhdf; runs and sweeps only.
     csv
@@ -81,7 +81,7 @@ def report(
     Parameters
     ----------
     file
-        The result file, NetCDF, written by `beltdyn run` or another analysis.
+        The result file, NetCDF, written by `beltdyn simulate` or another analysis.
     more
         More result files, to compare with the first.
     output
@@ -120,7 +120,7 @@ def plot(
     Parameters
     ----------
     file
-        The result file, NetCDF, written by `beltdyn run` or another analysis.
+        The result file, NetCDF, written by `beltdyn simulate` or another analysis.
     more
         More result files, plotted in the same figures.
     output
@@ -199,7 +199,7 @@ def demo(folder: Path = Path("beltdyn-demo"), /) -> int:
         refuse_existing(file)
         write_text(file, text)
     show(f"Drive file: {file}   (summary: beltdyn check {file})")
-    run = analyse_to(ANALYSES[RUN], load(file), folder / f"{_DRIVE}.nc")
+    run = analyse_to(ANALYSES[SIMULATE], load(file), folder / f"{_DRIVE}.nc")
     if run.status == "completed":
         draw([run], folder)
     return ended(run)

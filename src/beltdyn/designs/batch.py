@@ -8,7 +8,7 @@ from multiprocessing.synchronize import Event as SharedEvent
 from pathlib import Path
 from typing import Any
 
-from beltdyn.analyses import ANALYSES, RUN, Analysis
+from beltdyn.analyses import ANALYSES, SIMULATE, Analysis
 from beltdyn.designs.worker import SPAWN, Ending, Work, analyse, bare_workers, start_worker
 from beltdyn.model import Drive
 from beltdyn.model.drive import refuse_functions
@@ -51,7 +51,7 @@ def simulate_all(
     dict
         Result file -> `Ending` of its simulation, in the order of `drives`.
     """
-    return analyse_all(ANALYSES[RUN], drives, progress, jobs, overwrite, finish)
+    return analyse_all(ANALYSES[SIMULATE], drives, progress, jobs, overwrite, finish)
 
 
 def analyse_all(

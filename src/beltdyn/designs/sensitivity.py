@@ -258,7 +258,7 @@ def sensitivity(
         Results, separated by commas, such as "efficiency, pulley_slip[driven], hub_load": variables of a map, and in
         brackets the pulley, span, tensioner or cause of one. Results of modes are "frequency[SPAN]" and
         "damping_ratio[SPAN]", of the lowest mode dominated by the span, and "mode_frequency[NUMBER]" and
-        "mode_damping_ratio[NUMBER]". "all" selects all of them. By default efficiency, capstan margin and tension; at
+        "mode_damping_ratio[NUMBER]". "all" selects all of them. By default efficiency, slip safety and tension; at
         rest tension and hub loads.
     numbers
         Paths of parameters, separated by commas, such as "belt.width, pulley[driven].radius". By default all non-zero

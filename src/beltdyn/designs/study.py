@@ -215,7 +215,7 @@ def study(
     Examples
     --------
     >>> study = bd.ParameterStudy(
-    ...     analysis="static",
+    ...     analysis="equilibrium",
     ...     number=[{"path": "belt.width", "values": "10, 15 mm"}],
     ...     results=["hub_load"],
     ... )

@@ -168,8 +168,8 @@ class Limits(Part):
     largest_hub_load: Force | None = Field(None, gt=0, description="the largest hub load at any time, in N")
     largest_tension: Force | None = Field(None, gt=0, description="the largest span tension at any time, in N")
     least_tension: Force | None = Field(None, ge=0, description="the least span tension at any time, in N")
-    least_margin: Ratio | None = Field(
-        None, gt=0, description="the least capstan margin: the factor on all loads at which gross slip begins"
+    least_slip_safety: Ratio | None = Field(
+        None, gt=0, description="the least slip safety: the factor on all loads at which gross slip begins"
     )
 
     @model_validator(mode="after")

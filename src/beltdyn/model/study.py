@@ -4,7 +4,7 @@ from typing import Annotated, Any, ClassVar, Literal, Self
 
 from pydantic import Field, model_validator
 
-from beltdyn.analyses import ANALYSES, RUN
+from beltdyn.analyses import ANALYSES, SIMULATE
 from beltdyn.parts.messages import apart, suggest
 from beltdyn.parts.part import Part
 from beltdyn.parts.quantity import AngularSpeed, Coordinate, Count, Length, Name, Ratio, Time, Words
@@ -38,7 +38,7 @@ class ParameterStudy(Part):
     Examples
     --------
     >>> width = {"path": "belt.width", "values": "10, 12, 14 mm"}
-    >>> study = bd.ParameterStudy(analysis="static", results=["hub_load"], number=[width])
+    >>> study = bd.ParameterStudy(analysis="equilibrium", results=["hub_load"], number=[width])
     >>> study.sampling
     'factorial'
     """
@@ -46,7 +46,7 @@ class ParameterStudy(Part):
     fills_a_file: ClassVar[bool] = True
 
     drive: Words | None = Field(None, description="the drive file, relative to the study file")
-    analysis: Words = Field(RUN, description='the analysis by its command, such as "steady" or "run"')
+    analysis: Words = Field(SIMULATE, description='the analysis by its name, such as "steady_state" or "simulate"')
     options: dict[str, Any] = Field(
         default_factory=dict, description="the group [options], options of the analysis by their Python names"
     )

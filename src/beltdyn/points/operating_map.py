@@ -88,7 +88,7 @@ def operating_map(
         axes["speed"] = Variable(("speed",), "rad/s", f"Speed of {name}"), numbers_in("speed", speed, "rad/s", points)
     if load is not None:
         axes["load"] = Variable(("load",), "1", "Load"), load_factors(load, load_points)
-    with OperatingPoints("map", held, axes, output, progress, overwrite) as table:
+    with OperatingPoints("operating_map", held, axes, output, progress, overwrite) as table:
         table.attributes = {"drive_as_given": drive.text, "pulley": name}
 
         def drive_at(*values: float) -> Drive:

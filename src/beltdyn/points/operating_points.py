@@ -39,8 +39,8 @@ VARIABLES = {
     "power_out": Variable((), "W", "Power output"),
     "efficiency": Variable((), "1", "Efficiency"),
     "largest_tension": Variable((), "N", "Largest tension"),
-    "least_slip_safety": Variable((), "1", "Least capstan margin"),
-    "least_safe_pulley": Variable((), "1", "Pulley with the least capstan margin", "str"),
+    "least_slip_safety": Variable((), "1", "Least slip safety"),
+    "least_safe_pulley": Variable((), "1", "Pulley with the least slip safety", "str"),
     "pulley_speed": Variable(PULLEY, "rad/s", "Pulley speed"),
     "shaft_torque": Variable(PULLEY, "N m", "Shaft torque"),
     "power": Variable(PULLEY, "W", "Power into the drive"),
@@ -49,7 +49,7 @@ VARIABLES = {
     "bending": Variable(PULLEY, "1", "Slip due to bending"),
     "regularisation": Variable(PULLEY, "1", "Slip due to the friction law slope"),
     "sliding": Variable(PULLEY, "1", "Gross slip"),
-    "slip_safety": Variable(PULLEY, "1", "Capstan margin: factor on all loads at gross slip"),
+    "slip_safety": Variable(PULLEY, "1", "Slip safety: factor on all loads at gross slip"),
     "sliding_arc": Variable(PULLEY, "rad", "Sliding arc"),
     "wrap_angle": Variable(PULLEY, "rad", "Wrap angle"),
     "hub_load": Variable(PULLEY, "N", "Hub load"),
@@ -77,7 +77,7 @@ _OF_PULLEYS = {
     "bending": "bending",
     "regularisation": "regularisation",
     "sliding": "sliding",
-    "slip_safety": "margin",
+    "slip_safety": "slip_safety",
     "sliding_arc": "sliding_arc",
     "wrap_angle": "wrap_angle",
     "hub_load": "hub_load",
@@ -345,7 +345,7 @@ class OperatingPoints:
         over = tuple(range(len(self.shape)))
         found = {
             "largest_slip": (Variable(PULLEY, "1", "Largest slip"), np.fmax.reduce, "pulley_slip"),
-            "smallest_safety": (Variable(PULLEY, "1", "Least capstan margin"), np.fmin.reduce, "slip_safety"),
+            "smallest_safety": (Variable(PULLEY, "1", "Least slip safety"), np.fmin.reduce, "slip_safety"),
             "largest_hub_load": (Variable(PULLEY, "N", "Largest hub load"), np.fmax.reduce, "hub_load"),
         }
         return {

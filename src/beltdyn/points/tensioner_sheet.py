@@ -249,7 +249,7 @@ class _Sheet:
             "tension_spread": (Variable((), "1", "Tension range over all belts"), spread),
         }
         names = {"state": (Variable(_STATE, "1", "State", "str"), states)}
-        result = build_result("tensioner", self._drive, {**variables, **more}, names, list(self._warnings()))
+        result = build_result("tensioner_sheet", self._drive, {**variables, **more}, names, list(self._warnings()))
         result.dataset.attrs |= {"drive_as_given": given, "pulley": self._tensioner.pulley}
         return result
 

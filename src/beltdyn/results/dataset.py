@@ -98,7 +98,7 @@ def _check_attributes(path: Path, dataset: "xr.Dataset") -> None:
     missing = [name for name in _OURS if name not in dataset.attrs]
     if missing:
         raise ModelError(
-            f"{path} is not a beltdyn result: it has no `{missing[0]}`. Give a file written by `beltdyn run`."
+            f"{path} is not a beltdyn result: it has no `{missing[0]}`. Give a file written by `beltdyn simulate`."
         )
     for name in _OURS:
         if not isinstance(dataset.attrs[name], str):

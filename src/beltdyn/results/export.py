@@ -218,6 +218,6 @@ def _require(result: Result, names: Sequence[str]) -> None:
             raise ModelError(f"{name!r} is not a result format. Choose from {', '.join(FORMATS)}.")
     if "vtk" in names and not isinstance(result, Run):
         raise ModelError(
-            f"vtk needs results over time, such as those of `beltdyn run`; these are of {result.kind}. "
+            f"vtk needs results over time, such as those of `beltdyn simulate`; these are of {result.kind}. "
             "Choose tables: csv, mat or parquet."
         )

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from beltdyn.analyses import RUN, STATIC
+from beltdyn.analyses import EQUILIBRIUM, RUN
 from beltdyn.arrays import FloatArray
 from beltdyn.results.means import pulley_means
 from beltdyn.results.result import Result
@@ -26,7 +26,7 @@ class KeyNumber:
     key : str
         Key of its limit in the group ``[limits]`` of the drive file.
     value : float
-        The value; NaN if undefined, such as the margin of an unloaded drive.
+        The value; NaN if undefined, such as the slip safety of an unloaded drive.
     unit : str
         Its SI unit, "1" for a pure number; "%" for a share shown in per cent.
     where : str
@@ -44,7 +44,7 @@ class KeyNumber:
     @property
     def name(self) -> str:
         """The key in words."""
-        return self.key.replace("_", " ").replace("margin", "capstan margin")
+        return self.key.replace("_", " ")
 
     @property
     def at_most(self) -> bool:
@@ -62,7 +62,7 @@ class KeyNumber:
 def key_numbers(result: Result) -> tuple[KeyNumber, ...]:
     """Compare the key numbers of a drive with its limits.
 
-    In a run, hub loads and tensions are the worst of all outputs; slip and capstan margin are the worst mean over the
+    In a run, hub loads and tensions are the worst of all outputs; slip and slip safety are the worst mean over the
     averaging window. In a table of operating points all are the worst of all points.
 
     Examples
@@ -93,7 +93,7 @@ def _of_run(run: Result) -> Iterator[Found]:
     yield _worst("largest_hub_load", hub_load, "N", time, pulleys)
     yield _worst("largest_tension", tension, "N", time, spans)
     yield _worst("least_tension", tension, "N", time, spans)
-    yield _worst("least_margin", np.array([[one.margin for one in means]]), "1", [over], pulleys)
+    yield _worst("least_slip_safety", np.array([[one.slip_safety for one in means]]), "1", [over], pulleys)
 
 
 _OF_TABLES = {
@@ -101,7 +101,7 @@ _OF_TABLES = {
     "largest_hub_load": ("hub_load", "pulley", "N"),
     "largest_tension": ("span_tension", "span", "N"),
     "least_tension": ("span_tension", "span", "N"),
-    "least_margin": ("slip_safety", "pulley", "1"),
+    "least_slip_safety": ("slip_safety", "pulley", "1"),
 }
 """Key -> variable of operating points, the dimension of its names, and the unit."""
 
@@ -138,6 +138,6 @@ def _worst(key: str, values: FloatArray, unit: str, places: Sequence[str], of: S
 
 _FINDERS: dict[str, Callable[[Result], Iterator[Found]]] = {
     RUN: _of_run,
-    **dict.fromkeys((STATIC, "map", "duty"), _of_table),
+    **dict.fromkeys((EQUILIBRIUM, "operating_map", "duty"), _of_table),
 }
 """Kind of result -> what finds its key numbers."""

@@ -8,7 +8,7 @@ from beltdyn.model import Drive
 from beltdyn.results.cycles import Window, mean_window
 from beltdyn.results.mechanics import rim_speeds
 from beltdyn.results.schema import Recorded, names
-from beltdyn.results.slip_margin import capstan_margin
+from beltdyn.results.slip_safety import slip_safety_of_states
 from beltdyn.results.slipping import slip_parts
 
 
@@ -43,8 +43,8 @@ class PulleySummary:
         Sliding speed of the whole arc of this pulley, m/s along the belt; zero while part of it creeps.
     sliding_arc : float
         Angle over which friction is fully used, rad.
-    margin : float
-        Capstan margin: factor on all loads of the drive at gross slip of this pulley, if the others hold; NaN without
+    slip_safety : float
+        Factor on all loads of the drive at gross slip of this pulley, if the others hold; NaN without
         load.
     wrap_angle : float
         Wrap angle, rad.
@@ -70,7 +70,7 @@ class PulleySummary:
     sliding: float
     sliding_speed: float
     sliding_arc: float
-    margin: float
+    slip_safety: float
     wrap_angle: float
     hub_load: float
 
@@ -154,7 +154,7 @@ def pulley_means(recorded: Recorded, drive: Drive, window: Window | None = None)
         *parts,
         gross,
         share * wrap_angle,
-        capstan_margin(tension, belt_speed, centers, drive),
+        slip_safety_of_states(tension, belt_speed, centers, drive),
         wrap_angle,
         np.hypot(hub_force[:, 0], hub_force[:, 1]),
     )

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 import h5py
 import numpy as np
 
-from beltdyn.analyses import RUN, STATIC
+from beltdyn.analyses import EQUILIBRIUM, RUN
 from beltdyn.errors import ModelError
 from beltdyn.model import ERROR_LIMITS, Drive, layer_lengths
 from beltdyn.results.atomic import stamp, unreadable
@@ -59,7 +59,7 @@ class StaticResult(Result):
     --------
     >>> rest = bd.equilibrium(drive)
     >>> rest.kind, rest.dataset.tension.attrs["units"]
-    ('static', 'N')
+    ('equilibrium', 'N')
     """
 
     def fields_at(self, time: float | None = None) -> "xr.Dataset":
@@ -96,7 +96,7 @@ def static_result(run: "Run") -> StaticResult:
         for name, variable in COORDINATES.items()
         if name in instant.coords and used.issuperset(variable.dims)
     }
-    result = build_result(STATIC, run.drive, variables, coordinates, run.warnings)
+    result = build_result(EQUILIBRIUM, run.drive, variables, coordinates, run.warnings)
     names = ("title", "drive_as_given", *MESH, *map(mesh_error_attribute, ERROR_LIMITS))
     kept = {name: run.dataset.attrs[name] for name in names if name in run.dataset.attrs}
     return StaticResult(result.dataset.assign_attrs(kept), run.drive)
@@ -332,7 +332,7 @@ def open_result(path: Path | str) -> Result:
     try:
         kind = kind_of(dataset)
         if kind != RUN:
-            return (StaticResult if kind == STATIC else Result)(dataset, drive_of(dataset, path), path)
+            return (StaticResult if kind == EQUILIBRIUM else Result)(dataset, drive_of(dataset, path), path)
     except ModelError:
         dataset.close()
         raise

@@ -36,7 +36,7 @@ _PULLEYS = (
     "regularisation",
     "sliding",
     "sliding_arc",
-    "capstan_margin",
+    "slip_safety",
     "tension_ratio",
     "hub_load",
     "hub_direction",
@@ -63,7 +63,7 @@ _PULLEY_SUMMARY = (
     "sliding [1]",
     "sliding speed [m/s]",
     "sliding arc [rad]",
-    "capstan margin [1]",
+    "slip safety [1]",
     "wrap angle [rad]",
     "hub load [N]",
 )
@@ -231,7 +231,7 @@ def _with_derived(run: Run) -> "xr.Dataset":
     hub = derived.hub_loads(run)[["hub_load", "hub_direction"]]
     parts = (derived.slips(run), derived.sliding_arcs(run), derived.pulley_powers(run), hub)
     named = {
-        "capstan_margin": derived.capstan_margins(run),
+        "slip_safety": derived.slip_safety(run),
         "tension_ratio": derived.tension_ratios(run),
     }
     return run.dataset.assign({name: part[name] for part in parts for name in part.data_vars} | named)

@@ -119,7 +119,7 @@ def result_html(result: Result) -> str:
         .render(
             drive=result.drive,
             picture=picture(result.drive),
-            kind="steady running" if runs_steadily(result.dataset) else result.kind,
+            kind="steady running" if runs_steadily(result.dataset) else result.kind.replace("_", " "),
             status=result.status,
             sheet=sheet(result).parts,
             warnings=result.warnings,

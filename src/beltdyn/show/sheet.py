@@ -136,7 +136,7 @@ _COMPARED_UNITS = {**SHOWN_UNITS, "m": ("mm", 1e3), "1": ("%", 100.0)}
 """SI unit -> the one that is shown, and the factor."""
 _OF_PARTS = ("rad/s", "N", "N/m")
 
-_LARGEST_MARGIN = 100.0
+_LARGEST_SAFETY = 100.0
 _LEAST_SHARE = 0.01
 """Share of the power input from which a shaft is named."""
 _NOTHING = 1e-9
@@ -201,10 +201,10 @@ def _pulleys(title: str, summary: Summary) -> Table:
         (_share(one.elastic_creep) for one in pulleys),
         (f"{math.degrees(one.wrap_angle):.1f}°" for one in pulleys),
         (f"{math.degrees(one.sliding_arc):.1f}°" for one in pulleys),
-        (_margin(one.margin) for one in pulleys),
+        (_safety(one.slip_safety) for one in pulleys),
         aligned([one.hub_load for one in pulleys]),
     )
-    return Table(title, (*headings, "capstan\nmargin", "hub load\nN"), tuple(zip(*columns, strict=True)))
+    return Table(title, (*headings, "slip\nsafety", "hub load\nN"), tuple(zip(*columns, strict=True)))
 
 
 def _window(run: Run, summary: Summary) -> str:
@@ -223,11 +223,11 @@ def _share(part: float) -> str:
     return "–" if math.isnan(part) else f"{part:z.3%}"
 
 
-def _margin(margin: float) -> str:
-    """The capstan margin; a dash without load."""
-    if math.isnan(margin):
+def _safety(safety: float) -> str:
+    """The slip safety; a dash without load."""
+    if math.isnan(safety):
         return "–"
-    return f"{margin:.3g}" if margin < _LARGEST_MARGIN else f"> {_LARGEST_MARGIN:.0f}"
+    return f"{safety:.3g}" if safety < _LARGEST_SAFETY else f"> {_LARGEST_SAFETY:.0f}"
 
 
 def _spans(summary: Summary) -> Iterable[tuple[str, ...]]:

@@ -110,7 +110,7 @@ def refine(search: SteadySearch, rule: MeshRule, tolerance: float) -> tuple[dict
             raise ConvergenceError(
                 f"steady running was found with {before.system.nodes} elements but on no finer mesh, so its "
                 "errors are unknown. Give the number of elements, or simulate the drive over time with "
-                "`beltdyn run`."
+                "`beltdyn simulate`."
             )
         rule, after = finer, _solution(search)
         errors = _differences(before, after)

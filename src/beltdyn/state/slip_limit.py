@@ -69,7 +69,7 @@ def slip_limit(drive: Drive, system: System, asked: System, passed: Sequence[Pas
     if slip <= GROSS and used[worst] < _FULL:
         return (
             f"the search ends at {last.setting.load:.1%} of the loads, where `{drive.pulleys[worst].name}` uses "
-            f"{used[worst]:.0%} of its friction. Simulate the drive over time with `beltdyn run`."
+            f"{used[worst]:.0%} of its friction. Simulate the drive over time with `beltdyn simulate`."
         )
     torque = abs(float(torques[worst]))
     wanted = abs(_asked_of(drive, asked, last, slips[-1], worst))

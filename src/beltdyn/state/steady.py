@@ -317,19 +317,19 @@ def _as_run(drive: Drive, instant: float, found: _Found) -> Run:
 def require_steady(drive: Drive) -> None:
     """Make sure that a drive may run steadily."""
     if drive.ends:
-        raise ModelError("an open belt has no steady running. Simulate it with `beltdyn run`.")
+        raise ModelError("an open belt has no steady running. Simulate it with `beltdyn simulate`.")
     shaped = [pulley.name for pulley in drive.pulleys if pulley.surface and pulley.surface.kind != "circle"]
     if shaped:
         raise ModelError(
             f"{', '.join(shaped)} is not a smooth circle, so there is no steady running. Simulate the drive "
-            "with `beltdyn run`, or remove `surface`."
+            "with `beltdyn simulate`, or remove `surface`."
         )
     other = [(pulley.name, load.kind) for pulley in drive.pulleys for load in pulley.load if not load.has_mean]
     if other:
         raise ModelError(
             f'{other[0][0]} has a load of kind "{other[0][1]}", whose mean over the shaft angle is unknown; '
             "steady running needs it. Give the mean as a table over speed, or the set speed of a controlled "
-            "motor as `speed`, or simulate the drive with `beltdyn run`."
+            "motor as `speed`, or simulate the drive with `beltdyn simulate`."
         )
 
 

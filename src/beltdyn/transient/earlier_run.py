@@ -106,8 +106,9 @@ def _opened(start: EarlierRun) -> Iterator[Run]:
     if is_checkpoint(Path(start.file)):
         results = Path(start.file).with_suffix(".nc")
         raise ModelError(
-            f"simulation.start: {start.file} is a checkpoint, which can only resume its own run: beltdyn run --resume "
-            f"{results}. To start another run from a state of that one, give its result file, {results}."
+            f"simulation.start: {start.file} is a checkpoint, which can only resume its own run: "
+            f"beltdyn simulate --resume {results}. "
+            f"To start another run from a state of that one, give its result file, {results}."
         )
     try:
         run = open_run(Path(start.file))

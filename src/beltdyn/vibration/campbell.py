@@ -215,7 +215,7 @@ class CampbellDiagram:
                 yield (
                     f"mode {number + 1} is unstable at {grows.size} of {len(self._speeds)} speeds, from "
                     f"{first:.4g} to {last:.4g} rpm, by up to {rate:.3g} 1/s: the drive does not remain in "
-                    "steady running there. Add damping, or simulate it over time with `beltdyn run`."
+                    "steady running there. Add damping, or simulate it over time with `beltdyn simulate`."
                 )
 
     def _doubtful(self) -> Iterator[str]:

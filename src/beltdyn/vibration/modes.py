@@ -194,7 +194,7 @@ def _warnings(numbers: IntArray, values: ComplexArray) -> list[str]:
     named = ", ".join(f"{number} ({rate:.3g} 1/s)" for number, rate in growing)
     return [
         f"unstable modes: {named}. The drive does not remain in this state. Add damping, or simulate it over "
-        "time with `beltdyn run`."
+        "time with `beltdyn simulate`."
     ]
 
 

@@ -23,7 +23,7 @@ import numpy as np
 from beltdyn.arrays import ComplexArray, FloatArray
 from beltdyn.model import Drive
 from beltdyn.results.mechanics import across
-from beltdyn.results.slip_margin import friction_used
+from beltdyn.results.slip_safety import friction_used
 
 RIPPLE_ERROR = 0.4
 """Error of amplitudes over q^3."""

@@ -134,7 +134,7 @@ def about_rest(drive: Drive) -> SmallMotions:
     The hysteresis of the belt is left out: its stress has no tangent there.
     """
     if drive.ends:
-        raise ModelError("the belt is open, but modes need a closed belt. Simulate the drive with `beltdyn run`.")
+        raise ModelError("the belt is open, but modes need a closed belt. Simulate the drive with `beltdyn simulate`.")
     return about_standing(bring_to_stand(drive))
 
 

@@ -8,11 +8,20 @@ from beltdyn.errors import ModelError
 
 def test_analyses_are_offered_with_their_options() -> None:
     names = offered()
-    assert {"run", "static", "steady", "traction", "modes", "campbell", "duty", "optimize"} <= names.keys()
+    assert {
+        "simulate",
+        "equilibrium",
+        "steady_state",
+        "traction",
+        "modes",
+        "campbell",
+        "duty",
+        "optimize",
+    } <= names.keys()
     options = {one.name: one for one in options_of("campbell")}
     assert options["speed"].required
     assert options["points"] == Option("points", int, "40", False, "Number of speeds of a range.")
-    assert [(one.name, one.kind) for one in options_of("static")] == [("force_tolerance", float)]
+    assert [(one.name, one.kind) for one in options_of("equilibrium")] == [("force_tolerance", float)]
     assert {"from_", "to"} <= {one.name for one in options_of("sweep") if one.required}
 
 
@@ -25,9 +34,9 @@ def test_options_are_read_as_what_they_are() -> None:
 
 
 def test_numbers_may_have_their_unit() -> None:
-    at = next(one for one in options_of("steady") if one.name == "at")
+    at = next(one for one in options_of("steady_state") if one.name == "at")
     assert (at.read("0.5"), at.read("500 ms")) == (0.5, "500 ms")
-    tolerance = next(one for one in options_of("steady") if one.name == "force_tolerance")
+    tolerance = next(one for one in options_of("steady_state") if one.name == "force_tolerance")
     with pytest.raises(ModelError, match=r"force_tolerance = 1 % must be a number"):
         tolerance.read("1 %")
 

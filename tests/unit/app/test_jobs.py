@@ -33,11 +33,11 @@ def test_time_that_is_left_is_told_where_an_analysis_does_not_know_its_pace(tmp_
 
 
 def test_a_result_and_its_report_are_written(drive_text: str, tmp_path: Path) -> None:
-    outcome = ended(Job("static", drive_text, tmp_path, tmp_path / "drive-static.nc", {}))
+    outcome = ended(Job("equilibrium", drive_text, tmp_path, tmp_path / "drive-equilibrium.nc", {}))
     assert (outcome.status, outcome.error) == ("completed", "")
     assert outcome.result is not None
     assert outcome.report is not None
-    assert open_result(outcome.result).kind == "static"
+    assert open_result(outcome.result).kind == "equilibrium"
     assert outcome.report.read_text(encoding="utf-8").startswith("<!DOCTYPE html>")
     assert outcome.parts
 
@@ -49,7 +49,7 @@ def test_what_fails_says_why(drive_text: str, tmp_path: Path) -> None:
 
 
 def test_a_run_that_is_cancelled_keeps_what_was_computed(drive_text: str, tmp_path: Path) -> None:
-    job = Job("run", drive_text.replace("duration = 1.0", "duration = 500.0"), tmp_path, tmp_path / "drive.nc", {})
+    job = Job("simulate", drive_text.replace("duration = 1.0", "duration = 500.0"), tmp_path, tmp_path / "drive.nc", {})
     while job.outcome is None and job.step.phase != "integrating":
         time.sleep(0.05)
         job.poll()
@@ -62,7 +62,7 @@ def test_a_run_that_is_cancelled_keeps_what_was_computed(drive_text: str, tmp_pa
 
 
 def test_a_process_that_is_killed_is_told(drive_text: str, tmp_path: Path) -> None:
-    job = Job("static", drive_text, tmp_path, tmp_path / "x.nc", {})
+    job = Job("equilibrium", drive_text, tmp_path, tmp_path / "x.nc", {})
     job._process.kill()
     outcome = ended(job)
     assert outcome.status == "failed"
@@ -70,7 +70,7 @@ def test_a_process_that_is_killed_is_told(drive_text: str, tmp_path: Path) -> No
 
 
 def test_closing_ends_the_process(drive_text: str, tmp_path: Path) -> None:
-    job = Job("static", drive_text, tmp_path, tmp_path / "x.nc", {})
+    job = Job("equilibrium", drive_text, tmp_path, tmp_path / "x.nc", {})
     job.close()
     assert not job._process.is_alive()
     assert job.outcome is not None

@@ -15,12 +15,12 @@ def test_missing_file(refuse: Refuse, tmp_path: Path) -> None:
 
 
 def test_folder(refuse: Refuse, tmp_path: Path) -> None:
-    assert "cannot be read: is a directory" in refuse(["run", str(tmp_path)])
+    assert "cannot be read: is a directory" in refuse(["simulate", str(tmp_path)])
 
 
 def test_binary_file(refuse: Refuse, tmp_path: Path) -> None:
     (tmp_path / "drive.toml").write_bytes(b"\x89HDF\r\n\x1a\n")
-    assert "is not UTF-8 text" in refuse(["static", str(tmp_path / "drive.toml")])
+    assert "is not UTF-8 text" in refuse(["equilibrium", str(tmp_path / "drive.toml")])
 
 
 def test_empty_file(refuse: Refuse, tmp_path: Path) -> None:
@@ -35,7 +35,7 @@ def test_empty_file(refuse: Refuse, tmp_path: Path) -> None:
 
 def test_results_over_the_drive_file(refuse: Refuse, drive_file: Path) -> None:
     before = drive_file.read_bytes()
-    assert "would overwrite it" in refuse(["run", str(drive_file), "-o", str(drive_file)])
+    assert "would overwrite it" in refuse(["simulate", str(drive_file), "-o", str(drive_file)])
     assert drive_file.read_bytes() == before
 
 
@@ -59,11 +59,11 @@ def test_plot_of_no_result(refuse: Refuse, drive_file: Path) -> None:
 
 
 def test_unknown_command(refuse: Refuse) -> None:
-    assert 'Did you mean "run"?' in refuse(["rum"])
+    assert 'Did you mean "simulate"?' in refuse(["simulat"])
 
 
 def test_unknown_option(refuse: Refuse, drive_file: Path) -> None:
-    assert "--outptu" in refuse(["run", str(drive_file), "--outptu", "x.nc"])
+    assert "--outptu" in refuse(["simulate", str(drive_file), "--outptu", "x.nc"])
 
 
 def test_no_file(refuse: Refuse) -> None:

@@ -400,7 +400,7 @@ def test_message(case: Case, drive_text: str, folder: Path, refuse: Refuse) -> N
     ("words", "said"),
     [
         (["demo", "folder", "layout"], 'beltdyn demo takes no argument "layout". See beltdyn demo --help.'),
-        (["run", "--nosuch", "a.toml"], "--nosuch"),
+        (["simulate", "--nosuch", "a.toml"], "--nosuch"),
         (["check"], "FILE requires an argument"),
         (["simulate"], 'Unknown command "simulate"'),
     ],

@@ -1,4 +1,4 @@
-"""`beltdyn run` of several drives: what it refuses beforehand, and what it says of every ending."""
+"""`beltdyn simulate` of several drives: what it refuses beforehand, and what it says of every ending."""
 
 from collections.abc import Callable, Mapping
 from dataclasses import replace
@@ -40,7 +40,7 @@ def simulated(monkeypatch: pytest.MonkeyPatch) -> Callable[..., list[tuple[list[
         def analyse_all(
             analysis: Analysis, drives: Mapping[Path, Drive], _: object, jobs: int | None, force: bool
         ) -> dict[Path, Ending]:
-            assert analysis.name == "run"
+            assert analysis.name == "simulate"
             asked.append((list(drives), jobs))
             return dict(zip(drives, endings, strict=True))
 
@@ -55,7 +55,7 @@ def done(summary: Summary) -> Ending:
 
 
 def words(files: list[Path], *more: str) -> list[str]:
-    return ["run", *map(str, files), *more]
+    return ["simulate", *map(str, files), *more]
 
 
 def test_every_drive_gets_a_line_and_a_file_beside_it(

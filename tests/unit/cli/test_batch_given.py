@@ -25,7 +25,7 @@ def files(run: Run, drive_text: str, tmp_path: Path) -> list[Path]:
 def test_a_run_stands_for_its_drive_where_an_analysis_takes_it(files: list[Path], run: Run) -> None:
     modes = ANALYSES["modes"]
     assert takes_runs(modes)
-    assert not takes_runs(ANALYSES["steady"])
+    assert not takes_runs(ANALYSES["steady_state"])
     found = read_given(modes, files[0])
     assert isinstance(found, Run)
     assert found.drive == run.drive

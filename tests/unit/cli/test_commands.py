@@ -30,7 +30,7 @@ def test_version(run_main: RunMain) -> None:
 def test_help_names_every_command(run_main: RunMain) -> None:
     code, output, _ = run_main(["--help"])
     assert code == 0
-    for command in ("new", "check", "run", "sweep", "static", "plot", "demo", "catalogue", "schema"):
+    for command in ("new", "check", "simulate", "sweep", "equilibrium", "plot", "demo", "catalogue", "schema"):
         assert f" {command} " in output
 
 
@@ -60,7 +60,7 @@ def test_a_run_imports_nothing_that_it_can_do_without(drive_file: Path, drive_te
     drive_file.write_text(drive_text.replace("duration = 1.0", "duration = 0.001"), encoding="utf-8")
     script = (
         "import sys\nfrom beltdyn.cli import main\n"
-        f"try: main(['run', {str(drive_file)!r}])\nexcept SystemExit as stop: assert stop.code == 0\n"
+        f"try: main(['simulate', {str(drive_file)!r}])\nexcept SystemExit as stop: assert stop.code == 0\n"
         "print(*{'xarray', 'pandas', 'matplotlib', 'pint', 'scipy.integrate', 'jinja2'} & set(sys.modules))"
     )
     process = subprocess.run([sys.executable, "-c", script], capture_output=True, text=True, check=True)
@@ -176,7 +176,7 @@ def test_schema_is_json(run_main: RunMain) -> None:
 
 
 def put_in_place_of_simulate(monkeypatch: pytest.MonkeyPatch, stand_in: Callable[..., Run]) -> None:
-    """Let `beltdyn run` call something else; its options, which are made of the signature once, stay as they are."""
+    """Let `beltdyn simulate` call something else, with the options of `simulate`."""
     monkeypatch.setattr(sys.modules["beltdyn.transient.simulate"], "simulate", wraps(simulate)(stand_in))
 
 
@@ -201,7 +201,7 @@ def test_a_simulation_that_cannot_go_on(
         raise ConvergenceError("no convergence at t = 0.1 s. Lower simulation.max_step.")
 
     put_in_place_of_simulate(monkeypatch, fail)
-    code, output, message = run_main(["run", str(drive_file)])
+    code, output, message = run_main(["simulate", str(drive_file)])
     assert code == 3
     assert (f"The results computed so far are in {drive_file.with_suffix('.nc')}" in output) == bool(outputs)
     assert ("No results were kept." in output) != bool(outputs)
@@ -219,7 +219,7 @@ def test_an_interrupted_simulation(
         return run
 
     put_in_place_of_simulate(monkeypatch, interrupted)
-    code, output, _ = run_main(["run", str(drive_file), "-o", str(out)])
+    code, output, _ = run_main(["simulate", str(drive_file), "-o", str(out)])
     assert code == 130
     assert "Interrupted. The results computed so far are kept." in output
     assert f"Results: {out}" in output
@@ -242,8 +242,8 @@ def test_a_run_goes_on_by_its_result_file(drive_file: Path, run_main: RunMain) -
     drive_file.write_text(text, encoding="utf-8")
     path = drive_file.with_suffix(".nc")
     simulate(load(drive_file), path, stop, checkpoint=1e-9).dataset.close()
-    assert run_main(["run", "--resume", str(path)])[0] == 0
+    assert run_main(["simulate", "--resume", str(path)])[0] == 0
     assert open_run(path).outputs == 11
-    code, _, error = run_main(["run", "--resume", str(path)])
+    code, _, error = run_main(["simulate", "--resume", str(path)])
     assert code == 2
     assert ".checkpoint does not exist" in error

@@ -29,7 +29,7 @@ def said(monkeypatch: pytest.MonkeyPatch) -> Callable[[str, list[str]], tuple[in
 
 
 @pytest.mark.parametrize("encoding", ["ascii", "latin-1", "cp1252", "cp437", "utf-8"])
-@pytest.mark.parametrize("words", [["--help"], ["run", "--help"], ["check", "DRIVE"], ["check", "missing.toml"]])
+@pytest.mark.parametrize("words", [["--help"], ["simulate", "--help"], ["check", "DRIVE"], ["check", "missing.toml"]])
 def test_any_terminal_is_written_to(
     said: Callable[[str, list[str]], tuple[int, bytes]], drive_file: Path, encoding: str, words: list[str]
 ) -> None:

@@ -19,7 +19,7 @@ def test_example_is_written_as_it_is(name: str, tmp_path: Path, run_main: RunMai
     file = tmp_path / "mine.toml"
     code, output, _ = run_main(["new", str(file), "--example", name])
     assert code == 0
-    assert f"beltdyn run {file}" in output
+    assert f"beltdyn simulate {file}" in output
     assert file.read_bytes() == files("beltdyn").joinpath("examples", f"{name}.toml").read_bytes()
     load(file)
 

@@ -40,9 +40,9 @@ def unharmed(folder: Path) -> bool:
 def test_runs_sweeps_and_layouts(refuse: Refuse, drive_file: Path, mine: Path) -> None:
     drive = str(drive_file)
     speeds = ["--pulley", "driver", "--from", "10", "--to", "20"]
-    for words in (["run", drive, "-o", str(mine)], ["sweep", drive, *speeds, "-o", str(mine)]):
+    for words in (["simulate", drive, "-o", str(mine)], ["sweep", drive, *speeds, "-o", str(mine)]):
         assert "mine.csv already exists and was not written by beltdyn" in refuse(words)
-    assert "pulleys.csv already exists" in refuse(["run", drive, "--csv"])
+    assert "pulleys.csv already exists" in refuse(["simulate", drive, "--csv"])
     slip = str(mine.with_name("figures") / "slip.png")
     assert "slip.png already exists" in refuse(["check", drive, "--figure", slip])
     assert unharmed(mine.parent)
@@ -53,7 +53,7 @@ def test_several_runs(refuse: Refuse, drive_file: Path, mine: Path) -> None:
     other = drive_file.with_name("other.toml")
     other.write_text(demo_text(), encoding="utf-8")
     drive_file.with_suffix(".nc").write_text(MINE, encoding="utf-8")
-    assert f"{drive_file.stem}.nc already exists" in refuse(["run", str(drive_file), str(other)])
+    assert f"{drive_file.stem}.nc already exists" in refuse(["simulate", str(drive_file), str(other)])
     assert unharmed(mine.parent)
 
 
@@ -72,7 +72,7 @@ def test_forced_layout(run_main: RunMain, drive_file: Path, mine: Path) -> None:
 
 def test_forced_results_leave_the_drive_file(refuse: Refuse, drive_file: Path) -> None:
     before = drive_file.read_bytes()
-    assert "would overwrite it" in refuse(["run", str(drive_file), "-o", str(drive_file), "--force"])
+    assert "would overwrite it" in refuse(["simulate", str(drive_file), "-o", str(drive_file), "--force"])
     assert drive_file.read_bytes() == before
 
 
@@ -80,7 +80,7 @@ def test_second_run_of_the_same_file(
     run_main: RunMain, drive_file: Path, layout: Layout, attributes: dict[str, str]
 ) -> None:
     recorder = FileRecorder(drive_file.with_suffix(".nc"), layout, attributes)
-    code, _, message = run_main(["run", str(drive_file)])
+    code, _, message = run_main(["simulate", str(drive_file)])
     assert code == 2
     assert "is being written by another run" in message
     recorder.close("completed", {})
@@ -88,7 +88,7 @@ def test_second_run_of_the_same_file(
 
 @pytest.mark.skipif(sys.platform == "win32", reason="devices have no such names there")
 def test_devices(refuse: Refuse, drive_file: Path) -> None:
-    assert "it is a device or a pipe, not a file" in refuse(["run", str(drive_file), "-o", "/dev/null", "--force"])
+    assert "it is a device or a pipe, not a file" in refuse(["simulate", str(drive_file), "-o", "/dev/null", "--force"])
 
 
 WRONG_TABLES = {
@@ -103,7 +103,7 @@ WRONG_TABLES = {
 """Tables and studies with a name that is misspelt."""
 WRONG_COMMANDS = (
     ["study", "study.toml", "-j", "1"],
-    ["map", "DRIVE", "--pulley", "nobody", "--speed", "100..200 rpm"],
+    ["operating-map", "DRIVE", "--pulley", "nobody", "--speed", "100..200 rpm"],
     ["duty", "DRIVE", "--table", "duty.csv"],
     ["traction", "DRIVE", "--pulley", "nobody", "--slip", "0.1"],
     ["campbell", "DRIVE", "--pulley", "nobody", "--speed", "100..200 rpm"],

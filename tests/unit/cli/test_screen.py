@@ -124,7 +124,12 @@ def test_seven_pulleys_fit_one_screen(
     """100 columns and 45 lines, the warnings of each among them."""
     summary = summarize(run)
     pulley = replace(
-        summary.pulleys[1], name="power steering pump", speed=-1234.567, shaft_torque=-123.4, power=-12345.6, margin=0.5
+        summary.pulleys[1],
+        name="power steering pump",
+        speed=-1234.567,
+        shaft_torque=-123.4,
+        power=-12345.6,
+        slip_safety=0.5,
     )
     span = replace(summary.spans[0], name="power steering pump-air conditioning", tension=1234.5)
     full = replace(summary, pulleys=(pulley,) * 7, spans=(span,) * 7)
@@ -201,13 +206,13 @@ def end_as(monkeypatch: pytest.MonkeyPatch, run: Run) -> None:
         run.save(output)
         return run
 
-    app["run"].default_command = None  # it is made of the function
+    app["simulate"].default_command = None  # it is made of the function
     monkeypatch.setattr(sys.modules["beltdyn.transient.simulate"], "simulate", simulate)
 
 
 def test_run_with_tables(run_main: RunMain, run: Run, drive_file: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     end_as(monkeypatch, run)
-    code, output, _ = run_main(["run", str(drive_file), "--csv"])
+    code, output, _ = run_main(["simulate", str(drive_file), "--csv"])
     assert code == 0
     assert f"Results: {drive_file.with_suffix('.nc')}" in output
     tables = drive_file.with_name("drive-tables")
@@ -245,7 +250,7 @@ def test_strict_run(
 ) -> None:
     run.__dict__["warnings"] = warnings  # where a cached property keeps its value
     end_as(monkeypatch, run)
-    found, output, message = run_main(["run", str(drive_file), *words])
+    found, output, message = run_main(["simulate", str(drive_file), *words])
     assert found == code
     assert message.count("error: ") == (1 if error else 0)
     assert error in message

@@ -73,14 +73,14 @@ def test_a_run_with_a_report(
         calls.append(run.save(output))
         return run
 
-    app["run"].default_command = None  # it is made of the function
+    app["simulate"].default_command = None  # it is made of the function
     monkeypatch.setattr(importlib.import_module("beltdyn.transient.simulate"), "simulate", simulate)
     page = drive_file.with_suffix(".html")
     page.write_text("<p>Mine.</p>", encoding="utf-8")
-    assert f"{page} already exists" in refuse(["run", str(drive_file), "--report"])
+    assert f"{page} already exists" in refuse(["simulate", str(drive_file), "--report"])
     assert not calls  # before anything is computed
     page.unlink()
-    code, output, _ = run_main(["run", str(drive_file), "--report"])
+    code, output, _ = run_main(["simulate", str(drive_file), "--report"])
     assert code == 0
     assert f"Report: {page}" in output
     assert page.is_file()

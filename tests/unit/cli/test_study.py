@@ -8,7 +8,7 @@ from beltdyn.cli import main
 
 STUDY = """
 drive = "drive.toml"
-analysis = "static"
+analysis = "equilibrium"
 results = ["hub_load"]
 
 [[number]]

@@ -15,7 +15,7 @@ from beltdyn.model import Drive
 def tiny_work(drive: Drive, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Callable[..., PointWork]:
     """Makes the work of `tiny_analysis`, which processes find on their path, with its options."""
     monkeypatch.syspath_prepend(str(Path(__file__).parent))
-    analysis = Analysis("tiny", "tiny_analysis:tiny", "Give the width.")
+    analysis = Analysis("tiny_analysis:tiny", "Give the width.")
 
     def make(**options: Any) -> PointWork:
         return PointWork(drive, analysis, {"folder": str(tmp_path)} | options, ("width",), None)

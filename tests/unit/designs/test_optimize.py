@@ -42,7 +42,7 @@ def found(loaded: Drive) -> Result:
 
 
 def test_least_hub_load_for_a_slip_safety(found: Result) -> None:
-    """Its belt slides at the safety times the load: to 5 % as margins promise, and 1 % since it creeps by 25 %."""
+    """Its belt slides at the safety times the load: to 5 % as safeties promise, and 1 % since it creeps by 25 %."""
     best = found.dataset.sel(point="load 1").best_result
     safeties = best.sel(result=["slip_safety[driver]", "slip_safety[driven]"])
     assert float(safeties.min()) == pytest.approx(SAFETY, rel=2e-4)

@@ -80,7 +80,7 @@ def test_against_differences_over_larger_steps(path: str) -> None:
     def at(part: float) -> FloatArray:
         summary = summarize(steady_state(drive.with_({path: value * (1.0 + part)}), start=run))
         driver, driven = summary.pulleys
-        return np.array([summary.spans[0].tension, driver.hub_load, driven.slip, driven.margin])
+        return np.array([summary.spans[0].tension, driver.hub_load, driven.slip, driven.slip_safety])
 
     wide, narrow = ((at(part) - at(-part)) / (2.0 * part * value) for part in (2e-3, 1e-3))
     expected = (4.0 * narrow - wide) / 3.0

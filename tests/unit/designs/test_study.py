@@ -23,7 +23,7 @@ from beltdyn.state.equilibrium import equilibrium
 
 STUDY = """
 drive = "drive.toml"
-analysis = "static"
+analysis = "equilibrium"
 results = ["hub_load", "tension"]
 
 [[number]]
@@ -238,7 +238,7 @@ def test_files_of_points_are_kept_where_asked_for(study_file: Path, tmp_path: Pa
     ],
 )
 def test_what_does_not_fit_is_told(drive: Drive, changes: dict[str, object], said: str) -> None:
-    given = {"analysis": "static", "number": [{"path": "belt.width", "values": [0.01]}]} | changes
+    given = {"analysis": "equilibrium", "number": [{"path": "belt.width", "values": [0.01]}]} | changes
     with pytest.raises(ModelError, match=said):
         study(ParameterStudy(**given), drive, jobs=1)
 
@@ -259,7 +259,7 @@ def test_modes_and_steady_running_are_studied_alike(drive: Drive) -> None:
         "frequency[2]",
         "frequency[3]",
     ]
-    steady = study(ParameterStudy(number=numbers, analysis="steady", results=["hub_load[driven]"]), drive, jobs=1)
+    steady = study(ParameterStudy(number=numbers, analysis="steady_state", results=["hub_load[driven]"]), drive, jobs=1)
     assert steady.dataset["hub_load[driven]"].values[1] == pytest.approx(
         2.0 * steady.dataset["hub_load[driven]"].values[0],
         rel=0.1,  # but for the centrifugal tension

@@ -149,10 +149,10 @@ def test_a_study_on_a_cluster_outlives_thirty_kills(
     distributed = pytest.importorskip("distributed")
     dask = pytest.importorskip("dask")
     work = tiny_work(seconds=0.1)
-    monkeypatch.setitem(ANALYSES, "static", work.analysis)
+    monkeypatch.setitem(ANALYSES, "equilibrium", work.analysis)
     widths = np.linspace(0.0131, 0.02, 300).round(7).tolist()
     plan = ParameterStudy(
-        analysis="static",
+        analysis="equilibrium",
         options=dict(work.options),
         number=[{"path": "belt.width", "values": widths}],
         results=["width"],

@@ -77,7 +77,7 @@ def test_rows_of_a_table_are_points(drive: Drive, tmp_path: Path) -> None:
         ([WIDTH, WIDTH], {}, "is given twice"),
         ([], {}, "needs points from a table or from groups"),
         ([WIDTH], {"table": "a.csv"}, "Give one of the two"),
-        ([WIDTH], {"analysis": "stedy"}, 'Did you mean "steady"'),
+        ([WIDTH], {"analysis": "steady_stat"}, 'Did you mean "steady_state"'),
         (
             [{"path": f"pulley[{k}].center[{j}]", "values": "1..2 m", "steps": 90} for k in (1, 2) for j in (1, 2)],
             {},

@@ -24,7 +24,7 @@ def test_a_drive_states_none_by_default(drive: Drive) -> None:
     [
         ({"largest_slip": 1.5}, "largest_slip = 1.5 must be less than 1"),
         ({"largest_hub_load": "3 m"}, 'must be in units of N, not "m"'),
-        ({"least_margin": 0.0}, "least_margin = 0.0 must be greater than 0"),
+        ({"least_slip_safety": 0.0}, "least_slip_safety = 0.0 must be greater than 0"),
         ({"hub_load": 3.0}, 'hub_load is not a known key. Did you mean "largest_hub_load"?'),
         ({"least_tension": 9.0, "largest_tension": 9.0}, "least_tension = 9 N must be below largest_tension = 9 N"),
     ],

@@ -64,7 +64,7 @@ def test_the_worst_of_each_pulley(found: Result) -> None:
 
 def test_file_and_tables(found: Result, tmp_path: Path) -> None:
     saved = open_result(found.save(tmp_path / "map.nc"))
-    assert (saved.kind, saved.status, saved.dataset.attrs["axes"]) == ("map", "completed", "speed load")
+    assert (saved.kind, saved.status, saved.dataset.attrs["axes"]) == ("operating_map", "completed", "speed load")
     tables = write_csv(saved, tmp_path)
     assert [table.name for table in tables] == ["point.csv", "pulley.csv"]
     lines = tables[0].read_text(encoding="utf-8").splitlines()
@@ -125,11 +125,11 @@ def test_bad_input(loaded: Drive) -> None:
 
 def test_the_command(drive_file: Path, capsys: pytest.CaptureFixture[str]) -> None:
     with pytest.raises(SystemExit) as ended:
-        main(["map", str(drive_file), "--speed", "60..120rpm", "--points", "2", "--csv"])
+        main(["operating-map", str(drive_file), "--speed", "60..120rpm", "--points", "2", "--csv"])
     said = capsys.readouterr().out
     assert ended.value.code == 0
     assert all(words in said for words in ("Speed of driver", "120.0", "Largest hub load", "point.csv"))
-    assert bd.open_result(drive_file.with_name("drive-map.nc")).dataset.sizes["speed"] == 2
+    assert bd.open_result(drive_file.with_name("drive-operating-map.nc")).dataset.sizes["speed"] == 2
 
 
 def test_a_torque_over_the_angle_counts_with_its_mean_and_the_map_says_so(loaded: Drive) -> None:

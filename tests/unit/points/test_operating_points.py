@@ -50,7 +50,7 @@ def test_a_point_that_is_far_is_found_by_parts_of_the_way(
 
     monkeypatch.setattr(operating_points, "steady_state", search)
     axes = {"speed": (Variable(("speed",), "rad/s", "Speed"), [FIRST, FIRST + SPAN])}
-    with OperatingPoints("map", drive, axes) as table:
+    with OperatingPoints("operating_map", drive, axes) as table:
         table.each(lambda speed: at_speed(drive, 0, speed), 0.05, stride=np.inf)
     speeds = table.result().dataset.pulley_speed[:, 0]
     np.testing.assert_allclose(speeds, [FIRST, FIRST + SPAN if is_found else np.nan])
@@ -65,7 +65,9 @@ def test_strides_are_no_longer_than_asked_for(monkeypatch: pytest.MonkeyPatch) -
         return steady_state(of, force_tolerance=force_tolerance, start=start)
 
     monkeypatch.setattr(operating_points, "steady_state", search)
-    with OperatingPoints("map", drive, {"speed": (Variable(("speed",), "rad/s", "Speed"), [10.0, 18.0])}) as table:
+    with OperatingPoints(
+        "operating_map", drive, {"speed": (Variable(("speed",), "rad/s", "Speed"), [10.0, 18.0])}
+    ) as table:
         table.each(lambda speed: at_speed(drive, 0, speed), 0.05, stride=3.0)
     np.testing.assert_allclose(asked, [10.0, 13.0, 16.0, 18.0])
 

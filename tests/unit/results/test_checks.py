@@ -242,7 +242,7 @@ def test_belt_that_stretches_beyond_its_measured_curve(turning: Callable[..., Ru
     assert not said(turning(curved, span_tension=np.full((101, 2), 190.0)), "stretch_curve ends")
 
 
-def test_noise_is_no_slip_and_no_margin(make_run: MakeRun, run: Run) -> None:
+def test_noise_is_no_slip_and_no_slip_safety(make_run: MakeRun, run: Run) -> None:
     """A drive at rest, but for rounding: the belt would go as far as it is stretched in a million years."""
     noise = np.random.default_rng(5).normal(scale=1e-16, size=(101, 2))
     still = {"pulley_speed": noise, "pulley_angle": np.cumsum(noise, axis=0), "belt_speed": noise}
@@ -250,7 +250,7 @@ def test_noise_is_no_slip_and_no_margin(make_run: MakeRun, run: Run) -> None:
     still |= {name: np.zeros(101) for name in ("friction_loss", "damping_loss", "driver_work", "torque_work")}
     made = make_run(**still)
     summary = summarize(made)
-    assert all(np.isnan([one.slip, one.elastic_creep, one.margin]).all() for one in summary.pulleys)
+    assert all(np.isnan([one.slip, one.elastic_creep, one.slip_safety]).all() for one in summary.pulleys)
     assert made.warnings == []
 
 

@@ -56,7 +56,7 @@ def test_nothing_is_written_where_one_format_cannot_be(
 def test_a_drive_at_rest_has_tables_and_no_picture_over_time(drive: Drive, tmp_path: Path) -> None:
     rest: Result = equilibrium(drive)
     with pytest.raises(
-        ModelError, match="vtk needs results over time, such as those of `beltdyn run`; these are of static"
+        ModelError, match="vtk needs results over time, such as those of `beltdyn simulate`; these are of equilibrium"
     ):
         export(rest, ["mat", "vtk"], tmp_path / "rest.nc")
     assert list(tmp_path.iterdir()) == []

@@ -10,7 +10,7 @@ import xarray as xr
 from beltdyn.model import Drive
 from beltdyn.results import KeyNumber, Result, Run, key_numbers
 
-LIMITS = {"largest_slip": 0.01, "largest_hub_load": 130.0, "least_margin": 4.0}
+LIMITS = {"largest_slip": 0.01, "largest_hub_load": 130.0, "least_slip_safety": 4.0}
 
 
 def by_key(result: Result) -> dict[str, KeyNumber]:
@@ -28,18 +28,18 @@ def test_a_run_is_judged_where_it_is_worst(make_run: Callable[..., Run]) -> None
     assert found["largest_hub_load"].passes
     assert found["largest_slip"].value == pytest.approx(0.005, rel=1e-3)
     assert found["largest_slip"].where == "driven, mean at the end"
-    assert found["least_margin"].passes is False
+    assert found["least_slip_safety"].passes is False
     assert found["least_tension"].value == run.dataset["span_tension"].values.min()
     assert found["least_tension"].passes is None
 
 
-def test_without_load_there_is_no_margin(make_run: Callable[..., Run]) -> None:
+def test_without_load_there_is_no_slip_safety(make_run: Callable[..., Run]) -> None:
     """Equal tensions at both ends of an arc."""
     run = make_run(span_tension=np.full((101, 2), 45.0))
-    margin = by_key(Run(run.dataset, run.drive.replace(limits=LIMITS)))["least_margin"]
-    assert math.isnan(margin.value)
-    assert margin.passes is None
-    assert margin.name == "least capstan margin"
+    safety = by_key(Run(run.dataset, run.drive.replace(limits=LIMITS)))["least_slip_safety"]
+    assert math.isnan(safety.value)
+    assert safety.passes is None
+    assert safety.name == "least slip safety"
 
 
 def test_operating_points_are_judged_over_all(drive: Drive) -> None:
@@ -50,7 +50,7 @@ def test_operating_points_are_judged_over_all(drive: Drive) -> None:
             "pulley_slip": (("speed", "pulley"), [[0.0, -0.02], [0.0, 0.01]], {"units": "1"}),
         },
         {"speed": ("speed", [10.0, 100.0 * math.pi], {"units": "rad/s"}), "pulley": ["driver", "driven"]},
-        {"kind": "map", "axes": "speed"},
+        {"kind": "operating_map", "axes": "speed"},
     )
     found = by_key(Result(dataset, drive.replace(limits=LIMITS)))
     assert found.keys() == {"largest_hub_load", "largest_slip"}

@@ -150,18 +150,18 @@ def test_pulley_near_gross_slip_is_said(make_run: MakeRun) -> None:
     """Of 10 and 100 N; the friction needed is ln(99.9 / 9.9) / 1.2 pi of the drive's, 61 %."""
     run = make_run(span_tension=np.tile([10.0, 100.0], (101, 1)))
     (warning,) = (text for text in run.warnings if "near gross slip" in text)
-    margin = min(one.margin for one in summarize(run).pulleys)
-    assert 1.2 < margin < 1.4
-    assert warning.startswith("driver and driven are near gross slip: the capstan margin is 1.")
+    safety = min(one.slip_safety for one in summarize(run).pulleys)
+    assert 1.2 < safety < 1.4
+    assert warning.startswith("driver and driven are near gross slip: the slip safety is 1.")
     assert "drops by more than 39%" in warning
     lifted = 0.1036 * 0.975**2 / 55.0
-    raised, lowered = (1.5 / margin - 1.0) * (1.0 - lifted), 1.0 - margin / 1.5
+    raised, lowered = (1.5 / safety - 1.0) * (1.0 - lifted), 1.0 - safety / 1.5
     assert f"the belt by about {math.ceil(100 * raised)}%, reduce the loads by {math.ceil(100 * lowered)}%" in warning
 
 
 @pytest.mark.parametrize("tight", np.linspace(70.0, 80.0, 41).tolist())
 def test_a_remedy_never_asks_for_nothing(make_run: MakeRun, tight: float) -> None:
-    """Also where the margin is a hair below its limit, which then is not said to be below itself."""
+    """Also where the slip safety is a hair below its limit, which then is not said to be below itself."""
     for warning in make_run(span_tension=np.tile([10.0, tight], (101, 1))).warnings:
         assert " 0%" not in warning.split("Raise the tension")[-1]
         assert "is 1.50" not in warning

@@ -23,7 +23,7 @@ def test_means_are_taken_over_whole_elements_where_no_turn_fits(make_run: Callab
     assert [span.tension for span in summary.spans] == pytest.approx([2.0, 4.0], abs=2.0 * 1e-3 / element)
 
 
-def _grashof_margin(drive: Drive, tight: float, slack: float) -> float:
+def _grashof_safety(drive: Drive, tight: float, slack: float) -> float:
     """Load at gross slip over the present one: two equal pulleys at fixed centers, linear stretch, no inertia."""
     friction, radius, span = float(drive.frictions[0]), float(drive.radii[0]), float(drive.path.span_lengths[0])
     adhering = math.pi - math.log(tight / slack) / friction
@@ -43,7 +43,7 @@ def test_pulleys(run: Run) -> None:
     assert driven.hub_load == pytest.approx(90.0)
     assert driven.wrap_angle == pytest.approx(math.pi)
     assert driven.power == pytest.approx(-0.995 * 12.0 * 30.0 * 0.08125)
-    assert driven.margin == pytest.approx(_grashof_margin(run.drive, 60.0, 30.0), rel=0.05)  # without penetration
+    assert driven.slip_safety == pytest.approx(_grashof_safety(run.drive, 60.0, 30.0), rel=0.05)  # without penetration
     assert (driven.sliding, driven.sliding_speed, driven.sliding_arc) == (0.0, 0.0, 0.0)
 
 

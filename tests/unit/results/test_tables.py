@@ -6,7 +6,7 @@ import pytest
 
 from beltdyn.errors import ModelError
 from beltdyn.results import Run, summarize, write_csv
-from beltdyn.results.derived import capstan_margins, mid_span_displacements, slips
+from beltdyn.results.derived import mid_span_displacements, slip_safety, slips
 
 OVER_TIME = ["pulleys.csv", "spans.csv", "energy.csv", "contact.csv"]
 SUMMARIES = ["pulley_summary.csv", "span_summary.csv", "losses.csv"]
@@ -41,7 +41,7 @@ def test_tables_hold_the_results(tmp_path: Path, run: Run) -> None:
 def test_tables_hold_what_is_derived(tmp_path: Path, run: Run) -> None:
     pulleys, spans = (_read(path) for path in write_csv(run, tmp_path)[:2])
     np.testing.assert_allclose(pulleys["slip driven [%]"], slips(run)["slip"][:, 1], rtol=1e-9)
-    np.testing.assert_allclose(pulleys["capstan_margin driver [1]"], capstan_margins(run)[:, 0], rtol=1e-9)
+    np.testing.assert_allclose(pulleys["slip_safety driver [1]"], slip_safety(run)[:, 0], rtol=1e-9)
     np.testing.assert_allclose(pulleys["power_in driver [W]"][-1], 12.0 * 30.0 * 0.08125)
     displacement = mid_span_displacements(run)[:, 0]
     np.testing.assert_allclose(spans["mid_span_displacement driver-driven [m]"], displacement, rtol=1e-9)
@@ -54,7 +54,7 @@ def test_summary_as_tables(tmp_path: Path, run: Run) -> None:
     driven = dict(zip(heading, rows[1], strict=True))
     summary = summarize(run)
     assert float(driven["slip [1]"]) == pytest.approx(0.005)
-    assert float(driven["capstan margin [1]"]) == pytest.approx(summary.pulleys[1].margin)
+    assert float(driven["slip safety [1]"]) == pytest.approx(summary.pulleys[1].slip_safety)
     assert float(driven["hub load [N]"]) == pytest.approx(90.0)
     heading, rows = _rows(tmp_path / "span_summary.csv")
     assert float(dict(zip(heading, rows[1], strict=True))["largest tension [N]"]) == pytest.approx(60.0)

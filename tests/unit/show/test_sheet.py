@@ -18,7 +18,7 @@ def test_numbers_are_facts_and_names_make_tables(drive: Drive) -> None:
             "unnamed": ("other", np.zeros(3), {"units": "N", "long_name": "Of nothing with a name"}),
         },
         {"pulley": ("pulley", ["a", "b"], {"long_name": "Pulley"})},
-        {"kind": "static", "title": "Belt drive at rest"},
+        {"kind": "equilibrium", "title": "Belt drive at rest"},
     )
     found = sheet(Result(dataset, drive))
     assert found.title == "Belt drive at rest"

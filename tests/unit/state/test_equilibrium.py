@@ -30,7 +30,7 @@ def test_it_has_no_time(rest: StaticResult, drive: Drive) -> None:
     sizes = along | {"contact_point": drive.elements * drive.contact.quadrature_points}
     sizes |= {"pulley": 2, "span": 2, "axis": 2, "coordinate": 6}
     assert dict(rest.dataset.sizes) == sizes
-    assert (rest.kind, rest.status) == ("static", "completed")
+    assert (rest.kind, rest.status) == ("equilibrium", "completed")
     assert "energy_closure" not in rest.dataset
 
 
@@ -71,8 +71,8 @@ def test_figures_of_one_instant_show_it(rest: StaticResult, tmp_path: Path) -> N
 @pytest.mark.parametrize(
     ("use", "message"),
     [
-        (summarize, "a summary needs results over time; these are of static"),
-        (plot.speeds, "the figure 'speeds' shows results of run; these are of static. Available figures: conf"),
+        (summarize, "a summary needs results over time; these are of equilibrium"),
+        (plot.speeds, "the figure 'speeds' shows results of run; these are of equilibrium. Available figures: conf"),
     ],
 )
 def test_what_it_lacks_is_said(rest: StaticResult, use: Callable[[Any], object], message: str) -> None:
@@ -81,7 +81,7 @@ def test_what_it_lacks_is_said(rest: StaticResult, use: Callable[[Any], object],
 
 
 def test_it_is_no_run(rest: StaticResult, tmp_path: Path) -> None:
-    with pytest.raises(ModelError, match=r"is the result of another analysis \(static\)"):
+    with pytest.raises(ModelError, match=r"is the result of another analysis \(equilibrium\)"):
         open_run(rest.save(tmp_path / "rest.nc"))
 
 

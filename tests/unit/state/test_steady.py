@@ -239,9 +239,9 @@ def test_the_command_writes_a_result(
 ) -> None:
     (tmp_path / "drive.toml").write_text(bd.dumps(loaded), encoding="utf-8")
     with pytest.raises(SystemExit) as end:
-        main(["steady", str(tmp_path / "drive.toml")])
+        main(["steady-state", str(tmp_path / "drive.toml")])
     assert end.value.code == 0
     assert "driven" in capsys.readouterr().out
-    saved = open_result(tmp_path / "drive-steady.nc")
+    saved = open_result(tmp_path / "drive-steady-state.nc")
     np.testing.assert_allclose(saved.dataset.span_tension, run.dataset.span_tension)
     assert bd.steady_state is steady_state

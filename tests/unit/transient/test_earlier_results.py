@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 import beltdyn as bd
-from beltdyn.analyses import ANALYSES, RUN, STATIC
+from beltdyn.analyses import ANALYSES, EQUILIBRIUM, RUN
 from beltdyn.cosimulation import fmu
 from beltdyn.errors import BeltdynError, ConvergenceError
 from beltdyn.model import CalibrationStudy, Drive, OptimizationStudy, ParameterStudy
@@ -28,9 +28,9 @@ LENGTH: dict[str, Any] = {"path": "belt.length", "least": "1.27 m", "largest": "
 OPTIONS: dict[str, dict[str, Any]] = {
     RUN: {},
     "sweep": {"pulley": "driver", "from_": "10 rpm", "to": "20 rpm", "duration": "5 ms"},
-    STATIC: {},
-    "steady": {},
-    "map": {"speed": "60, 120 rpm"},
+    EQUILIBRIUM: {},
+    "steady_state": {},
+    "operating_map": {"speed": "60, 120 rpm"},
     "traction": {"slip": "0.01 %"},
     "duty": {"table": "duty.csv"},
     "tensioner": {"tolerance": "1 mm", "wear": "2 mm"},
@@ -128,7 +128,7 @@ def test_a_full_disk_leaves_the_earlier_result(
 @pytest.fixture
 def study() -> ParameterStudy:
     return ParameterStudy(
-        analysis="static", number=[{"path": "belt.width", "values": "10, 15 mm"}], results=["hub_load"]
+        analysis="equilibrium", number=[{"path": "belt.width", "values": "10, 15 mm"}], results=["hub_load"]
     )
 
 

@@ -149,7 +149,7 @@ def test_what_is_no_earlier_run(given: Drive, tmp_path: Path) -> None:
 def test_a_checkpoint_goes_on_with_its_own_run_alone(tmp_path: Path) -> None:
     checkpoint = tmp_path / "run.checkpoint"
     checkpoint.write_bytes(b"beltdyn checkpoint 0.1.0\n")
-    with pytest.raises(ModelError, match=r"is a checkpoint, .*beltdyn run --resume .*run\.nc") as error:
+    with pytest.raises(ModelError, match=r"is a checkpoint, .*beltdyn simulate --resume .*run\.nc") as error:
         with_instant(DRIVES["travelling"]().with_({"simulation.start": {"file": str(checkpoint)}}))
     assert "give its result file" in str(error.value)
 
@@ -159,7 +159,7 @@ def test_the_command_tells_what_is_wrong(given: Drive, tmp_path: Path, capsys: p
     path = tmp_path / "drive.toml"
     path.write_text(dumps(given.with_({"simulation.start": {"file": str(tmp_path / "none.nc")}})), encoding="utf-8")
     with pytest.raises(SystemExit) as ended:
-        main(["run", str(path), "-o", str(tmp_path / "out.nc")])
+        main(["simulate", str(path), "-o", str(tmp_path / "out.nc")])
     assert ended.value.code == 2
     assert "simulation.start" in capsys.readouterr().err
     assert not (tmp_path / "out.nc").exists()

@@ -8,7 +8,7 @@ import pytest
 
 from beltdyn.model import Drive
 from beltdyn.results import Run, summarize
-from beltdyn.results.derived import balance, capstan_margins, pulley_powers, slips
+from beltdyn.results.derived import balance, pulley_powers, slip_safety, slips
 from beltdyn.transient.simulate import simulate
 
 Measured = Callable[..., None]
@@ -34,15 +34,15 @@ def slipping(drive: Drive, change: Change, elements: int) -> Run:
     )
 
 
-def test_a_drive_that_slides_through_has_the_margin_of_a_capstan(
+def test_a_drive_that_slides_through_has_the_slip_safety_of_a_capstan(
     drive: Drive, change: Change, measured: Measured
 ) -> None:
-    """The margin, from tensions, says 1 when the whole arc slides, which is seen from slip velocities.
+    """The slip safety, from tensions, says 1 when the whole arc slides, which is seen from slip velocities.
 
     It counts the angle between the spans: within 0.5 % on both meshes.
     """
     coarse, fine = slipping(drive, change, 40), slipping(drive, change, 80)
-    errors = [float(np.abs(capstan_margins(run, start=0.25).mean("time") - 1.0).max()) for run in (coarse, fine)]
+    errors = [float(np.abs(slip_safety(run, start=0.25).mean("time") - 1.0).max()) for run in (coarse, fine)]
     measured(coarse=errors[0], fine=errors[1])
     assert max(errors) < 0.005
     driver, driven = summarize(fine).pulleys

@@ -67,7 +67,7 @@ def mean_torques(evidence: Evidence) -> Iterator[Finding]:
                 f'the load of {pulley.name} of kind "{load.kind}" varies with the shaft angle; steady running uses its '
                 "mean over a cycle.",
                 "The vibration it excites is ignored: torques, tensions and speeds oscillate about these values.",
-                "Use `beltdyn response`, or simulate the drive with `beltdyn run`.",
+                "Use `beltdyn response`, or simulate the drive with `beltdyn simulate`.",
             )
 
 
@@ -82,7 +82,7 @@ def off_steady_running(evidence: Evidence) -> Iterator[Finding]:
         yield Finding(
             f"against steady running, on a mesh that resolves it, {listing(found)}.",
             f"{listing(wrong).capitalize()} {'are' if losses else 'is'} wrong by as much.",
-            f"Leave out {attributes[COARSE_SETTINGS]}, or take them from `beltdyn steady`.",
+            f"Leave out {attributes[COARSE_SETTINGS]}, or take them from `beltdyn steady-state`.",
         )
 
 

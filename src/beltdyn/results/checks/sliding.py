@@ -9,13 +9,13 @@ from beltdyn.parts.messages import Finding, listing
 from beltdyn.results.checks.evidence import Evidence
 from beltdyn.results.incidents import SLIDING_LIMIT, slides_through
 from beltdyn.results.mechanics import rim_speeds
-from beltdyn.results.slip_margin import STATE, friction_used
+from beltdyn.results.slip_safety import STATE, friction_used
 
 SWEEP_REMEDY = "Raise the tension or the wrap angle, reduce the load, or sweep more slowly or to a lower speed."
 """Remedy for gross slip in a run-up."""
 
-MARGIN_LIMIT = 1.5
-"""Smallest capstan margin that passes without a warning."""
+LEAST_SLIP_SAFETY = 1.5
+"""Smallest slip safety that passes without a warning."""
 
 
 def gross_slip(evidence: Evidence) -> Iterator[Finding]:
@@ -44,26 +44,26 @@ def near_gross_slip(evidence: Evidence) -> Iterator[Finding]:
     near = [
         (pulley, number)
         for number, pulley in enumerate(evidence.pulleys)
-        if number not in sliding and 0.0 < pulley.margin < MARGIN_LIMIT
+        if number not in sliding and 0.0 < pulley.slip_safety < LEAST_SLIP_SAFETY
     ]
     if evidence.drive.ends or not near or not _driving_rim(evidence) > 0.0:
         return
-    worst, number = min(near, key=lambda one: one[0].margin)
+    worst, number = min(near, key=lambda one: one[0].slip_safety)
     drive = evidence.drive
     tension, speed, centers = (evidence.window.mean(evidence.recorded, name) for name in STATE)
     least = float(friction_used(tension, speed, centers, drive)[number])
     pressing = 1.0 - drive.belt.mass_per_length * float(np.mean(speed**2)) / float(np.mean(tension))
-    missing = MARGIN_LIMIT / worst.margin - 1.0
+    missing = LEAST_SLIP_SAFETY / worst.slip_safety - 1.0
     held = listing([f"the tensioner of {one.pulley}" for one in drive.moving_tensioners] or ["the belt"])
-    margins = [f"{floor(100.0 * one.margin) / 100.0:.2f} on {one.name}" for one, _ in near]
+    safeties = [f"{floor(100.0 * one.slip_safety) / 100.0:.2f} on {one.name}" for one, _ in near]
     yield Finding(
-        f"{listing([pulley.name for pulley, _ in near])} {'are' if near[1:] else 'is'} near gross slip: the capstan "
-        f"margin is {listing(margins)}, less than {MARGIN_LIMIT:g}.",
+        f"{listing([pulley.name for pulley, _ in near])} {'are' if near[1:] else 'is'} near gross slip: the slip "
+        f"safety is {listing(safeties)}, less than {LEAST_SLIP_SAFETY:g}.",
         f"If friction drops by more than {max(1.0 - least, 0.0):.0%}, for example through water or oil, "
         f"{worst.name} loses its grip and these numbers no longer hold.",
         f"Raise the tension of {held} by about {_percent(missing * pressing)}, reduce the loads by "
         f"{_percent(missing / (1.0 + missing))}, or increase the wrap angle of {worst.name}.",
-        weight=1.0 / worst.margin,
+        weight=1.0 / worst.slip_safety,
     )
 
 

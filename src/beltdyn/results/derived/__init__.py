@@ -4,11 +4,11 @@ from beltdyn.results.derived.arc import contact_arc, wear_by_arc, wear_by_belt
 from beltdyn.results.derived.labels import pulley_number
 from beltdyn.results.derived.pulley import (
     balance,
-    capstan_margins,
     hub_loads,
     mid_span_displacements,
     pulley_powers,
     sliding_arcs,
+    slip_safety,
     slips,
     span_tensions,
     tension_ratios,
@@ -19,7 +19,6 @@ from beltdyn.results.derived.spectrum import amplitude_spectrum, element_order, 
 __all__ = [
     "amplitude_spectrum",
     "balance",
-    "capstan_margins",
     "contact_arc",
     "element_order",
     "hub_loads",
@@ -29,6 +28,7 @@ __all__ = [
     "pulley_number",
     "pulley_powers",
     "sliding_arcs",
+    "slip_safety",
     "slips",
     "span_tensions",
     "tension_ratios",

@@ -1,4 +1,4 @@
-"""Pulley loads over time: hub load, capstan margin and tension ratio."""
+"""Pulley loads over time: hub load, slip safety and tension ratio."""
 
 import numpy as np
 import xarray as xr
@@ -8,7 +8,7 @@ from beltdyn.results.cycles import Cycle, Window, plain_window, turn_window
 from beltdyn.results.derived.labels import labelled, window
 from beltdyn.results.mechanics import across, rim_speeds
 from beltdyn.results.run import Run
-from beltdyn.results.slip_margin import capstan_margin
+from beltdyn.results.slip_safety import slip_safety_of_states
 from beltdyn.results.slipping import slip_parts
 
 # Pulley powers over time
@@ -305,10 +305,10 @@ def hub_loads(run: Run, start: float | None = None, end: float | None = None) ->
     )
 
 
-def capstan_margins(run: Run, start: float | None = None, end: float | None = None) -> xr.DataArray:
-    """Capstan margin: the factor on all loads at which each pulley reaches gross slip, at each instant.
+def slip_safety(run: Run, start: float | None = None, end: float | None = None) -> xr.DataArray:
+    """Slip safety: the factor on all loads at which each pulley reaches gross slip, at each instant.
 
-    See `beltdyn.results.slip_margin.capstan_margin`: 1 at the edge of gross slip, NaN without load.
+    See `beltdyn.results.slip_safety.slip_safety_of_states`: 1 at the edge of gross slip, NaN without load.
 
     Parameters
     ----------
@@ -324,12 +324,14 @@ def capstan_margins(run: Run, start: float | None = None, end: float | None = No
 
     Examples
     --------
-    >>> bd.derived.capstan_margins(run).dims
+    >>> bd.derived.slip_safety(run).dims
     ('time', 'pulley')
     """
     dataset = window(run, start, end)
     tension, speed, centers = (dataset[name].values for name in ("span_tension", "belt_speed", "pulley_center"))
-    return labelled(capstan_margin(tension, speed, centers, run.drive), dataset["wrap_angle"], "1", "Capstan margin")
+    return labelled(
+        slip_safety_of_states(tension, speed, centers, run.drive), dataset["wrap_angle"], "1", "Slip safety"
+    )
 
 
 def tension_ratios(run: Run, start: float | None = None, end: float | None = None) -> xr.DataArray:

@@ -23,12 +23,12 @@ from beltdyn.show.plot.operating_points import efficiency_map as efficiency_map
 from beltdyn.show.plot.operating_points import operating_points as operating_points
 from beltdyn.show.plot.operating_points import tensioner_sheet as tensioner_sheet
 from beltdyn.show.plot.operating_points import traction_curve as traction_curve
-from beltdyn.show.plot.pulleys import capstan_margins as capstan_margins
 from beltdyn.show.plot.pulleys import hub_load_sizes as hub_load_sizes
 from beltdyn.show.plot.pulleys import hub_loads as hub_loads
 from beltdyn.show.plot.pulleys import losses as losses
 from beltdyn.show.plot.pulleys import powers as powers
 from beltdyn.show.plot.pulleys import slip as slip
+from beltdyn.show.plot.pulleys import slip_safety as slip_safety
 from beltdyn.show.plot.registry import FIGURES as FIGURES
 from beltdyn.show.plot.stretch import save_stretch as save_stretch
 from beltdyn.show.plot.stretch import stretch as stretch

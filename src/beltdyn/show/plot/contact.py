@@ -13,7 +13,7 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
 
-from beltdyn.analyses import RUN, STATIC
+from beltdyn.analyses import EQUILIBRIUM, RUN
 from beltdyn.arrays import BoolArray, FloatArray, IntArray
 from beltdyn.results import Result, Run, StaticResult, derived
 from beltdyn.show.plot.headline import at_instant
@@ -107,7 +107,7 @@ def _by_pulleys(draw: Callable[..., Axes], run: Result, choice: Choice) -> Figur
     return page
 
 
-@figure(on_request, _kinds_by_pulleys, of=(RUN, STATIC), compares=True)
+@figure(on_request, _kinds_by_pulleys, of=(RUN, EQUILIBRIUM), compares=True)
 def contact_forces(
     run: Run | StaticResult, pulley: str | int, time: float | None = None, kind: Kind = "normal", ax: Axes | None = None
 ) -> Axes:
@@ -169,7 +169,7 @@ def contact_forces(
     return ax
 
 
-@figure(always, _by_pulleys, of=(RUN, STATIC))
+@figure(always, _by_pulleys, of=(RUN, EQUILIBRIUM))
 def contact_pressure(
     run: Run | StaticResult, pulley: str | int, time: float | None = None, ax: Axes | None = None
 ) -> Axes:

@@ -15,7 +15,7 @@ from matplotlib.path import Path as Outline
 from matplotlib.ticker import MaxNLocator
 from numpy.typing import ArrayLike
 
-from beltdyn.analyses import RUN, STATIC
+from beltdyn.analyses import EQUILIBRIUM, RUN
 from beltdyn.arrays import FloatArray
 from beltdyn.model import Drive, Path, Pulley
 from beltdyn.model.carrier import Carrier
@@ -301,7 +301,7 @@ def _one_large_panel(draw: Callable[..., Axes], run: Result, choice: Choice) -> 
     return page
 
 
-@figure(always, _one_large_panel, of=(RUN, STATIC))
+@figure(always, _one_large_panel, of=(RUN, EQUILIBRIUM))
 def configuration(run: Run | StaticResult, time: float | None = None, ax: Axes | None = None) -> Axes:
     """Draw belt and pulleys at one instant, the belt's tension in color.
 

@@ -50,7 +50,7 @@ def data_uri(figure: Figure, file_format: Literal["svg", "png"] = "svg") -> str:
 
 
 _READING = (
-    *("configuration", "speeds", "span_tensions", "slip", "hub_load_sizes", "hub_loads", "capstan_margins", "torques"),
+    *("configuration", "speeds", "span_tensions", "slip", "hub_load_sizes", "hub_loads", "slip_safety", "torques"),
     *("powers", "losses", "tensioners", "energy", "contact_pressure"),
 )
 """Figures of a run in the order in which they are read; others follow."""

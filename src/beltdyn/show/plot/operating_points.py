@@ -31,7 +31,7 @@ def _both(draw: Callable[..., Axes], result: Result, choice: Choice) -> Figure:
     return page
 
 
-@figure(always, _both, of=("tensioner",))
+@figure(always, _both, of=("tensioner_sheet",))
 def tensioner_sheet(result: Result, variable: str = "tension", *, ax: Axes | None = None) -> Axes:
     """Draw the tension, or the hub load of its pulley, over the travel of a tensioner.
 
@@ -121,7 +121,7 @@ def _over_both(result: Result) -> bool:
     return {"speed", "load"} <= set(result.dataset.dims)
 
 
-@figure(always, _all_panels, of=("map", "duty"))
+@figure(always, _all_panels, of=("operating_map", "duty"))
 def operating_points(result: Result, variable: str = "span_tension", *, ax: Axes | None = None) -> Axes:
     """Draw a variable of operating points over speed, load or the rows of a duty table.
 
@@ -182,7 +182,7 @@ def operating_points(result: Result, variable: str = "span_tension", *, ax: Axes
     return ax
 
 
-@figure(_over_both, of=("map",))
+@figure(_over_both, of=("operating_map",))
 def efficiency_map(result: Result, ax: Axes | None = None) -> Axes:
     """Draw the efficiency over speed and load, with lines of the least slip safety.
 
@@ -210,7 +210,7 @@ def efficiency_map(result: Result, ax: Axes | None = None) -> Axes:
     'Load'
     """
     if not _over_both(result):
-        raise ModelError("an efficiency map needs speed and load. Give both to `beltdyn map`.")
+        raise ModelError("an efficiency map needs speed and load. Give both to `beltdyn operating-map`.")
     dataset, ax = result.dataset, axes_or_new(ax)
     speed, load = _in_shown_units(dataset["speed"]), dataset["load"]
     efficiency = 100.0 * dataset["efficiency"].transpose("load", "speed")

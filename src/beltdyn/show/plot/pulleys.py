@@ -1,4 +1,4 @@
-"""Figures of the pulleys: hub loads, slip, capstan margin and powers."""
+"""Figures of the pulleys: hub loads, slip, slip safety and powers."""
 
 from collections.abc import Callable, Sequence
 from typing import Any
@@ -133,7 +133,7 @@ def _stack(ax: Axes, row: int, powers: xr.DataArray) -> tuple[float, float]:
     return left, right
 
 
-_LARGEST_MARGIN = 10.0
+_LARGEST_SAFETY = 10.0
 _RUNNING = 0.98
 """Part of its mean speed at the end from which on the driver counts as running."""
 _RINGS = 4
@@ -198,11 +198,11 @@ def _after_start(run: Run, latest: float) -> float:
 
 
 @figure(over_time, compares=True)
-def capstan_margins(run: Run, ax: Axes | None = None) -> Axes:
+def slip_safety(run: Run, ax: Axes | None = None) -> Axes:
     """Draw the factor on all loads at which the belt slides through on each pulley, over time; below 1 it slides.
 
-    Pulleys that carry little load, whose margin is mostly above ten, are named and not drawn. A margin that vibrates is
-    drawn as a band from its least to its largest value within a hundredth of the time, and its median.
+    Pulleys that carry little load, with a slip safety mostly above ten, are named and not drawn. A vibrating slip
+    safety is drawn as a band from its least to its largest value within a hundredth of the time, and its median.
 
     Parameters
     ----------
@@ -214,7 +214,7 @@ def capstan_margins(run: Run, ax: Axes | None = None) -> Axes:
     Returns
     -------
     Axes
-        The axes; margins above ten are cut off.
+        The axes; values above ten are cut off.
 
     Raises
     ------
@@ -223,22 +223,22 @@ def capstan_margins(run: Run, ax: Axes | None = None) -> Axes:
 
     Examples
     --------
-    >>> bd.plot.capstan_margins(run).get_ylabel()
-    'Capstan margin'
+    >>> bd.plot.slip_safety(run).get_ylabel()
+    'Slip safety'
     """
-    margins = derived.capstan_margins(run)
-    margins, names = margins.where(np.isfinite(margins)), margins["pulley"].values
-    seen = (margins < _LARGEST_MARGIN).any("time").values
-    loaded = (margins.median("time") < _LARGEST_MARGIN).values
+    safeties = derived.slip_safety(run)
+    safeties, names = safeties.where(np.isfinite(safeties)), safeties["pulley"].values
+    seen = (safeties < _LARGEST_SAFETY).any("time").values
+    loaded = (safeties.median("time") < _LARGEST_SAFETY).values
     shown = loaded if loaded.any() else seen
-    ax = envelope(margins.where(xr.DataArray(shown, dims="pulley")), axes_or_new(ax))
+    ax = envelope(safeties.where(xr.DataArray(shown, dims="pulley")), axes_or_new(ax))
     shade(ax, 0.0, 1.0, "gross slip")
     if not shown.all():
         above = ", ".join(map(str, names[~shown]))
-        words = f"above {_LARGEST_MARGIN:g}: {above} ↑"
+        words = f"above {_LARGEST_SAFETY:g}: {above} ↑"
         ax.annotate(words, (1.0, 1.0), (-4, -4), "axes fraction", "offset points", **_TOP)
-    draw_limits(run, ax, "least_margin")
-    ax.set_ylim(0.0, _LARGEST_MARGIN)
+    draw_limits(run, ax, "least_slip_safety")
+    ax.set_ylim(0.0, _LARGEST_SAFETY)
     return ax
 
 

@@ -171,7 +171,7 @@ def study_lines(result: Result, of: str | None = None, over: str | None = None, 
     Examples
     --------
     >>> study = bd.ParameterStudy(
-    ...     analysis="static",
+    ...     analysis="equilibrium",
     ...     results=["tension"],
     ...     number=[{"path": "belt.width", "values": "10..20 mm", "steps": 3}],
     ... )
@@ -223,7 +223,7 @@ def study_contour(result: Result, of: str | None = None, *, ax: Axes | None = No
     Examples
     --------
     >>> study = bd.ParameterStudy(
-    ...     analysis="static",
+    ...     analysis="equilibrium",
     ...     results=["tension"],
     ...     number=[
     ...         {"path": "belt.width", "values": "10..20 mm", "steps": 2},
@@ -280,7 +280,7 @@ def parallel_coordinates(result: Result, of: str | None = None, *, ax: Axes | No
     Examples
     --------
     >>> study = bd.ParameterStudy(
-    ...     analysis="static",
+    ...     analysis="equilibrium",
     ...     results=["tension", "hub_load[driven]"],
     ...     number=[{"path": "belt.width", "values": "10..20 mm", "steps": 2}],
     ... )

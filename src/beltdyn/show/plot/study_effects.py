@@ -105,7 +105,7 @@ def tornado(result: Result, of: str | None = None, *, ax: Axes | None = None) ->
     Examples
     --------
     >>> study = bd.ParameterStudy(
-    ...     analysis="static",
+    ...     analysis="equilibrium",
     ...     results=["tension"],
     ...     number=[{"path": "belt.width", "values": [0.01, 0.02]}],
     ...     sampling="one_at_a_time",
@@ -168,7 +168,7 @@ def sobol_indices(result: Result, of: str | None = None, *, ax: Axes | None = No
     Examples
     --------
     >>> study = bd.ParameterStudy(
-    ...     analysis="static",
+    ...     analysis="equilibrium",
     ...     results=["tension"],
     ...     number=[{"path": "belt.width", "values": [0.01, 0.02]}],
     ...     sampling="saltelli",

@@ -241,7 +241,7 @@ def _part(name: str, number: int, result: Result, moving: Mapping[str, Any]) -> 
     target = f"motion-{number}"
     return {
         "name": name,
-        "kind": result.kind,
+        "kind": result.kind.replace("_", " "),
         "title": result.dataset.attrs["title"],
         "status": result.status,
         "description": result.drive.description or "",

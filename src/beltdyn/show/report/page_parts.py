@@ -78,7 +78,7 @@ def analysis_of(result: Result) -> str:
     """Name of the analysis: of a run, whether it is steady running or a sweep."""
     if isinstance(result, Run) and runs_steadily(result.dataset):
         return "steady"
-    return "sweep" if "swept_pulley" in result.dataset.attrs else result.kind
+    return "sweep" if "swept_pulley" in result.dataset.attrs else result.kind.replace("_", " ")
 
 
 def differing_keys(results: Sequence[Result]) -> list[tuple[str, list[str]]]:

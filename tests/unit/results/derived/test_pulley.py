@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from beltdyn.results import Run, summarize
-from beltdyn.results.derived import capstan_margins, hub_loads, tension_ratios
+from beltdyn.results.derived import hub_loads, slip_safety, tension_ratios
 
 MakeRun = Callable[..., Run]
 
@@ -17,14 +17,14 @@ def test_hub_loads_as_vectors(make_run: MakeRun) -> None:
     assert loads["hub_load"].dims == ("time", "pulley")
 
 
-def test_margins_over_time_end_where_the_summary_does(run: Run) -> None:
+def test_safeties_over_time_end_where_the_summary_does(run: Run) -> None:
     """Tensions of 30 and 60 N: (90 - 2 m v^2) tanh(0.6 pi) / 30 at the same sum, which fixed centers let grow."""
     speed, mass = 12.0 * 0.08125, run.drive.belt.mass_per_length
     at_same_sum = (90.0 - 2.0 * mass * speed**2) * np.tanh(0.6 * np.pi) / 30.0
-    margins = capstan_margins(run, start=0.7)
-    assert [pulley.margin for pulley in summarize(run).pulleys] == pytest.approx(margins[-1].values)
-    assert np.all((margins > at_same_sum) & (margins < 1.4 * at_same_sum))
-    assert np.isnan(capstan_margins(run, end=0.04)).all()
+    safeties = slip_safety(run, start=0.7)
+    assert [pulley.slip_safety for pulley in summarize(run).pulleys] == pytest.approx(safeties[-1].values)
+    assert np.all((safeties > at_same_sum) & (safeties < 1.4 * at_same_sum))
+    assert np.isnan(slip_safety(run, end=0.04)).all()
 
 
 def test_tension_ratio_of_slack_spans_is_unknown(make_run: MakeRun) -> None:

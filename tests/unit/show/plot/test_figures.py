@@ -23,7 +23,7 @@ def test_nothing_to_draw_is_a_model_error(run: Run, draw: Callable[..., Any]) ->
 
 def test_save_all(tmp_path: Path, run: Run) -> None:
     paths = plot.save_all(run, tmp_path / "figures")
-    names = ["configuration", "speeds", "span_tensions", "slip", "hub_load_sizes", "hub_loads", "capstan_margins"]
+    names = ["configuration", "speeds", "span_tensions", "slip", "hub_load_sizes", "hub_loads", "slip_safety"]
     names += ["torques", "powers", "losses", "energy", "contact_pressure"]
     assert [path.name for path in paths] == [f"{name}.png" for name in names]
     assert sorted((tmp_path / "figures").iterdir()) == sorted(paths)

@@ -79,7 +79,7 @@ def test_a_page_of_several_runs_has_their_names_above(pair: list[Run], tmp_path:
     page = plot.FIGURES["powers"].arrange(pair, plot.registry.Choice())
     assert page.get_suptitle() == "one, other"
     names = [path.stem for path in plot.save_all(pair, tmp_path)]
-    expected = ["speeds", "span_tensions", "slip", "hub_load_sizes", "capstan_margins", "torques", "powers", "losses"]
+    expected = ["speeds", "span_tensions", "slip", "hub_load_sizes", "slip_safety", "torques", "powers", "losses"]
     assert names == expected
 
 

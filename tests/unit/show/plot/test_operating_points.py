@@ -35,7 +35,7 @@ def made(drive: Drive, kind: str, **sizes: int) -> Result:
 
 
 def test_over_speed(drive: Drive) -> None:
-    ax = plot.operating_points(made(drive, "map", speed=4), "pulley_slip")
+    ax = plot.operating_points(made(drive, "operating_map", speed=4), "pulley_slip")
     assert (ax.get_xlabel(), ax.get_ylabel()) == ("Speed [rpm]", "Slip [%]")
     assert len(ax.lines) == 2
     np.testing.assert_allclose(np.asarray(ax.lines[1].get_ydata(), dtype=float), 100.0 * np.array([1.0, 3.0, 5.0, 7.0]))
@@ -43,8 +43,10 @@ def test_over_speed(drive: Drive) -> None:
 
 
 def test_all_of_a_kind_are_saved(drive: Drive, tmp_path: Path) -> None:
-    assert [path.stem for path in plot.save_all(made(drive, "map", speed=4), tmp_path)] == ["operating_points"]
-    both = plot.save_all(made(drive, "map", speed=4, load=3), tmp_path)
+    assert [path.stem for path in plot.save_all(made(drive, "operating_map", speed=4), tmp_path)] == [
+        "operating_points"
+    ]
+    both = plot.save_all(made(drive, "operating_map", speed=4, load=3), tmp_path)
     assert sorted(path.stem for path in both) == ["efficiency_map", "operating_points"]
     assert [path.stem for path in plot.save_all(made(drive, "duty", row=3), tmp_path)] == ["operating_points"]
     assert [path.stem for path in plot.save_all(made(drive, "traction", slip=5), tmp_path)] == ["traction_curve"]
@@ -82,6 +84,6 @@ def test_a_traction_curve_names_the_pulley_that_slips(drive: Drive) -> None:
 
 def test_what_cannot_be_drawn(drive: Drive) -> None:
     with pytest.raises(ModelError, match="variable = 'wear' is not a variable of operating points"):
-        plot.operating_points(made(drive, "map", speed=4), "wear")
+        plot.operating_points(made(drive, "operating_map", speed=4), "wear")
     with pytest.raises(ModelError, match="an efficiency map needs speed and load"):
-        plot.efficiency_map(made(drive, "map", speed=4))
+        plot.efficiency_map(made(drive, "operating_map", speed=4))

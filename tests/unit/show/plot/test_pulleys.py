@@ -7,7 +7,7 @@ from matplotlib.figure import Figure
 
 from beltdyn.errors import ModelError
 from beltdyn.results import Run
-from beltdyn.results.derived import capstan_margins, contact_arc, hub_loads, slips
+from beltdyn.results.derived import contact_arc, hub_loads, slip_safety, slips
 from beltdyn.show import plot
 
 MakeRun = Callable[..., Run]
@@ -34,12 +34,12 @@ def test_slip_that_slides_shows_its_creep(make_run: MakeRun, run: Run, ax: Axes)
     assert "dotted: creep" in ax.texts[0].get_text()
 
 
-def test_margins_are_cut_off_and_gross_slip_is_marked(run: Run, ax: Axes) -> None:
-    plot.capstan_margins(run, ax)
+def test_safeties_are_cut_off_and_gross_slip_is_marked(run: Run, ax: Axes) -> None:
+    plot.slip_safety(run, ax)
     assert ax.get_ylim() == (0.0, 10.0)
     assert texts(ax) == ["gross slip"]
-    margins = capstan_margins(run)[:, 1]
-    np.testing.assert_array_equal(ax.lines[1].get_ydata(), margins.where(np.isfinite(margins)))
+    safeties = slip_safety(run)[:, 1]
+    np.testing.assert_array_equal(ax.lines[1].get_ydata(), safeties.where(np.isfinite(safeties)))
 
 
 def test_hub_loads_wander_in_the_plane(run: Run) -> None:
@@ -96,10 +96,10 @@ def test_the_scale_of_slip_is_that_of_the_running_drive(make_run: MakeRun, run: 
     assert 0.5 < high < 1.0
 
 
-def test_margins_that_vibrate_are_bands(make_run: MakeRun, run: Run, ax: Axes) -> None:
+def test_safeties_that_vibrate_are_bands(make_run: MakeRun, run: Run, ax: Axes) -> None:
     ripple = np.where(np.arange(run.dataset.sizes["time"]) % 2, 5.0, -5.0)[:, None]
     shaken = make_run(span_tension=run.dataset["span_tension"].values + ripple * [1.0, -1.0])
-    plot.capstan_margins(shaken, ax)
+    plot.slip_safety(shaken, ax)
     assert ax.collections
 
 

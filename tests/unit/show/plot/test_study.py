@@ -24,7 +24,9 @@ MODULUS = {"path": "belt.youngs_modulus", "values": "90..110 MPa", "steps": 2}
 @pytest.fixture
 def make(drive: Drive) -> Callable[..., Result]:
     def made(*numbers: dict[str, Any], **more: Any) -> Result:
-        given = ParameterStudy(number=list(numbers), analysis="static", results=["tension", "hub_load[driven]"], **more)
+        given = ParameterStudy(
+            number=list(numbers), analysis="equilibrium", results=["tension", "hub_load[driven]"], **more
+        )
         return study(given, drive, jobs=1)
 
     return made
@@ -62,7 +64,7 @@ def test_two_numbers_are_lines_and_contours(make: Make) -> None:
 def test_panels_stand_in_pairs_with_one_legend(drive: Drive) -> None:
     """Their words are long: four beside each other could not be read."""
     results = ["tension", "hub_load[driven]", "hub_load[driver]"]
-    given = ParameterStudy(number=[WIDTH, RADIUS], analysis="static", results=results)
+    given = ParameterStudy(number=[WIDTH, RADIUS], analysis="equilibrium", results=results)
     page = FIGURES["study_lines"].arrange(study(given, drive, jobs=1), Choice())
     first, second, third = (ax.get_position() for ax in page.axes)
     assert first.y0 == pytest.approx(second.y0)

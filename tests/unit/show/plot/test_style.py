@@ -37,7 +37,7 @@ def test_labels_are_a_meaning_and_a_unit(run: Run) -> None:
     torque = run.dataset["pulley_torque"]
     assert unit(torque) == "N·m"
     assert label(torque) == f"{torque.attrs['long_name']} [N·m]"
-    assert label(torque.assign_attrs(long_name="Capstan margin", units="1")) == "Capstan margin"
+    assert label(torque.assign_attrs(long_name="Slip safety", units="1")) == "Slip safety"
 
 
 def test_every_line_of_a_figure_can_be_told_from_its_neighbours() -> None:
@@ -108,7 +108,7 @@ def test_a_pulley_has_one_color_in_all_figures(run: Run) -> None:
         "speeds": plot.speeds(run).lines[1].get_color(),
         "torques": plot.torques(run).lines[1].get_color(),
         "slip": plot.slip(run).lines[1].get_color(),
-        "margins": plot.capstan_margins(run).lines[1].get_color(),
+        "safeties": plot.slip_safety(run).lines[1].get_color(),
         "powers": plot.powers(run).lines[1].get_color(),
         "hub loads": plot.hub_load_sizes(run).lines[1].get_color(),
         "directions": plot.hub_loads(run, "driven").lines[-1].get_color(),

@@ -29,11 +29,11 @@ OPTIMIZATION = bd.OptimizationStudy(
     number=[TENSION], goal={"result": "hub_load"}, requirement=[{"result": "slip_safety", "at_least": 1.1}]
 )
 STUDY = bd.ParameterStudy(
-    analysis="static", results=["hub_load"], number=[{"path": "belt.installed_tension", "values": "280, 320 N"}]
+    analysis="equilibrium", results=["hub_load"], number=[{"path": "belt.installed_tension", "values": "280, 320 N"}]
 )
 MAKERS: Mapping[str, tuple[Callable[[bd.Drive], Result], tuple[str, ...], tuple[str, ...]]] = {
     "static": (bd.equilibrium, ("Largest hub load", "Wrap angle"), ("contact_pressure-0",)),
-    "steady": (bd.steady_state, ("Least capstan margin", "steady, completed", "efficiency"), ("contact_pressure-0",)),
+    "steady": (bd.steady_state, ("Least slip safety", "steady, completed", "efficiency"), ("contact_pressure-0",)),
     "map": (
         lambda drive: bd.operating_map(drive, speed="700, 1500 rpm", load="0.5, 1"),
         ("Largest slip", "speed 1500 rpm, load 1", "Efficiency map"),
@@ -64,14 +64,14 @@ MAKERS: Mapping[str, tuple[Callable[[bd.Drive], Result], tuple[str, ...], tuple[
     ),
     "run": (
         lambda _: bd.simulate(_given(ribs=COARSE, duration="0.02")),
-        ("Least capstan margin", "run, completed", "energy"),
+        ("Least slip safety", "run, completed", "energy"),
         ("speeds-0", "span_tensions-0"),
     ),
     "sweep": (
         lambda _: bd.sweep(
             _given(ribs=COARSE), pulley="crank", from_="1400 rpm", to="1500 rpm", duration=0.04, settling=0.1
         ),
-        ("Least capstan margin", "sweep, completed"),
+        ("Least slip safety", "sweep, completed"),
         ("speeds-0",),
     ),
     "optimize": (
@@ -309,7 +309,7 @@ def _given(**settings: str) -> bd.Drive:
     )
     for key, value in settings.items():
         text = re.sub(rf"^{key} = .*$", f"{key} = {value}", text, flags=re.MULTILINE)
-    return bd.loads(f"{MARK}{text}\n[limits]\nleast_margin = 1.5\nlargest_hub_load = 10\n")
+    return bd.loads(f"{MARK}{text}\n[limits]\nleast_slip_safety = 1.5\nlargest_hub_load = 10\n")
 
 
 Reported = Callable[[str], tuple[Result, str]]

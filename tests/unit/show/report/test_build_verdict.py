@@ -20,8 +20,8 @@ def number(value: float, limit: float | None = None) -> KeyNumber:
         ({}, ("open", "No limits are given")),
         ({"largest_hub_load": 1e4}, ("pass", "The limit is met")),
         (
-            {"largest_hub_load": 1e4, "least_margin": 99.0},
-            ("fail", "1 of 2 limits are met: least capstan margin 3.661 (limit 99)"),
+            {"largest_hub_load": 1e4, "least_slip_safety": 99.0},
+            ("fail", "1 of 2 limits are met: least slip safety 3.661 (limit 99)"),
         ),
     ],
 )

@@ -20,9 +20,9 @@ def test_the_origin_names_versions_hashes_and_settings(run: Run, tmp_path: Path)
 
 
 def test_differences_name_keys_and_values(run: Run) -> None:
-    other = Run(run.dataset, run.drive.with_({"pulley[driven].inertia": 0.2, "limits.least_margin": 2.0}))
+    other = Run(run.dataset, run.drive.with_({"pulley[driven].inertia": 0.2, "limits.least_slip_safety": 2.0}))
     assert differing_keys([run, other]) == [
         ("pulley[driven].inertia", ["0.1", "0.2"]),
-        ("limits.least_margin", ["by default", "2.0"]),
+        ("limits.least_slip_safety", ["by default", "2.0"]),
     ]
     assert differing_keys([run]) == []

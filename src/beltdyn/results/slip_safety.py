@@ -1,4 +1,4 @@
-"""The capstan margin: the factor on all loads at which the belt slides on the whole arc of a pulley.
+"""The slip safety: the factor on all loads at which the belt slides on the whole arc of a pulley.
 
 With the factor f on the loads the differences of the tensions grow with f, and what holds the tension sets their mean:
 
@@ -28,12 +28,12 @@ from beltdyn.model.path import span_directions, span_points, wrap_angles
 from beltdyn.results.mechanics import UNLOADED, across
 
 STATE = ("span_tension", "belt_speed", "pulley_center")
-"""What a margin follows from, by the names of recorded variables."""
+"""What a slip safety follows from, by the names of recorded variables."""
 _GROWTH, _STEPS = 1.5, 12
 """Factors on the loads between which s = 1 is looked for: powers of the first, up to the 12th and down to the -12th."""
 _REFINEMENTS = 30
 _ACCURACY = 1e-6
-"""Of the margin."""
+"""Of the slip safety."""
 _MOST_ITERATIONS = 40
 _CONVERGED = 1e-9
 """Step of Newton's method, over the scale of each unknown."""
@@ -45,8 +45,8 @@ _LONGEST = 0.2
 """Step of Newton's method for the place of a tensioner, over the way on which it moves by the smallest radius."""
 
 
-def capstan_margin(tension: FloatArray, belt_speed: FloatArray, centers: FloatArray, drive: Drive) -> FloatArray:
-    """Capstan margin of each pulley: the factor on all loads at its gross slip, if the others hold.
+def slip_safety_of_states(tension: FloatArray, belt_speed: FloatArray, centers: FloatArray, drive: Drive) -> FloatArray:
+    """Slip safety of each pulley: the factor on all loads at its gross slip, if the others hold.
 
     Parameters
     ----------
@@ -68,13 +68,13 @@ def capstan_margin(tension: FloatArray, belt_speed: FloatArray, centers: FloatAr
     flat = (tension.reshape(-1, tension.shape[-1]), belt_speed.reshape(-1, tension.shape[-1]))
     with np.errstate(invalid="ignore", divide="ignore", over="ignore"):
         balance = _Balance(drive, *flat, centers.reshape(-1, pulleys, 2))
-        return _margins(balance).reshape(*shape, pulleys)
+        return _safeties(balance).reshape(*shape, pulleys)
 
 
 def friction_used(tension: FloatArray, belt_speed: FloatArray, centers: FloatArray, drive: Drive) -> FloatArray:
     """Share of friction used by each pulley, ln((T1 - m v^2) / (T2 - m v^2)) / mu theta.
 
-    Parameters and shape of the result are those of `capstan_margin`; 1 or more where the whole arc slides.
+    Parameters and shape of the result are those of `slip_safety_of_states`; 1 or more where the whole arc slides.
     """
     wrap = wrap_angles(span_directions(centers, drive.path.radii, drive.path.ends), drive.path.radii)
     before, after = across(tension - drive.belt.mass_per_length * belt_speed**2, drive)
@@ -220,7 +220,7 @@ class _Balance:
         return _Geometry(directions, lengths, wrap_angles(directions, radii), slopes)
 
 
-def _margins(balance: _Balance) -> FloatArray:
+def _safeties(balance: _Balance) -> FloatArray:
     """Factors at which s = 1, shape (n, pulleys): between two powers of `_GROWTH`, by secants of 1 / s over 1 / f.
 
     1 / s is straight over 1 / f where the sum of both tensions, or one of them, is held.

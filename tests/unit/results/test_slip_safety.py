@@ -1,4 +1,4 @@
-"""The capstan margin against closed forms, of whatever holds the tension of the belt."""
+"""The slip safety against closed forms, of whatever holds the tension of the belt."""
 
 import math
 from importlib.resources import files
@@ -11,7 +11,7 @@ from scipy.optimize import brentq
 
 from beltdyn.arrays import FloatArray
 from beltdyn.model import Drive, loads
-from beltdyn.results.slip_margin import capstan_margin, friction_used
+from beltdyn.results.slip_safety import friction_used, slip_safety_of_states
 from beltdyn.theory.capstan import tight_tension
 
 EXACT = 1e-5
@@ -35,8 +35,8 @@ def sliding(drive: Drive, slack: float, speed: float) -> FloatArray:
     return np.array([tight_tension(slack, friction, wrap, mass_per_length=mass, speed=speed), slack])
 
 
-def margins(drive: Drive, tension: FloatArray, speed: float = 0.0) -> FloatArray:
-    return capstan_margin(tension, np.full(tension.shape, speed), drive.centers, drive)
+def safeties(drive: Drive, tension: FloatArray, speed: float = 0.0) -> FloatArray:
+    return slip_safety_of_states(tension, np.full(tension.shape, speed), drive.centers, drive)
 
 
 @pytest.mark.parametrize("speed", [0.0, 12.0, -12.0])
@@ -45,12 +45,12 @@ def test_a_slide_along_the_spans_holds_the_sum(slid: Drive, factor: float, speed
     edge = sliding(slid, 40.0, speed)
     mean, half = edge.mean(), 0.5 * (edge[0] - edge[1])
     tension = mean + factor * half * np.array([1.0, -1.0])
-    np.testing.assert_allclose(margins(slid, tension, speed), 1.0 / factor, rtol=EXACT)
+    np.testing.assert_allclose(safeties(slid, tension, speed), 1.0 / factor, rtol=EXACT)
 
 
 @given(slack=st.floats(20.0, 500.0), speed=st.floats(-8.0, 8.0))
-def test_a_belt_that_slides_on_the_whole_arc_has_the_margin_one(drive: Drive, slack: float, speed: float) -> None:
-    np.testing.assert_allclose(margins(drive, sliding(drive, slack, speed), speed), 1.0, rtol=EXACT)
+def test_a_belt_that_slides_on_the_whole_arc_has_the_slip_safety_one(drive: Drive, slack: float, speed: float) -> None:
+    np.testing.assert_allclose(safeties(drive, sliding(drive, slack, speed), speed), 1.0, rtol=EXACT)
     used = friction_used(sliding(drive, slack, speed), np.full(2, speed), drive.centers, drive)
     np.testing.assert_allclose(used, 1.0, rtol=EXACT)
 
@@ -58,8 +58,8 @@ def test_a_belt_that_slides_on_the_whole_arc_has_the_margin_one(drive: Drive, sl
 def test_fixed_centers_hold_the_length_and_not_quite_the_sum(drive: Drive) -> None:
     """Two equal pulleys under a load f times that at which they slide: the belt on spans and arcs is as long there.
 
-    Up to a sliding arc of ln(T1 / T2) / mu the arcs have the tension of the span that reaches them. The margin takes
-    the sliding arcs at their mean tension: within 0.5 %.
+    Up to a sliding arc of ln(T1 / T2) / mu the arcs have the tension of the span that reaches them. The slip
+    safety takes the sliding arcs at their mean tension: within 0.5 %.
     """
     law, radius = drive.belt.stretch_parameters, float(drive.radii[0])
     wrap, friction = float(drive.path.wrap_angles[0]), float(drive.frictions[0])
@@ -76,7 +76,7 @@ def test_fixed_centers_hold_the_length_and_not_quite_the_sum(drive: Drive) -> No
 
     hard = drive.replace(contact=drive.contact.replace(stiffness=1e12))
     tight, slack = 60.0, 30.0
-    found = float(margins(hard, np.array([tight, slack]), 1e-9)[0])
+    found = float(safeties(hard, np.array([tight, slack]), 1e-9)[0])
     ratio = math.exp(friction * wrap)
     edge = brentq(lambda one: belt(one * ratio, one) - belt(tight, slack), 1.0, 100.0)
     assert found == pytest.approx(edge * (ratio - 1.0) / (tight - slack), rel=5e-3)
@@ -94,14 +94,14 @@ def test_the_end_of_a_belt_that_is_pulled_keeps_its_tension(held: str, load: flo
     tension = np.full(drive.path.spans, 100.0 + (load if held == "slack" else -load))
     tension[span] = 100.0
     most = 100.0 * (grip - 1.0 if held == "slack" else 1.0 - 1.0 / grip)
-    assert float(margins(drive, tension)[0]) == pytest.approx(most / load, rel=EXACT)
+    assert float(safeties(drive, tension)[0]) == pytest.approx(most / load, rel=EXACT)
 
 
 def test_a_spring_on_the_slack_side_holds_its_tension() -> None:
     """Its arm hardly turns: Euler's largest difference at the present slack tension, over the present one."""
     drive = example("alternator_drive").replace(contact={"friction": 0.1})
     tension = np.array([300.0, 300.0, 540.0])
-    found = capstan_margin(tension, np.zeros(3), drive.centers, drive)
+    found = slip_safety_of_states(tension, np.zeros(3), drive.centers, drive)
     grip = np.exp(drive.frictions * drive.path.wrap_angles)[[0, 2]]
     held_sum = (840.0 * np.tanh(0.5 * np.log(grip)) / 240.0).min()
     assert np.isnan(found[1])
@@ -109,20 +109,20 @@ def test_a_spring_on_the_slack_side_holds_its_tension() -> None:
     assert float(np.nanmin(found)) > 1.1 * held_sum
 
 
-def test_margins_of_many_instants_are_those_of_each() -> None:
+def test_safeties_of_many_instants_are_those_of_each() -> None:
     drive = example("alternator_drive").replace(contact={"friction": 0.1})
     tension = np.array([[300.0, 300.0, 540.0], [200.0, 201.0, 260.0], [100.0, 100.0, 900.0], [np.nan, 1.0, 2.0]])
     speed, centers = np.full((4, 3), 11.0), np.tile(drive.centers, (4, 1, 1))
-    found = capstan_margin(tension, speed, centers, drive)
+    found = slip_safety_of_states(tension, speed, centers, drive)
     for row in range(4):
         np.testing.assert_allclose(
-            found[row], capstan_margin(tension[row], speed[row], centers[row], drive), rtol=EXACT
+            found[row], slip_safety_of_states(tension[row], speed[row], centers[row], drive), rtol=EXACT
         )
     assert found[2, 2] < 1.0
     assert np.isnan(found[3]).all()
 
 
-def test_margin_without_load_or_grip(drive: Drive) -> None:
+def test_slip_safety_without_load_or_grip(drive: Drive) -> None:
     for tension in ([100.0, 100.0], [100.0, 100.0 + 1e-12]):
-        assert np.all(np.isnan(margins(drive, np.array(tension))))
-    assert np.all(margins(drive, np.array([10.0, 12.0]), 50.0) == 0.0)  # m v^2 = 260 N lifts the belt off
+        assert np.all(np.isnan(safeties(drive, np.array(tension))))
+    assert np.all(safeties(drive, np.array([10.0, 12.0]), 50.0) == 0.0)  # m v^2 = 260 N lifts the belt off

@@ -1,4 +1,4 @@
-"""`beltdyn static`: what it shows and writes, and what it leaves where there is no equilibrium."""
+"""`beltdyn equilibrium`: what it shows and writes, and what it leaves where there is no equilibrium."""
 
 import sys
 from collections.abc import Callable
@@ -25,17 +25,17 @@ def unbalanced(monkeypatch: pytest.MonkeyPatch) -> None:
 
 
 def test_it_shows_and_writes_the_drive_at_rest(run_main: RunMain, drive_file: Path) -> None:
-    code, output, _ = run_main(["static", str(drive_file)])
+    code, output, _ = run_main(["equilibrium", str(drive_file)])
     assert code == 0
     rest = equilibrium(load(drive_file))
     for words in ("driver-driven", f"{float(rest.dataset.hub_load[0]):.5g}", f"{float(rest.dataset.tension):.5g} N"):
         assert words in output
     assert all(f"warning: {warning}" in output for warning in rest.warnings)
-    saved = open_result(drive_file.with_name("drive-static.nc"))
+    saved = open_result(drive_file.with_name("drive-equilibrium.nc"))
     assert saved.dataset.span_tension.values.tolist() == rest.dataset.span_tension.values.tolist()
 
 
-@pytest.mark.parametrize("command", ["static", "run"])
+@pytest.mark.parametrize("command", ["equilibrium", "simulate"])
 @pytest.mark.usefixtures("unbalanced")
 def test_no_equilibrium_leaves_no_file(run_main: RunMain, drive_file: Path, drive_text: str, command: str) -> None:
     drive_file.write_text(drive_text.replace('start = "laid"', 'start = "equilibrium"'), encoding="utf-8")
@@ -49,7 +49,7 @@ def test_no_equilibrium_leaves_no_file(run_main: RunMain, drive_file: Path, driv
 
 @pytest.mark.usefixtures("unbalanced")
 def test_an_earlier_result_outlives_a_failed_equilibrium(run_main: RunMain, drive_file: Path, run: Run) -> None:
-    output = run.save(drive_file.with_name("drive-static.nc"))
+    output = run.save(drive_file.with_name("drive-equilibrium.nc"))
     before = output.read_bytes()
-    assert run_main(["static", str(drive_file)])[0] == 3
+    assert run_main(["equilibrium", str(drive_file)])[0] == 3
     assert output.read_bytes() == before

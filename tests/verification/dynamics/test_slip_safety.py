@@ -1,4 +1,4 @@
-"""The capstan margin against traction: loads are raised in steady running until the belt slides through."""
+"""The slip safety against traction: loads are raised in steady running until the belt slides through."""
 
 from typing import Any
 
@@ -18,7 +18,7 @@ KINDS = (("fixed", ""), ("sliding", "slack"), ("rotary", "slack"), ("sliding", "
 QUICK, ALL = range(5), range(5, 105)
 """Seeds of random drives, of the kind ``KINDS[seed % 5]``."""
 WITHIN = 0.05
-"""Error of the margin that is allowed: it leaves out bending, and creep on the part of the arc that adheres."""
+"""Error of the slip safety that is allowed: it leaves out bending, and creep on the part of the arc that adheres."""
 NEAR = 0.005
 """Part of the load up to which gross slip is looked for."""
 STRIDE = 1.3
@@ -117,14 +117,14 @@ def slides_through(run: Run) -> bool:
 
 
 def compared(seed: int) -> tuple[float, float]:
-    """The margin of a random drive, and the factor on its loads at which it slides."""
+    """The slip safety of a random drive, and the factor on its loads at which it slides."""
     drive = random_drive(seed)
     run = steady_state(drive)
-    margins = [one.margin for one in summarize(run).pulleys]
-    return float(np.nanmin(margins)), load_at_gross_slip(drive, run)
+    safeties = [one.slip_safety for one in summarize(run).pulleys]
+    return float(np.nanmin(safeties)), load_at_gross_slip(drive, run)
 
 
 @pytest.mark.parametrize("seed", [*QUICK, *(pytest.param(seed, marks=pytest.mark.slow) for seed in ALL)])
-def test_the_margin_is_the_load_at_which_the_belt_slides_through(seed: int) -> None:
-    margin, found = compared(seed)
-    assert margin == pytest.approx(found, rel=WITHIN)
+def test_the_slip_safety_is_the_load_at_which_the_belt_slides_through(seed: int) -> None:
+    safety, found = compared(seed)
+    assert safety == pytest.approx(found, rel=WITHIN)
