@@ -84,6 +84,7 @@ _ALL = (
     Analysis("beltdyn.points.operating_map:operating_map", "Compute operating points over speed and load."),
     Analysis("beltdyn.points.traction:traction", "Compute the traction curve of a pulley (slip over torque)."),
     Analysis("beltdyn.points.duty:duty", "Compute the operating points of a duty cycle, and their means."),
+    Analysis("beltdyn.points.life:life", "Compute fatigue damage and life of the belt, with shares of pulleys."),
     Analysis(
         "beltdyn.points.tensioner_sheet:tensioner_sheet",
         "Compute tensioner positions and tensions over the range of belt lengths.",
@@ -98,7 +99,7 @@ _ALL = (
 )
 
 STEADY_KINDS = (
-    *("operating_map", "traction", "duty", "tensioner_sheet"),
+    *("operating_map", "traction", "duty", "life", "tensioner_sheet"),
     *("sensitivity", "modes", "campbell", "response"),
 )
 """Kinds of results at rest or in steady running on a staying mesh."""

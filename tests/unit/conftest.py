@@ -135,3 +135,47 @@ def spin(spinning: System) -> Callable[..., Task]:
         return Task(system, straight(system), Instants(interval, 0.5), breakpoints, 0.1, Statistics())
 
     return task
+
+
+FATIGUE_DRIVE = """
+[belt]
+axial_stiffness = 5e4
+bending_stiffness = 5e-4
+mass_per_length = 0.1
+width = 0.012
+thickness = 0.008
+installed_tension = 300
+[belt.cord_fatigue]
+cycles = [1e7, 1e9]
+forces = [900.0, 600.0]
+bending_force = 12.0
+survival = 0.9
+source = "test"
+[belt.rib_fatigue]
+diameter = 0.1
+tension = 100
+temperature = 80
+passages = 1e9
+source = "test"
+[[pulley]]
+name = "small"
+center = [0, 0]
+diameter = "90 mm"
+speed = "1500 rpm"
+[[pulley]]
+name = "large"
+center = ["500 mm", 0]
+diameter = "180 mm"
+inertia = 0.01
+torque = -12
+[contact]
+friction = 1.0
+[simulation]
+duration = 0.1
+"""
+
+
+@pytest.fixture(scope="session")
+def fatigue_drive() -> Drive:
+    """A drive of two pulleys under constant load, with fatigue data that are easily reckoned with."""
+    return loads(FATIGUE_DRIVE)

@@ -36,6 +36,7 @@ from beltdyn.model.catalogue import Entry, read_catalogue
 from beltdyn.model.contact import Contact
 from beltdyn.model.drive import Drive
 from beltdyn.model.end import FixedEnd, PulledEnd, WeightEnd
+from beltdyn.model.fatigue import CordFatigue, RibFatigue
 from beltdyn.model.installation import Installation, describe, install, tensioner_balances
 from beltdyn.model.path import Path
 from beltdyn.model.pulley import Pulley
@@ -56,6 +57,7 @@ __all__ = [
     "CalibrationStudy",
     "Constant",
     "Contact",
+    "CordFatigue",
     "CosineRamp",
     "CosineRampPublished",
     "Drive",
@@ -84,6 +86,7 @@ __all__ = [
     "Pump",
     "Ramp",
     "Resistance",
+    "RibFatigue",
     "RotaryTensioner",
     "Running",
     "ServoMotor",

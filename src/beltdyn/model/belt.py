@@ -37,9 +37,22 @@ from beltdyn.model.belt_form import (
     to_material,
     without_section,
 )
+from beltdyn.model.fatigue import CordFatigue, RibFatigue
 from beltdyn.model.stretch_curve import StretchCurve
 from beltdyn.parts.part import Part
-from beltdyn.parts.quantity import Angle, Count, Density, Flag, Force, Length, LineStiffness, Ratio, Stress, Time
+from beltdyn.parts.quantity import (
+    Angle,
+    Count,
+    Density,
+    Flag,
+    Force,
+    Length,
+    LineStiffness,
+    Ratio,
+    Stress,
+    Temperature,
+    Time,
+)
 from beltdyn.stretch import LAWS, StretchParameters
 
 _MEANINGS = ", ".join(f'"{kind.name}" ({kind.meaning})' for kind in ELEMENTS.values())
@@ -123,6 +136,20 @@ class Belt(Part):
     )
     smallest_diameter: Length | None = Field(
         None, gt=0, description="the smallest recommended pulley diameter, as pulleys are sold, in m"
+    )
+    largest_fleeting_angle: Angle | None = Field(
+        None, gt=0, lt=pi / 2, description="the largest fleeting angle of a span at a pulley, in rad"
+    )
+    temperature: Temperature | None = Field(
+        None,
+        gt=-274,
+        description="the temperature of the belt, in °C; by default that of the reference condition of rib_fatigue",
+    )
+    cord_fatigue: CordFatigue | None = Field(
+        None, description="the S-N line of the cords, a group [belt.cord_fatigue]; a profile may have one"
+    )
+    rib_fatigue: RibFatigue | None = Field(
+        None, description="the law of rib fatigue, a group [belt.rib_fatigue]; a profile may have one"
     )
     crossed: Flag = Field(False, description="whether spans of the belt cross")
     wedge_angle: Angle | None = Field(

@@ -41,7 +41,12 @@ LOSS_FACTORS = ("stretch_loss_factor", "bending_loss_factor")
 LOSSES = (*DAMPING_TIMES, *LOSS_FACTORS, "compression_loss_factor")
 
 STRETCH = ("stretch_law", "stretch_curve")
-TAKEN_OVER = ("pitch_offset", "back_offset", "wedge_angle", "friction", *_FORCES, "smallest_diameter", *LOSSES)
+FATIGUE = ("cord_fatigue", "rib_fatigue")
+_NUMBERS = (
+    *("pitch_offset", "back_offset", "wedge_angle", "friction", *_FORCES, "smallest_diameter"),
+    *("largest_fleeting_angle", *LOSSES),
+)
+TAKEN_OVER = (*_NUMBERS, *FATIGUE)
 
 
 class Stiffnesses(Part):
@@ -180,11 +185,11 @@ def _section(sold: Sold, width: object, base: Path | None) -> dict[str, Any]:
     except LookupError as error:
         raise ValueError(f'{error.args[0]}. Or extend the catalogue with your own: catalogue = "file.toml"') from None
     size, powers = _size(sold, entry, width), _POWERS[entry.sold_by]
-    values = {key: getattr(entry, key) for key in (*Stiffnesses.model_fields, "contact_stiffness", *TAKEN_OVER)}
+    values = {key: getattr(entry, key) for key in (*Stiffnesses.model_fields, "contact_stiffness", *_NUMBERS)}
     found = {key: value * size ** powers.get(key, 0) for key, value in values.items() if value is not None}
-    if entry.stretch_curve is None:
-        return found
-    return found | {"stretch_curve": entry.stretch_curve.times(size ** powers["axial_stiffness"])}
+    curves = {key: getattr(entry, key) for key in ("stretch_curve", *FATIGUE)}
+    strength = size ** powers["axial_stiffness"]
+    return found | {key: curve.times(strength) for key, curve in curves.items() if curve is not None}
 
 
 def _size(sold: Sold, entry: Entry, width: object) -> float:

@@ -10,6 +10,7 @@ from typing import Any, Literal
 
 from pydantic import Field, ValidationError, ValidationInfo, model_validator
 
+from beltdyn.model.fatigue import CordFatigue, RibFatigue
 from beltdyn.model.stretch_curve import StretchCurve, with_initial_slope
 from beltdyn.parts.messages import explain, reason
 from beltdyn.parts.part import Part
@@ -84,6 +85,11 @@ class Entry(Part):
         "outside", description="the diameter that is twice the radius of a pulley: datum, effective or outside"
     )
     smallest_diameter: Length | None = Field(None, gt=0, description="the smallest recommended pulley diameter, in m")
+    largest_fleeting_angle: Angle | None = Field(
+        None, gt=0, lt=pi / 2, description="the largest fleeting angle of a span at a pulley, in rad"
+    )
+    cord_fatigue: CordFatigue | None = Field(None, description="the S-N line of the cords")
+    rib_fatigue: RibFatigue | None = Field(None, description="the law of rib fatigue")
     generic: bool = Field(False, description="whether the values are typical of a profile, not of a product")
     source: str = Field(min_length=1, description="the source of the values, as text")
 

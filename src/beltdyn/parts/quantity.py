@@ -26,6 +26,8 @@ _MORE_UNITS = "newton_meter = newton * meter = Nm", "newton_millimeter = newton 
 """Spellings of drive engineers; kNm etc. follow."""
 _TURNS = re.compile(r"(?:U|rev|1) ?/ ?min|min(?:\^|\*\*)?-1|min⁻¹")
 """Other spellings of rpm for angular speeds."""
+_CELSIUS = re.compile("°\\s?C")
+"""The degree Celsius, whose sign no name of a unit has."""
 _LONGEST_TEXT = 60
 _LARGEST = 1e15
 _DUST = 1e-30
@@ -59,6 +61,7 @@ def to_si(text: str, unit: str) -> float:
     number, given = float(match["number"]), match["unit"]
     if unit == "rad/s" and _TURNS.fullmatch(given):
         given = "rpm"
+    given = _CELSIUS.sub("degC", given)
     if not unit and given == "%":
         if tolerance is not None and tolerance["percent"]:
             raise ValueError(
@@ -80,6 +83,7 @@ def to_si(text: str, unit: str) -> float:
 def is_unit(text: str) -> bool:
     """Whether a text is a known unit, such as ``"N m"``."""
     try:
+        text = _CELSIUS.sub("degC", text)
         known = _TURNS.fullmatch(text) or _UNIT.fullmatch(text)
         return bool(known and len(text) <= _LONGEST_TEXT and _registry().parse_units(text))
     except Exception:  # see _convert
@@ -229,6 +233,8 @@ BendingStiffness = Annotated[float, quantity("N*m^2")]
 MassPerLength = Annotated[float, quantity("kg/m")]
 LineStiffness = Annotated[float, quantity("N/m^2")]
 LineDamping = Annotated[float, quantity("N*s/m^2")]
+Temperature = Annotated[float, quantity("degC", smallest=0)]
+TemperatureDifference = Annotated[float, quantity("K")]
 Ratio = Annotated[float, quantity("")]
 Count = Annotated[int, BeforeValidator(_read_count, json_schema_input_type=int)]
 Flag = Annotated[bool, Strict()]

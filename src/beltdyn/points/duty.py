@@ -17,7 +17,7 @@ from beltdyn.points.operating_points import VARIABLES, Axes, OperatingPoints
 from beltdyn.results import Result, Variable
 from beltdyn.solvers.progress import Report
 
-UNITS = {"duration": "s", "load": "", "speed": "rad/s", "torque": "N m"}
+UNITS = {"duration": "s", "load": "", "temperature": "degC", "speed": "rad/s", "torque": "N m"}
 """What columns hold, and their SI units."""
 _MEANS = ("pulley_slip", "power", "hub_load", "span_tension", "loss")
 _EXPONENT = 3.0
@@ -28,7 +28,7 @@ class Column(NamedTuple):
     """A column of a duty table."""
 
     what: str
-    """"duration", "load", "speed" or "torque"."""
+    """"duration", "load", "temperature", "speed" or "torque"."""
     pulley: str
     """Of a speed or torque; empty of others."""
     values: list[float]
@@ -48,8 +48,9 @@ def duty(
     r"""Compute the operating points of a duty table, with means weighted by duration.
 
     The table is a CSV file with a line of headings: "duration [s]", "NAME speed [rpm]" and "NAME torque [N m]" of
-    pulleys, and "load", the factor on all torques and loads of the drive file but those of motors. Each line is an
-    operating point. Quantities without a column are those of the drive file.
+    pulleys, "load", the factor on all torques and loads of the drive file but those of motors, and "temperature [°C]"
+    of the belt, on which its life depends. Each line is an operating point. Quantities without a column are those of
+    the drive file.
 
     Parameters
     ----------
@@ -117,8 +118,8 @@ def _column(given: HeadedColumn) -> Column:
     pulley, _, what = given.what.rpartition(" ")
     if what not in UNITS or bool(pulley) != (what in ("speed", "torque")):
         raise ModelError(
-            f'{given.path}: the heading "{given.what}" must be "duration [s]", "load", "NAME speed [rpm]" or '
-            '"NAME torque [N m]".'
+            f'{given.path}: the heading "{given.what}" must be "duration [s]", "load", "temperature [°C]", "NAME speed '
+            '[rpm]" or "NAME torque [N m]".'
         )
     return Column(what, pulley.strip(), given.values(UNITS[what]))
 
@@ -138,6 +139,8 @@ def at_row(held: Drive, columns: list[Column], row: int) -> Drive:
         if one.pulley:
             change = at_speed if one.what == "speed" else with_torque
             changed = change(changed, held.number_of(one.pulley), one.values[row])
+        elif one.what == "temperature":
+            changed = changed.replace(belt=changed.belt.replace(temperature=one.values[row]))
     return changed
 
 

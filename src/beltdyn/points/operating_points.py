@@ -21,6 +21,8 @@ from beltdyn.results import Result, Run, Variable, build_result
 from beltdyn.results.atomic import locked_output, require_replaceable
 from beltdyn.results.balance import LOSSES
 from beltdyn.results.dataset import is_result
+from beltdyn.results.fatigue import VARIABLES as OF_FATIGUE
+from beltdyn.results.fatigue import fatigue_by_name, known_variables
 from beltdyn.results.recorder import status_after
 from beltdyn.results.schema import AXIS_NAMES, COORDINATES
 from beltdyn.results.summary import Means, means_of
@@ -64,9 +66,12 @@ VARIABLES = {
     ),
     "loss": Variable(("cause",), "W", "Power loss"),
     "mesh_error": Variable((), "1", "Mesh error"),
+    **OF_FATIGUE,
     "failure": Variable((), "1", "Why the operating point failed", "str"),
 }
 """What is known of an operating point; dimensions of the table come first."""
+
+_USUAL = [name for name in VARIABLES if name not in OF_FATIGUE]
 
 _OF_PULLEYS = {
     "pulley_speed": "speed",
@@ -120,7 +125,7 @@ def values_by_name(run: Run, means: Means) -> dict[str, Any]:
         values["tensioner_position"] = stands = [one.position for one in means.tensioners]
         for name in ("tensioner_position_after_tensioning", "tensioner_position_after_yielding"):
             values[name] = dataset.attrs.get(name, stands)
-    return values
+    return values | fatigue_by_name(run)
 
 
 Axes = Mapping[str, tuple[Variable, ArrayLike]]
@@ -153,7 +158,7 @@ class OperatingPoints:
     overwrite
         Replace any regular file by the results.
     names
-        Which of `VARIABLES` are kept; all by default.
+        Which of `VARIABLES` are kept; by default all but those of fatigue.
 
     Raises
     ------
@@ -170,7 +175,7 @@ class OperatingPoints:
         progress: Report | None = None,
         overwrite: bool = False,
         *,
-        names: Collection[str] = VARIABLES.keys(),
+        names: Collection[str] = _USUAL,
     ) -> None:
         self._kind, self._drive, self._axes = kind, drive, axes
         require_steady(drive)
@@ -180,7 +185,9 @@ class OperatingPoints:
         self._progress = progress
         self._sizes = labels_of(drive)
         self.shape = tuple(len(np.atleast_1d(labels)) for _, labels in axes.values())
-        kept = {name: one for name, one in VARIABLES.items() if name in names and self._holds(one)}
+        unknown = OF_FATIGUE.keys() - known_variables(drive)
+        kept = {name: VARIABLES[name] for name in VARIABLES if name in names and name not in unknown}
+        kept = {name: one for name, one in kept.items() if self._holds(one)}
         self.arrays = {name: self._blank(variable) for name, variable in kept.items()}
         self._held = ExitStack()
         self._warned: dict[str, list[tuple[float, str, str]]] = {}

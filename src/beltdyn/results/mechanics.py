@@ -288,14 +288,44 @@ def curve_points(
     ndarray, shape (..., points, 2)
         m.
     """
+    points = curve_controls(kind, coordinates, lengths)
+    degree, along = points.shape[-2] - 1, xi[:, None]
+    order = np.arange(degree + 1)
+    weights = BINOMIALS[degree, order] * along**order * (1.0 - along) ** (degree - order)
+    return np.asarray(np.einsum("kp,...kpa->...ka", weights, points[..., curve, :, :]))
+
+
+def curve_controls(kind: ElementKind, coordinates: FloatArray, lengths: FloatArray) -> FloatArray:
+    """Control points of the Bezier curves, shape (..., curves, degree + 1, 2), m; arguments as for `curve_points`."""
     instants = coordinates.shape[:-2]
     first = coordinates.reshape(*instants, -1, kind.dof)
     elements = len(lengths) // kind.points
     element = np.concatenate([first, np.roll(first, -1, axis=-2)], axis=-1)[..., :elements, :]
     vectors = np.stack([element[..., start : start + 2] for start in kind.vectors], axis=-2)
     control = kind.control(lengths.reshape(elements, -1).sum(axis=1))
-    points = np.einsum("ncpv,...nva->...ncpa", control, vectors).reshape(*instants, -1, control.shape[2], 2)
-    degree, along = control.shape[2] - 1, xi[:, None]
-    order = np.arange(degree + 1)
-    weights = BINOMIALS[degree, order] * along**order * (1.0 - along) ** (degree - order)
-    return np.asarray(np.einsum("kp,...kpa->...ka", weights, points[..., curve, :, :]))
+    points = np.einsum("ncpv,...nva->...ncpa", control, vectors)
+    return np.asarray(points.reshape(*instants, -1, control.shape[2], 2))
+
+
+def mean_curvature(kind: ElementKind, coordinates: FloatArray, lengths: FloatArray) -> FloatArray:
+    """Mean curvature of each curve of a closed belt: the turn of its tangent over its length.
+
+    At a node without a common tangent, as between straight elements, the tangent halves the kink.
+
+    Returns
+    -------
+    ndarray, shape (..., curves)
+        1/m, positive where the belt turns to the left; arguments as for `curve_points`.
+    """
+    points = curve_controls(kind, coordinates, lengths)
+    first, last = (_unit(points[..., after, :] - points[..., before, :]) for before, after in ((0, 1), (-2, -1)))
+    tangent = first + np.roll(last, 1, axis=-2)
+    after = np.roll(tangent, -1, axis=-2)
+    cross = tangent[..., 0] * after[..., 1] - tangent[..., 1] * after[..., 0]
+    turn = np.arctan2(cross, np.sum(tangent * after, axis=-1))
+    chord = np.linalg.norm(points[..., -1, :] - points[..., 0, :], axis=-1)
+    return np.asarray(turn * np.sinc(turn / (2.0 * np.pi)) / chord)
+
+
+def _unit(vectors: FloatArray) -> FloatArray:
+    return np.asarray(vectors / np.linalg.norm(vectors, axis=-1, keepdims=True))

@@ -19,6 +19,8 @@ from beltdyn.show.plot.history import tensioners as tensioners
 from beltdyn.show.plot.history import torques as torques
 from beltdyn.show.plot.layout import layout as layout
 from beltdyn.show.plot.layout import save_layout as save_layout
+from beltdyn.show.plot.life import belt_history as belt_history
+from beltdyn.show.plot.life import damage_shares as damage_shares
 from beltdyn.show.plot.operating_points import efficiency_map as efficiency_map
 from beltdyn.show.plot.operating_points import operating_points as operating_points
 from beltdyn.show.plot.operating_points import tensioner_sheet as tensioner_sheet

@@ -1,0 +1,140 @@
+"""Tension and curvature of material points of the belt: over a turn in steady running, and over time."""
+
+from typing import TYPE_CHECKING, NamedTuple
+
+import numpy as np
+
+from beltdyn.arrays import FloatArray, IntArray
+from beltdyn.errors import ModelError
+from beltdyn.model import Drive
+from beltdyn.results.mechanics import element_lengths, mean_curvature, recorded_kind
+from beltdyn.results.run import Run
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+_STEPS = 2
+"""Instants in which a material point passes one element of mean length."""
+
+
+class BeltHistory(NamedTuple):
+    """What a material point of the belt meets.
+
+    Attributes
+    ----------
+    passed : ndarray, shape (k,)
+        Length of unstretched belt that has passed, m.
+    time : ndarray, shape (k,)
+        s.
+    tension : ndarray, shape (k, points)
+        N.
+    curvature : ndarray, shape (k, points)
+        1/m, positive on pulleys inside the belt.
+    pulley : ndarray of int, shape (k, points)
+        Number of the nearest pulley.
+    """
+
+    passed: FloatArray
+    time: FloatArray
+    tension: FloatArray
+    curvature: FloatArray
+    pulley: IntArray
+
+
+class _Fields(NamedTuple):
+    """What is known of each element at outputs along the belt, shapes (outputs, elements)."""
+
+    time: FloatArray
+    """Shape (outputs,), s."""
+    tension: FloatArray
+    curvature: FloatArray
+    pulley: IntArray
+
+
+def turn_history(run: Run) -> BeltHistory:
+    """History of any material point over a turn of the belt in steady running, shape (elements, 1).
+
+    Parameters
+    ----------
+    run : Run
+        Steady running of a closed belt.
+    """
+    fields, drive = _fields(run, slice(-1, None)), run.drive
+    speed = float(np.squeeze(run.dataset.attrs["belt_parameter"]))
+    along = run.dataset["element_coordinate"].values
+    way = slice(None) if speed > 0.0 else slice(None, None, -1)
+    passed = along if speed > 0.0 else drive.belt_length - along[::-1]
+    tension, curvature, pulley = fields.tension[0, way], fields.curvature[0, way], fields.pulley[0, way]
+    return BeltHistory(passed, passed / abs(speed), tension[:, None], curvature[:, None], pulley[:, None])
+
+
+def belt_history(run: Run, points: int = 8) -> BeltHistory:
+    """Histories of equally spaced material points over a run.
+
+    Between outputs along the belt, values change linearly in time as seen from the pulleys, while the belt passes.
+
+    Parameters
+    ----------
+    run : Run
+        A run over time of a closed belt.
+    points : int, default 8
+        Number of material points.
+    """
+    fields, drive = _fields(run, slice(None)), run.drive
+    if len(fields.time) < 2:
+        raise ModelError("the run has one output along the belt, which is no history. Choose a shorter field_interval.")
+    along, length = run.dataset["element_coordinate"].values, drive.belt_length
+    passed = np.interp(fields.time, run.dataset["time"].values, _passed(run))
+    marks, parts = np.arange(points) * length / points, list[BeltHistory]()
+    for output in range(len(fields.time) - 1):
+        way = passed[output : output + 2]
+        steps = max(int(np.ceil(_STEPS * abs(way[1] - way[0]) / length * along.size)), 1)
+        part = np.arange(steps + (output == len(fields.time) - 2)) / steps
+        now = way[0] + part * (way[1] - way[0])
+        origin = np.zeros(2) if drive.frame.stays else way
+        before, after = (np.mod(now[:, None] - origin[side] + marks, length) for side in (0, 1))
+        mixed = [
+            (1.0 - part[:, None]) * np.interp(before, along, field[output], period=length)
+            + part[:, None] * np.interp(after, along, field[output + 1], period=length)
+            for field in (fields.tension, fields.curvature)
+        ]
+        nearest = fields.pulley[output][_nearest_element(along, length, before)]
+        time = fields.time[output] + part * (fields.time[output + 1] - fields.time[output])
+        parts.append(BeltHistory(now, time, mixed[0], mixed[1], nearest))
+    passed, time, tension, curvature, pulley = map(np.concatenate, zip(*parts, strict=True))
+    return BeltHistory(passed, time, tension, curvature, pulley)
+
+
+def _nearest_element(along: FloatArray, length: float, places: FloatArray) -> IntArray:
+    """Numbers of the elements whose middles are nearest to places along the belt."""
+    borders = 0.5 * (along + np.append(along[1:], along[0] + length))
+    return np.asarray(np.searchsorted(borders, places) % along.size)
+
+
+def _passed(run: Run) -> FloatArray:
+    """Length of unstretched belt that has passed at every output, m."""
+    time, speed = run.dataset["time"].values, run.dataset["belt_speed"].values.mean(axis=1)
+    speed = speed * run.drive.belt_length / run.drive.path.length
+    return np.concatenate([[0.0], np.cumsum(0.5 * (speed[1:] + speed[:-1]) * np.diff(time))])
+
+
+def _fields(run: Run, outputs: slice) -> _Fields:
+    """The fields at some outputs along the belt."""
+    run.require_output()
+    drive = run.drive
+    if drive.ends:
+        raise ModelError("an open belt has no turns, and so no history of tension and bending over them.")
+    dataset = run.dataset.isel(field_time=outputs)
+    nodes = dataset["nodal_coordinates"].values
+    lengths = element_lengths(dataset, drive.belt_length)
+    curvature = mean_curvature(recorded_kind(dataset, drive), nodes, lengths)
+    times = dataset["field_time"].values
+    return _Fields(times, dataset["belt_tension"].values, curvature, _nearest_pulley(dataset, drive, nodes[..., :2]))
+
+
+def _nearest_pulley(dataset: "xr.Dataset", drive: Drive, nodes: FloatArray) -> IntArray:
+    """Number of the pulley whose circle is nearest to the middle of each element, shape (outputs, elements)."""
+    middles = 0.5 * (nodes + np.roll(nodes, -1, axis=1))
+    centers = dataset["pulley_center"].sel(time=dataset["field_time"].values).values
+    distance = np.linalg.norm(middles[:, :, None] - centers[:, None], axis=-1) - np.abs(drive.radii)
+    return np.asarray(np.abs(distance).argmin(axis=-1))

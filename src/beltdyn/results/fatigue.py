@@ -1,0 +1,188 @@
+"""Fatigue of a belt in steady running and in a run: damage of cords and ribs by each pulley, and lives."""
+
+from collections.abc import Callable
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from beltdyn.arrays import FloatArray, IntArray
+from beltdyn.model import Drive
+from beltdyn.model.fatigue import CordFatigue
+from beltdyn.results.belt_history import BeltHistory, belt_history, turn_history
+from beltdyn.results.mechanics import across
+from beltdyn.results.rainflow import Cycles, rainflow, rainflow_of_turn
+from beltdyn.results.run import Run
+from beltdyn.results.schema import Variable, runs_steadily
+
+HOUR = 3600.0
+"""Seconds in an hour."""
+_LEAST_RANGE = 0.05
+"""Range of a cycle over the largest one below which it does not count: the mesh has ripples, and they are no cycles."""
+
+_PULLEY = ("pulley",)
+VARIABLES = {
+    "cord_force": Variable((), "N", "Largest force in the cords"),
+    "cord_damage_rate": Variable((), "1/h", "Damage of the cords, in an hour"),
+    "cord_life": Variable((), "h", "Life of the cords"),
+    "cord_damage": Variable(_PULLEY, "1/h", "Damage of the cords by the pulley, in an hour"),
+    "rib_damage_rate": Variable((), "1/h", "Damage of the ribs, in reference passages in an hour"),
+    "rib_life": Variable((), "h", "Life of the ribs"),
+    "rib_damage": Variable(_PULLEY, "1/h", "Damage of the ribs by the pulley, in reference passages in an hour"),
+}
+"""What steady running does to the belt, by name."""
+
+
+def known_variables(drive: Drive) -> list[str]:
+    """Those of `VARIABLES` for which a belt has data."""
+    belt, has_life = drive.belt, drive.belt.rib_fatigue is not None and drive.belt.rib_fatigue.passages is not None
+    known = {"cord": belt.cord_fatigue is not None, "rib": belt.rib_fatigue is not None}
+    return [name for name in VARIABLES if known[name[: name.index("_")]] and (name != "rib_life" or has_life)]
+
+
+class Damage(NamedTuple):
+    """Damage of a belt by each pulley.
+
+    Attributes
+    ----------
+    cord : ndarray, shape (pulleys,)
+        Sum of cycles over cycles to failure (Miner); NaN without an S-N line.
+    rib : ndarray, shape (pulleys,)
+        Passages, in those of the reference condition; NaN without data.
+    turns : float
+        Turns of the belt.
+    force : float
+        Largest equivalent force in the cords, N; NaN without an S-N line.
+    """
+
+    cord: FloatArray
+    rib: FloatArray
+    turns: float
+    force: float
+
+    def times(self, factor: float) -> "Damage":
+        """So many times the damage."""
+        return Damage(factor * self.cord, factor * self.rib, factor * self.turns, self.force)
+
+    def plus(self, other: "Damage") -> "Damage":
+        """The sum of both."""
+        force = max(self.force, other.force)
+        return Damage(self.cord + other.cord, self.rib + other.rib, self.turns + other.turns, force)
+
+
+def hourly_damage(run: Run) -> Damage:
+    """Damage in an hour of steady running of a closed belt."""
+    speed = abs(float(np.squeeze(run.dataset.attrs["belt_parameter"])))
+    turns = HOUR * speed / run.drive.belt_length
+    cord, force = _cord_damage(run.drive, turn_history(run), rainflow_of_turn)
+    rib = _rib_passages(run.drive, run.dataset["span_tension"].values[-1])
+    return Damage(cord, rib, 1.0, force).times(turns)
+
+
+def damage_of_run(run: Run) -> Damage:
+    """Damage in a run over time, the mean over material points of the belt, which begin in different places."""
+    if runs_steadily(run.dataset):
+        return hourly_damage(run).times(float(np.ptp(run.dataset["time"].values)) / HOUR)
+    history = belt_history(run)
+    cord, force = _cord_damage(run.drive, history, rainflow)
+    time, dataset = run.dataset["time"].values, run.dataset
+    rate = np.abs(dataset["belt_speed"].values.mean(axis=1)) / run.drive.path.length
+    passages = _rib_passages(run.drive, dataset["span_tension"].values)
+    turns = float(np.trapezoid(rate, time))
+    return Damage(cord, np.trapezoid(passages * rate[:, None], time, axis=0), turns, force)
+
+
+def fatigue_by_name(run: Run) -> dict[str, Any]:
+    """The values of `VARIABLES` in steady running for which the belt has data."""
+    names = known_variables(run.drive)
+    if not names:
+        return {}
+    damage = hourly_damage(run)
+    lives = Lives(run.drive, damage)
+    values = {
+        "cord_force": damage.force,
+        "cord_damage_rate": damage.cord.sum(),
+        "cord_life": lives.cord,
+        "cord_damage": damage.cord,
+        "rib_damage_rate": damage.rib.sum(),
+        "rib_life": lives.rib,
+        "rib_damage": damage.rib,
+    }
+    return {name: values[name] for name in names}
+
+
+class Lives:
+    """Lives of a belt under damage that goes on, h.
+
+    The life of cords ends with the S-N line: where all forces are below its last point, that gives a lower bound.
+
+    Parameters
+    ----------
+    drive : Drive
+        The drive.
+    damage : Damage
+        Of an hour, on average.
+    """
+
+    def __init__(self, drive: Drive, damage: Damage) -> None:
+        line, law = drive.belt.cord_fatigue, drive.belt.rib_fatigue
+        with np.errstate(divide="ignore"):
+            self.cord = float(np.nan if line is None else 1.0 / damage.cord.sum())
+            self.rib = float(np.nan if law is None or law.passages is None else law.passages / damage.rib.sum())
+        self.is_bound = line is not None and damage.force < line.forces[-1]
+        """Whether the life of the cords is a lower bound."""
+        if line is not None and self.is_bound and damage.turns > 0.0:
+            self.cord = min(self.cord, line.cycles[-1] / damage.turns)
+
+
+def cord_force(drive: Drive, line: CordFatigue, history: BeltHistory) -> FloatArray:
+    """Force in the cords, N, shape of the history.
+
+    T + EI κ²/2 is the tension that the belt would have without its bending stiffness, as S-N lines take it.
+    """
+    curvature = np.abs(history.curvature)
+    string = history.tension + 0.5 * drive.belt.bending_stiffness * curvature**2
+    return np.asarray(string + line.bending_force * curvature)
+
+
+def _cord_damage(drive: Drive, history: BeltHistory, count: Callable[[FloatArray], Cycles]) -> tuple[FloatArray, float]:
+    """Damage by each pulley, the mean over material points, and the largest equivalent force, N."""
+    line = drive.belt.cord_fatigue
+    damage = np.zeros(len(drive.pulleys))
+    if line is None:
+        return damage * np.nan, np.nan
+    forces, largest = cord_force(drive, line, history), 0.0
+    for force, pulley in zip(forces.T, history.pulley.T, strict=True):
+        part, most = miner(line, count(force).above(_LEAST_RANGE), pulley, damage.size)
+        damage, largest = damage + part / forces.shape[1], max(largest, most)
+    return damage, largest
+
+
+def miner(line: CordFatigue, cycles: Cycles, pulley: IntArray, pulleys: int) -> tuple[FloatArray, float]:
+    """Damage by each pulley by Miner's rule, and the largest equivalent force, N.
+
+    Parameters
+    ----------
+    line : CordFatigue
+        The S-N line.
+    cycles : Cycles
+        Cycles of the force in the cords, N; those that never pull do no damage.
+    pulley : ndarray of int, shape (k,)
+        The pulley at each value of the history; a cycle belongs to that of its largest force.
+    pulleys : int
+        Number of pulleys.
+    """
+    pulls = cycles.high > 0.0
+    force = line.equivalent_force(cycles.low[pulls], cycles.high[pulls])
+    part = cycles.number[pulls] / line.cycles_to_failure(force)
+    damage = np.bincount(pulley[cycles.at[pulls]], weights=part, minlength=pulleys)
+    return np.asarray(damage, dtype=float), float(force.max(initial=0.0))
+
+
+def _rib_passages(drive: Drive, span_tension: FloatArray) -> FloatArray:
+    """Reference passages for which one passage over each pulley counts, shape (..., pulleys)."""
+    law = drive.belt.rib_fatigue
+    if law is None:
+        return np.full((*span_tension.shape[:-1], len(drive.pulleys)), np.nan)
+    tension = np.maximum(*across(span_tension, drive))
+    diameters, sides = [2.0 * one.radius for one in drive.pulleys], [one.side for one in drive.pulleys]
+    return law.passages_at(tension, diameters, drive.belt.temperature, sides)

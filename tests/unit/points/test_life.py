@@ -1,0 +1,139 @@
+"""The life of a belt over a duty table and in runs."""
+
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+from beltdyn.errors import ModelError
+from beltdyn.model import Drive, dumps
+from beltdyn.points.life import life
+from beltdyn.points.operating_map import operating_map
+from beltdyn.results import Result, Run, open_result
+from beltdyn.results.fatigue import Damage
+from beltdyn.state.steady import steady_state
+
+TABLE = "duration [h], large torque [N m], temperature [°C]\n3, -12, 80\n1, -15, 103\n"
+
+
+@pytest.fixture(scope="module")
+def table(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    file = tmp_path_factory.mktemp("life") / "duty.csv"
+    file.write_text(TABLE, encoding="utf-8")
+    return file
+
+
+@pytest.fixture(scope="module")
+def found(fatigue_drive: Drive, table: Path) -> Result:
+    return life(fatigue_drive, table=table)
+
+
+def test_damage_of_the_duty_is_the_mean_of_its_rows(found: Result) -> None:
+    dataset, weights = found.dataset, np.array([0.75, 0.25])
+    for what in ("cord", "rib"):
+        rate = weights @ dataset[f"{what}_damage_rate"].values
+        assert float(dataset[f"mean_{what}_damage_rate"]) == pytest.approx(rate)
+        np.testing.assert_allclose(dataset[f"{what}_share"], weights @ dataset[f"{what}_damage"].values / rate)
+        assert float(dataset[f"{what}_share"].sum()) == pytest.approx(1.0)
+    assert float(dataset.cord_life) == pytest.approx(1.0 / float(dataset.mean_cord_damage_rate))
+    assert float(dataset.rib_life) == pytest.approx(1e9 / float(dataset.mean_rib_damage_rate))
+    assert dataset.cord_life.attrs == {"units": "h", "long_name": "B10 life of the cords"}
+    assert dataset.rib_life.attrs["long_name"] == "Life of the ribs"
+
+
+def test_rows_have_their_temperature_and_torque(found: Result) -> None:
+    """23 K halve the life of ribs, and they fail with the tension to the power 1.13."""
+    dataset = found.dataset
+    tight = dataset.span_tension.max("span").values
+    speed = dataset.belt_speed.values
+    expected = 2.0 * (tight[1] / tight[0]) ** 1.13 * speed[1] / speed[0]
+    assert float(dataset.rib_damage_rate[1] / dataset.rib_damage_rate[0]) == pytest.approx(expected, rel=1e-3)
+    assert not any("temperature" in text for text in found.warnings)
+
+
+def test_history_over_a_turn(found: Result, fatigue_drive: Drive) -> None:
+    dataset = found.dataset
+    tight, slack = dataset.span_tension.max("span"), dataset.span_tension.min("span")
+    np.testing.assert_allclose(dataset.tension.max("place"), tight, rtol=1e-3)
+    np.testing.assert_allclose(dataset.tension.min("place"), slack, rtol=0.01)
+    strain = 0.004 / fatigue_drive.radii
+    np.testing.assert_allclose(-dataset.bending_strain.min("place"), strain.max(), rtol=0.02)
+    assert dataset.place.attrs["units"] == "1"
+    middle = dataset.arc_place.values[0]
+    assert 0.3 < abs(middle[0] - middle[1]) < 0.7
+
+
+def test_relative_to_a_reference(fatigue_drive: Drive, table: Path, found: Result, tmp_path: Path) -> None:
+    """A larger pulley: twice the diameter, 2^5.6 times the life of ribs on it."""
+    small, large = fatigue_drive.pulleys
+    other = fatigue_drive.replace(pulley=[small, large.replace(torque={"kind": "constant", "value": -9.0})])
+    own = life(fatigue_drive)
+    file, results = tmp_path / "reference.toml", own.save(tmp_path / "own.nc")
+    file.write_text(dumps(fatigue_drive), encoding="utf-8")
+    for reference in (fatigue_drive, file, own, results):
+        relative = life(other, reference=reference).dataset
+        for what in ("cord", "rib"):
+            rates = [float(one[f"mean_{what}_damage_rate"]) for one in (own.dataset, relative)]
+            assert float(relative[f"relative_{what}_life"]) == pytest.approx(rates[0] / rates[1])
+            assert float(relative[f"relative_{what}_life"]) > 1.0
+
+
+def test_a_run_is_added(fatigue_drive: Drive) -> None:
+    """Steady running as a run: added as often as it fills the time, it halves the life."""
+    run, alone = steady_state(fatigue_drive), life(fatigue_drive)
+    once = float(np.ptp(run.dataset.time.values))
+    both = life(fatigue_drive, run=run, repeats=3600.0 / once).dataset
+    assert float(both.cord_share_of_run) == pytest.approx(0.5, rel=0.01)
+    assert float(both.cord_life / alone.dataset.cord_life) == pytest.approx(0.5, rel=0.01)
+    assert float(both.rib_life / alone.dataset.rib_life) == pytest.approx(0.5, rel=0.01)
+
+
+def test_warnings_about_the_line(fatigue_drive: Drive) -> None:
+    def with_forces(*forces: float) -> Drive:
+        assert fatigue_drive.belt.cord_fatigue is not None
+        line = fatigue_drive.belt.cord_fatigue.replace(forces=forces)
+        return fatigue_drive.replace(belt=fatigue_drive.belt.replace(cord_fatigue=line))
+
+    weak, strong = life(with_forces(500.0, 400.0)), life(with_forces(2000.0, 1500.0))
+    assert any("above the first point of the S-N line, 500 N" in text for text in weak.warnings)
+    assert any("below the last point of the S-N line, 1500 N" in text for text in strong.warnings)
+    assert strong.dataset.cord_life.attrs["long_name"] == "B10 life of the cords, at least"
+    assert float(strong.dataset.cord_life) == pytest.approx(1e9 / 17790.0, rel=0.01)
+    assert any("no temperature of the belt is given, so ribs are at 80 °C" in text for text in weak.warnings)
+
+
+def test_a_belt_without_data(drive: Drive) -> None:
+    with pytest.raises(ModelError, match=r"the belt has no fatigue data\. Give \[belt\.cord_fatigue\]"):
+        life(drive)
+
+
+def test_runs_that_do_not_fit(fatigue_drive: Drive, run: Run, tmp_path: Path, found: Result) -> None:
+    with pytest.raises(ModelError, match="the run has the pulleys driver, driven, the drive small, large"):
+        life(fatigue_drive, run=run)
+    with pytest.raises(ModelError, match="holds results of life"):
+        life(fatigue_drive, run=found.save(tmp_path / "life.nc"))
+    with pytest.raises(ModelError, match="reference holds results of run"):
+        life(fatigue_drive, reference=steady_state(fatigue_drive))
+    with pytest.raises(ModelError, match=r"repeats = -1 must be non-negative"):
+        life(fatigue_drive, run=steady_state(fatigue_drive), repeats=-1.0)
+
+
+def test_results_are_kept(fatigue_drive: Drive, tmp_path: Path) -> None:
+    life(fatigue_drive, output=tmp_path / "life.nc")
+    kept = open_result(tmp_path / "life.nc")
+    assert (kept.kind, kept.status) == ("life", "completed")
+    assert any("temperature" in text for text in kept.warnings)
+
+
+def test_maps_have_no_columns_of_fatigue(fatigue_drive: Drive) -> None:
+    dataset: Any = operating_map(fatigue_drive, load="1, 1.1", force_tolerance=0.05).dataset
+    assert not [name for name in dataset.data_vars if "damage" in str(name)]
+
+
+def test_damage_adds_up() -> None:
+    one = Damage(np.array([1.0, 2.0]), np.array([3.0, 4.0]), 10.0, 100.0)
+    both = one.times(2.0).plus(one)
+    np.testing.assert_array_equal(both.cord, [3.0, 6.0])
+    np.testing.assert_array_equal(both.rib, [9.0, 12.0])
+    assert (both.turns, both.force) == (30.0, 100.0)
