@@ -20,6 +20,7 @@ from .model import (
     CalibrationStudy,
     Constant,
     Contact,
+    CordFatigue,
     CosineRamp,
     CosineRampPublished,
     Drive,
@@ -48,6 +49,7 @@ from .model import (
     Pump,
     Ramp,
     Resistance,
+    RibFatigue,
     RotaryTensioner,
     ServoMotor,
     Simulation,
@@ -71,6 +73,7 @@ from .model import (
     tensioner_balances,
 )
 from .points.duty import duty
+from .points.life import life
 from .points.operating_map import operating_map
 from .points.tensioner_sheet import tensioner_sheet
 from .points.traction import traction
@@ -131,6 +134,7 @@ __all__ = [
     "Constant",
     "Contact",
     "ConvergenceError",
+    "CordFatigue",
     "CosineRamp",
     "CosineRampPublished",
     "Drive",
@@ -172,6 +176,7 @@ __all__ = [
     "Resolution",
     "Rest",
     "Result",
+    "RibFatigue",
     "RotaryTensioner",
     "Run",
     "ServoMotor",
@@ -210,6 +215,7 @@ __all__ = [
     "interactive",
     "json_schema",
     "layer_lengths",
+    "life",
     "load",
     "loads",
     "mesh_errors",

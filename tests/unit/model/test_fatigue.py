@@ -21,6 +21,10 @@ def law(**changes: Any) -> RibFatigue:
     return RibFatigue(**LAW | {"source": "test"} | changes)
 
 
+def sold(**keys: Any) -> Belt:
+    return Belt.model_validate({"installed_tension": 300.0} | keys)
+
+
 def test_an_s_n_line_passes_through_its_points_and_is_straight_over_logarithms() -> None:
     np.testing.assert_allclose(line().cycles_to_failure([500.0, 300.0, 200.0]), [1e7, 1e8, 1e10])
     np.testing.assert_allclose(line().cycles_to_failure(np.sqrt([500.0 * 300.0, 300.0 * 200.0])), [10**7.5, 1e9])
@@ -86,22 +90,22 @@ def test_the_name_of_the_life(survival: float | None, name: str) -> None:
 
 
 def test_several_belts_share_the_force() -> None:
-    one, three = (Belt(profile="A", ribs=ribs, installed_tension=300.0) for ribs in (1, 3))
+    one, three = (sold(profile="A", ribs=ribs) for ribs in (1, 3))
     assert one.cord_fatigue is not None
     assert three.cord_fatigue is not None
     np.testing.assert_allclose(three.cord_fatigue.forces, 3.0 * np.array(one.cord_fatigue.forces))
     assert three.cord_fatigue.bending_force == pytest.approx(3.0 * one.cord_fatigue.bending_force)
-    narrow, wide = (Belt(profile="PK", ribs=ribs, installed_tension=300.0) for ribs in (3, 6))
+    narrow, wide = (sold(profile="PK", ribs=ribs) for ribs in (3, 6))
     assert narrow.rib_fatigue is not None
     assert wide.rib_fatigue is not None
     assert wide.rib_fatigue.passages_at(200.0, 0.06) == pytest.approx(narrow.rib_fatigue.passages_at(100.0, 0.06))
 
 
 def test_data_of_a_belt_replace_those_of_its_profile() -> None:
-    belt = Belt(profile="A", ribs=2, installed_tension=300.0, cord_fatigue=LINE | {"source": "test"})
+    belt = sold(profile="A", ribs=2, cord_fatigue=LINE | {"source": "test"})
     assert belt.cord_fatigue == line()
     assert belt.replace(ribs=3).cord_fatigue == line()
-    other = Belt(profile="A", ribs=2, installed_tension=300.0).replace(profile="PK", ribs=6)
+    other = sold(profile="A", ribs=2).replace(profile="PK", ribs=6)
     assert other.cord_fatigue is None
     assert other.rib_fatigue is not None
 

@@ -107,8 +107,9 @@ def test_a_life_beyond_the_line_is_a_lower_bound(fatigue_drive: Drive) -> None:
     zero = np.zeros(2)
     strong = Lives(fatigue_drive, Damage(np.array([1e-7, 0.0]), zero, 1000.0, 650.0))
     weak = Lives(fatigue_drive, Damage(np.array([1e-7, 0.0]), zero, 1000.0, 500.0))
-    assert (strong.cord, strong.is_bound) == (pytest.approx(1e7), False)
-    assert (weak.cord, weak.is_bound) == (pytest.approx(1e6), True)
+    assert strong.cord == pytest.approx(1e7)
+    assert weak.cord == pytest.approx(1e6)
+    assert [strong.is_bound, weak.is_bound] == [False, True]
 
 
 def test_a_run_at_constant_load(make_run: Callable[..., Run], fatigue_drive: Drive) -> None:

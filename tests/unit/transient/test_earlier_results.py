@@ -33,6 +33,7 @@ OPTIONS: dict[str, dict[str, Any]] = {
     "operating_map": {"speed": "60, 120 rpm"},
     "traction": {"slip": "0.01 %"},
     "duty": {"table": "duty.csv"},
+    "life": {"table": "duty.csv"},
     "tensioner": {"tolerance": "1 mm", "wear": "2 mm"},
     "sensitivity": {"of": "efficiency", "numbers": "belt.length"},
     "modes": {"count": 2},
@@ -60,6 +61,9 @@ def fitting(name: str, drive: Drive) -> Drive:
     if name == "tensioner":
         slide = {"kind": "sliding", "pulley": "driven", "direction": [1, 0], "mass": 1.0, "preload": 60.0}
         return drive.replace(tensioner=[slide])
+    if name == "life":
+        line = {"cycles": [1e7, 1e9], "forces": [100.0, 50.0], "bending_force": 0.1, "source": "test"}
+        return drive.replace(belt=drive.belt.replace(cord_fatigue=line))
     if name == "response":
         waves = [{"order": 2, "amplitude": 0.02}]
         return drive.replace(pulley=[drive.pulleys[0].replace(harmonics=waves), drive.pulleys[1]])

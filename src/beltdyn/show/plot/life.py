@@ -72,8 +72,8 @@ def belt_history(result: Result, variable: str = "tension", *, ax: Axes | None =
     for name, at in zip(dataset["pulley"].values, dataset["arc_place"].values[worst[0]], strict=True):
         if np.isfinite(at):
             ax.axvline(at, color=INK, linewidth=0.5, linestyle=dash(2))
-            mark = {"rotation": 90, "ha": "right", "va": "top", "fontsize": 8, "color": INK}
-            ax.text(at, 0.98, str(name), transform=ax.get_xaxis_transform(), **mark)
+            over = ax.get_xaxis_transform()
+            ax.text(at, 0.98, str(name), transform=over, rotation=90, ha="right", va="top", fontsize=8, color=INK)
     ax.set(xlabel="Length of belt passed [turns]", ylabel=title, xlim=(0.0, 1.0))
     if dataset.sizes["row"] > 1:
         name_lines(ax)

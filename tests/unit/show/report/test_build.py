@@ -57,6 +57,11 @@ MAKERS: Mapping[str, tuple[Callable[[bd.Drive], Result], tuple[str, ...], tuple[
         ("Largest slip", "duration"),
         ("operating_points-0",),
     ),
+    "life": (
+        lambda drive: bd.life(drive, table=_table()),
+        ("Share in the damage of the ribs", "no temperature of the belt"),
+        ("belt_history-0",),
+    ),
     "sensitivity": (
         lambda drive: bd.sensitivity(drive, about="rest", numbers="belt.installed_tension"),
         ("belt.installed_tension",),
