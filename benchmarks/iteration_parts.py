@@ -16,6 +16,7 @@ from beltdyn.contact.contact_force import ContactFactors, contact_force
 from beltdyn.contact.contact_zone import out_of_reach
 from beltdyn.elements.dispatch import elastic_force
 from beltdyn.kernel import kernel
+from beltdyn.model import prepare
 from beltdyn.state.installation import bring_to_rest
 from beltdyn.system.arrays import NO_TANGENT, Equations, Motion, System, TangentFactors
 from beltdyn.system.assembly import assemble
@@ -101,7 +102,7 @@ def main() -> None:
     parser.add_argument("--elements", type=int, default=20)
     elements = parser.parse_args().elements
     drive = better(two_pulley(elements))
-    system = drive_system(drive)
+    system = drive_system(prepare(drive))
     state = bring_to_rest(drive).state.position
     motion = Motion(0.0, state, np.zeros_like(state), np.zeros_like(state))
     arguments = (system, motion, new_equations(system), no_multipliers(system))

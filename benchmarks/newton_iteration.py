@@ -12,7 +12,7 @@ from rich.table import Table
 
 from beltdyn.arrays import FloatArray
 from beltdyn.kernel import kernel
-from beltdyn.model import Drive
+from beltdyn.model import Drive, prepare
 from beltdyn.state.installation import bring_to_rest
 from beltdyn.system.arrays import Equations, Motion, System, TangentFactors
 from beltdyn.system.assembly import assemble
@@ -36,7 +36,7 @@ def iterate(system: System, motion: Motion, equations: Equations, none: FloatArr
 
 def time_iterations(drive: Drive) -> list[float]:
     """Microseconds per iteration of each round, on the belt in equilibrium on its pulleys."""
-    system = drive_system(drive)
+    system = drive_system(prepare(drive))
     state = bring_to_rest(drive).state
     motion = Motion(0.0, state.position, np.zeros_like(state.position), np.zeros_like(state.position))
     equations, none = new_equations(system), no_multipliers(system)

@@ -16,7 +16,7 @@ from xarray import Dataset
 
 from beltdyn import Drive, Run, simulate
 from beltdyn.arrays import FloatArray
-from beltdyn.model import Pulley
+from beltdyn.model import Pulley, prepare
 from beltdyn.model.hysteresis import compression_losses
 from beltdyn.results import summarize
 from beltdyn.theory.capstan import capstan_ratio
@@ -291,7 +291,7 @@ def slip_and_efficiency(run: Run, tolerance: float) -> Iterator[Number]:
     bent = float(losses_of_the_belt(run.drive).sum()) * summary.spans[0].belt_speed / summary.balance.power_in
     found = summary.pulleys[-1].slip
     yield Number("slip, %", 100.0 * loss, 100.0 * found, 100.0 * tolerance * loss)
-    pressed = float(compression_losses(run.drive).sum()) * summary.spans[0].belt_speed / summary.balance.power_in
+    pressed = float(compression_losses(run.prepared).sum()) * summary.spans[0].belt_speed / summary.balance.power_in
     more = 15.0 * pressed  # the tension on an arc is not that at rest
     yield Number("efficiency, %", 100.0 * (1.0 - loss - bent), 100.0 * summary.balance.efficiency, 0.1 + more)
 
@@ -305,7 +305,7 @@ def creep(run: Run) -> float:
 def losses_of_the_belt(drive: Drive) -> FloatArray:
     """Force by which bending on to each pulley and off, and compression on it, hold the belt back, N."""
     bent = bending_loss(drive.belt.bending_stiffness, drive.belt.bending_loss_factor, np.abs(drive.radii))
-    return bent + compression_losses(drive)
+    return bent + compression_losses(prepare(drive))
 
 
 def limit_between_fixed_centers(run: Run, tension: float) -> float:

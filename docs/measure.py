@@ -16,7 +16,7 @@ from random_drives import SEEDS, Judged, judge
 
 import beltdyn as bd
 from beltdyn.arrays import FloatArray
-from beltdyn.model import ERROR_LIMITS, layer_lengths
+from beltdyn.model import ERROR_LIMITS, layer_lengths, prepare
 from beltdyn.solvers.trajectory import Chunk, Statistics, drive_task
 from beltdyn.state.installation import drawn_in
 from beltdyn.state.static import find_equilibrium
@@ -353,7 +353,7 @@ def coarse_meshes() -> Iterator[Row]:
 def from_shift(elements: int, part: float) -> tuple[float, FloatArray]:
     """Case 1 from the rest of a belt shifted by part of an element: span tension at rest, driven speed over time."""
     drive = case_1(elements, rtol=1e-4)
-    system, path = drive_system(drive), drawn_in(drive, bd.install(drive), 1.0)
+    system, path = drive_system(prepare(drive)), drawn_in(prepare(drive), 1.0)
     stretch = path.length / float(np.sum(system.length))
     along = stretch * (np.concatenate([[0.0], np.cumsum(system.length)])[: system.nodes] + part * system.length[0])
     tangent = path.tangent(along)
@@ -361,7 +361,7 @@ def from_shift(elements: int, part: float) -> tuple[float, FloatArray]:
     laid = at_rest(system, np.hstack([path.position(along), stretch * tangent, normal]))
     state = find_equilibrium(system, laid).state
     seen = observe(system, np.zeros(1), state.position[None], state.velocity[None])
-    task = drive_task(drive, system, state, Statistics())
+    task = drive_task(prepare(drive), system, state, Statistics())
     states = Chunk.join(list(choose_integrator(drive)(task)))
     speed = states.at(task.instants[np.arange(task.instants.count)])[1][:, -1]
     return float(seen.span_tension[0, 0]), speed

@@ -26,7 +26,6 @@ def test_every_name_is_there(name: str) -> None:
 OF_THE_PACKAGE = {
     "ERROR_LIMITS",
     "Running",
-    "describe",
     "describe_time",
     "off_the_stop",
     "unresolved",

@@ -23,7 +23,10 @@ EXAMPLES = files("beltdyn") / "examples"
 
 def losses_by_hand(drive: bd.Drive) -> dict[str, float]:
     """Forces that hold the belt back, N."""
-    return {"belt bending": bending_resistance(drive), "belt compression": float(compression_losses(drive).sum())}
+    return {
+        "belt bending": bending_resistance(bd.prepare(drive)),
+        "belt compression": float(compression_losses(bd.prepare(drive)).sum()),
+    }
 
 
 @pytest.mark.parametrize("name", ["fan_direct_start", "unequal_radii"])

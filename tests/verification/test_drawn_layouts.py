@@ -15,7 +15,7 @@ import numpy as np
 import pytest
 
 from beltdyn.errors import BeltdynError
-from beltdyn.model import Drive
+from beltdyn.model import Drive, prepare
 from beltdyn.state.installation import Rest, bring_to_rest
 from beltdyn.state.staying import Standing, bring_to_stand
 from tests.lumped.drawn_layouts import layout_at_rest
@@ -41,7 +41,9 @@ def outcome(given: dict[str, Any]) -> str:
         drive = Drive(**given)
     except BeltdynError as error:
         return "refused" if is_true(given, str(error)) else f"wrong: {error}"
-    equal, graded = (_at_rest(given, partial(bring, drive)) for bring in (bring_to_rest, bring_to_stand))
+    equal, graded = (
+        _at_rest(given, bring) for bring in (partial(bring_to_rest, drive), partial(bring_to_stand, prepare(drive)))
+    )
     if "wrong" in equal or ("refused" in (equal, graded) and equal != graded):
         return f"wrong: {equal} on equal elements, {graded} on graded ones"
     return graded if "wrong" in graded else equal

@@ -12,7 +12,7 @@ import pytest
 from scipy.optimize import brentq
 
 from beltdyn.arrays import FloatArray
-from beltdyn.model import Belt, Drive
+from beltdyn.model import Belt, Drive, prepare
 from beltdyn.state.static import find_equilibrium
 from beltdyn.system.arrays import NO_TANGENT, System
 from beltdyn.system.assembly import assemble
@@ -98,7 +98,7 @@ def tension(drive: Drive) -> Callable[..., float]:
     def at_rest_on_pulleys(elements: int, kind: str = "ancf", sampling: str = "distributed") -> float:
         belt = drive.belt.replace(discretization=kind, elements=elements)
         resting = drive.replace(belt=belt, contact=drive.contact.replace(sampling=sampling))
-        system = drive_system(resting)
+        system = drive_system(prepare(resting))
         state = find_equilibrium(system, laid(system, drive.path)).state
         seen = observe(system, np.zeros(1), state.position[None], state.velocity[None])
         return float(np.mean(seen.belt_tension))

@@ -12,7 +12,7 @@ import numpy as np
 import pytest
 from scipy.optimize import brentq
 
-from beltdyn.model import Belt, Drive
+from beltdyn.model import Belt, Drive, prepare
 from beltdyn.state.static import find_equilibrium, standing
 from beltdyn.system.build import belt_system, drive_system
 from beltdyn.system.observe import observe
@@ -87,7 +87,7 @@ def installed() -> Callable[[int], tuple[float, float]]:
     def tension(elements: int) -> tuple[float, float]:
         drive: Drive = better(two_pulley(elements))
         drive = drive.replace(belt=drive.belt.replace(discretization="quintic"))
-        system = standing(drive_system(drive))
+        system = standing(drive_system(prepare(drive)))
         state = find_equilibrium(system, laid(system, drive.path)).state
         seen = observe(system, np.zeros(1), state.position[None], state.velocity[None])
         mean = float(np.mean(seen.belt_tension))

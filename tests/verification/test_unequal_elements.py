@@ -12,7 +12,7 @@ import numpy as np
 import pytest
 
 from beltdyn.arrays import FloatArray
-from beltdyn.model import Belt, Drive, Path
+from beltdyn.model import Belt, Drive, Path, prepare
 from beltdyn.observation.recording import Recording, result_layout
 from beltdyn.results import Run
 from beltdyn.results.derived.arc import wear_by_belt
@@ -189,7 +189,7 @@ def test_observation_at_rest(cut: Cut) -> None:
     hubs = np.abs(seen.hub_force[0, :, 0])
     np.testing.assert_allclose(hubs, hubs[0], rtol=1e-8)  # one force along the line of both centres
     np.testing.assert_allclose(seen.span_tension.sum(), hubs, rtol=0.01)  # mean tensions of few elements
-    along, free = result_layout(drive, system).belt_coordinate, seen.contact_pulley[0] < 0
+    along, free = result_layout(prepare(drive), system).belt_coordinate, seen.contact_pulley[0] < 0
     ways = np.linalg.norm(np.diff(seen.contact_position[0], axis=0), axis=1) / np.diff(along)
     stretch = (1.0 + 2.0 * tension(system, state) / drive.belt.axial_stiffness) ** 0.5
     np.testing.assert_allclose(ways[free[1:] & free[:-1]], stretch, rtol=0.0, atol=stretch - 1.0)
@@ -199,9 +199,10 @@ def run_of(drive: Drive, lengths: FloatArray | None) -> Run:
     """A run from rest, with its results."""
     system = system_of(drive, lengths)
     start = find_equilibrium(standing(system), laid(system, drive.path)).state
-    with Recording(drive, system, None, "Unequal elements", None) as recording:
-        recording.start(drive, system, ())
-        for chunk in choose_integrator(drive)(drive_task(drive, system, start, recording.statistics)):
+    prepared = prepare(drive)
+    with Recording(prepared, system, None, "Unequal elements", None) as recording:
+        recording.start(prepared, system, ())
+        for chunk in choose_integrator(drive)(drive_task(prepared, system, start, recording.statistics)):
             recording.take(chunk)
     return recording.run()
 

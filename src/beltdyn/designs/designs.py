@@ -11,8 +11,7 @@ from beltdyn.designs.found_state import FoundState, Resting, Running
 from beltdyn.designs.named_results import need_bands
 from beltdyn.designs.watched import OperatingPoint, Watched, held
 from beltdyn.errors import ConvergenceError, ModelError
-from beltdyn.model import Drive
-from beltdyn.model.completion import take_up
+from beltdyn.model import Drive, prepare
 from beltdyn.model.study import FreeNumber, Points
 from beltdyn.parts.change import converted, unit_at, value_at
 from beltdyn.state.search import go_on
@@ -40,7 +39,7 @@ class SmallChanges:
         self._given, self._rest = given, rest
         self._tightening = np.inf
         if given.belt.installed_tension is not None:
-            change = CHANGE * rest.drive.belt_length
+            change = CHANGE * rest.prepared.belt_length
             shorter, longer = (self._tension(self._shortened(rest.drive, sense * change)) for sense in (1.0, -1.0))
             self._tightening = (shorter - longer) / (2.0 * change)
 
@@ -56,14 +55,15 @@ class SmallChanges:
         return drive
 
     def _shortened(self, drive: Drive, distance: float) -> Drive:
-        """A drive with a shorter belt or, where its length is given, with more take-up, m; see `Drive.tightened`."""
+        """A drive with a shorter belt or, where its length is given, with more take-up, m; see `Prepared.tightened`."""
+        prepared = prepare(drive)
         if self._given.belt.length is None:
-            return drive.with_({"belt.length": drive.belt_length - distance})
-        return drive.replace(tensioner=take_up(drive.completed, distance))
+            return drive.with_({"belt.length": prepared.belt_length - distance})
+        return drive.replace(tensioner=prepared.taken_up(distance))
 
     def _tension(self, drive: Drive) -> float:
         """At rest, on the same mesh."""
-        return stand_like(drive, self._rest).tension
+        return stand_like(prepare(drive), self._rest).tension
 
 
 _DIGITS = 6
@@ -181,7 +181,7 @@ class Designs:
             """A drive on the way from the other design, at rest."""
             begin = changes if near is None else near.changes
             there = {path: begin[path] + part * (end - begin[path]) for path, end in changes.items()}
-            return bring_to_stand(self._given(changes if part == 1.0 else there))
+            return bring_to_stand(prepare(self._given(changes if part == 1.0 else there)))
 
         try:
             rest = between(1.0)

@@ -9,7 +9,7 @@ import numpy as np
 
 from beltdyn.arrays import ComplexArray, FloatArray
 from beltdyn.designs.named_results import MODES, OF_MODES, name_of, values_of, variable_and_label
-from beltdyn.model import Drive
+from beltdyn.model import Drive, prepare
 from beltdyn.points.operating_points import labels_of
 from beltdyn.results import Run
 from beltdyn.state.installation import looked_at
@@ -79,7 +79,7 @@ class FoundModes:
     """
 
     def __init__(self, motions: SmallMotions) -> None:
-        self._dry = dry_tensioners(motions.drive)
+        self._dry = dry_tensioners(motions.prepared)
         self._motions = self.variants(motions)
         self._known = dict[int, list[_Lowest]]()
 
@@ -383,7 +383,7 @@ class Resting(FoundState):
     def values(self) -> Mapping[str, float]:
         """Its belt's length, tensions, hub loads, wrap angles and tensioners by name."""
         rest, labels = self.rest, labels_of(self.rest.drive)
-        there = looked_at(rest.drive, rest.system, rest.state).installation
+        there = looked_at(rest.prepared, rest.system, rest.state).installation
         found = {
             "span_tension": ("span", there.span_tensions),
             "hub_load": ("pulley", np.linalg.norm(there.hub_loads, axis=1)),
@@ -396,7 +396,7 @@ class Resting(FoundState):
             for label, value in zip(labels[of], values, strict=True)
         }
         whole = {
-            "belt_length": self.drive.belt_length,
+            "belt_length": rest.prepared.belt_length,
             "tension": rest.tension,
             "largest_tension": float(there.span_tensions.max()),
         }
@@ -409,4 +409,4 @@ class Resting(FoundState):
 
     def neighbour(self, drive: Drive) -> FoundState:
         """The rest of a drive that differs a little, on the same mesh."""
-        return Resting(stand_like(drive, self.rest), self)
+        return Resting(stand_like(prepare(drive), self.rest), self)

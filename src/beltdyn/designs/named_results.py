@@ -5,7 +5,7 @@ from collections.abc import Iterable, Mapping, Sequence
 import numpy as np
 
 from beltdyn.errors import ModelError
-from beltdyn.model import Drive
+from beltdyn.model import Drive, prepare
 from beltdyn.parts.messages import suggest
 from beltdyn.points.operating_points import VARIABLES, labels_of, values_by_name
 from beltdyn.results import Run, Variable
@@ -74,7 +74,7 @@ def names_of(drive: Drive, *, at_rest: bool = False) -> list[str]:
 
 def _numbers_of_modes(drive: Drive) -> list[str]:
     """Numbers of modes, as `beltdyn modes` gives them."""
-    firsts = (1, FIRST_STUCK) if dry_tensioners(drive).size else (1,)
+    firsts = (1, FIRST_STUCK) if dry_tensioners(prepare(drive)).size else (1,)
     return [str(first + one) for first in firsts for one in range(MODES)]
 
 

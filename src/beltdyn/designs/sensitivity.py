@@ -21,7 +21,7 @@ from beltdyn.designs.found_state import FoundState, Resting, Running
 from beltdyn.designs.named_results import listed, names_in, names_of, need_bands, unit_of
 from beltdyn.designs.watched import OperatingPoint, named
 from beltdyn.errors import ConvergenceError, ModelError
-from beltdyn.model import Drive
+from beltdyn.model import Drive, prepare
 from beltdyn.model.study import Points
 from beltdyn.model.toml_writer import tolerances_of
 from beltdyn.parts.change import unit_at, value_at
@@ -313,7 +313,7 @@ def sensitivity(
         chosen_numbers(given, numbers, tolerances),
         names_in(names_of(drive, at_rest=about == REST), of or _USUAL[about]),
     )
-    rest = bring_to_stand(given)
+    rest = bring_to_stand(prepare(given))
     bands = need_bands(wanted)
     state = (
         Resting(rest)

@@ -37,8 +37,9 @@ from beltdyn.model.contact import Contact
 from beltdyn.model.drive import Drive
 from beltdyn.model.end import FixedEnd, PulledEnd, WeightEnd
 from beltdyn.model.fatigue import CordFatigue, RibFatigue
-from beltdyn.model.installation import Installation, describe, install, tensioner_balances
+from beltdyn.model.installation import Installation
 from beltdyn.model.path import Path
+from beltdyn.model.prepared import Prepared, install, prepare, tensioner_balances
 from beltdyn.model.pulley import Pulley
 from beltdyn.model.resolution import ERROR_LIMITS, Running, elements_needed, layer_lengths, mesh_errors, unresolved
 from beltdyn.model.simulation import Limits, Simulation, Steady
@@ -80,6 +81,7 @@ __all__ = [
     "OptimizationStudy",
     "ParameterStudy",
     "Path",
+    "Prepared",
     "Profile",
     "PulledEnd",
     "Pulley",
@@ -98,7 +100,6 @@ __all__ = [
     "TensionerBalance",
     "WeightEnd",
     "advise",
-    "describe",
     "describe_time",
     "dumps",
     "elements_needed",
@@ -110,6 +111,7 @@ __all__ = [
     "loads",
     "mesh_errors",
     "off_the_stop",
+    "prepare",
     "read_catalogue",
     "tensioner_balances",
     "unresolved",

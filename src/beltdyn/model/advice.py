@@ -9,8 +9,9 @@ from beltdyn.contact.friction import LAWS
 from beltdyn.model.contact import Contact
 from beltdyn.model.defaults import CREEP_LENGTHS, DAMPING_RATIO
 from beltdyn.model.drive import Drive
-from beltdyn.model.installation import Installation, tensioner_balances
+from beltdyn.model.installation import Installation
 from beltdyn.model.plausibility import judge_plausibility
+from beltdyn.model.prepared import tensioner_balances
 from beltdyn.model.pulley import fastest_rim
 from beltdyn.model.resolution import Running, elements_needed, mesh_errors, unresolved
 from beltdyn.parts.messages import Finding, listing

@@ -5,8 +5,8 @@ from typing import NamedTuple
 import numpy as np
 
 from beltdyn.arrays import FloatArray
-from beltdyn.model.drive import Drive
 from beltdyn.model.end import pulling
+from beltdyn.model.prepared import Prepared
 from beltdyn.model.resolution import layer_lengths
 from beltdyn.theory.hysteresis import BENDING_SHARE, STRETCH_SHARE, bending_loss, compression_loss
 
@@ -49,72 +49,72 @@ class BendingAtPoints(NamedTuple):
     """Over which slow changes of the curvature are smoothed, m."""
 
 
-def bending_at_points(drive: Drive) -> BendingAtPoints:
+def bending_at_points(prepared: Prepared) -> BendingAtPoints:
     """Bending hysteresis on a staying mesh, where curvatures have no waves of the mesh."""
-    belt = drive.belt
+    belt = prepared.belt
     modulus = BENDING_SHARE / _KEPT_AT_POINTS * belt.bending_loss_factor * belt.bending_stiffness
-    return BendingAtPoints(modulus, _SMOOTHED_AT_POINTS * layer_lengths(drive, drive.tension_at_rest)[0])
+    return BendingAtPoints(modulus, _SMOOTHED_AT_POINTS * layer_lengths(prepared, prepared.tension_at_rest)[0])
 
 
-def passing_strains(drive: Drive) -> Passing:
-    """The history of strains along the belt of a drive.
+def passing_strains(prepared: Prepared) -> Passing:
+    """The history of strains along the belt of a prepared.
 
     With fixed centres the stretch of the whole belt stays as it was at rest, and tensions lie as far above as below
     it; where a spring or an end holds a tension, the slack side stays at it.  The tension changes over R / mu, the
     length of an arc that slides until it has grown by a factor of e, the curvature over sqrt(EI / T) and an element.
     """
-    tension = drive.tension_at_rest
-    belt, friction = drive.belt, np.maximum(drive.frictions, _LEAST_FRICTION)
-    holds = bool(drive.moving_tensioners) or pulling(drive.path_ends) is not None
+    tension = prepared.tension_at_rest
+    belt, friction = prepared.belt, np.maximum(prepared.frictions, _LEAST_FRICTION)
+    holds = bool(prepared.carriers) or pulling(prepared.path_ends) is not None
     return Passing(
         strain=0.5 * (float(belt.stretch_parameters.stretch(tension)) ** 2 - 1.0),
-        stretch_length=float((drive.radii / friction).max()),
-        bending_length=SMOOTHED * layer_lengths(drive, tension)[0],
+        stretch_length=float((prepared.radii / friction).max()),
+        bending_length=SMOOTHED * layer_lengths(prepared, tension)[0],
         stretch_share=BENDING_SHARE if holds else STRETCH_SHARE,
         bending_share=BENDING_SHARE / _KEPT,
     )
 
 
-def bending_resistance(drive: Drive) -> float:
+def bending_resistance(prepared: Prepared) -> float:
     """Resisting force of bending hysteresis on all pulleys of a drive, N."""
-    belt = drive.belt
-    return float(bending_loss(belt.bending_stiffness, belt.bending_loss_factor, drive.radii).sum())
+    belt = prepared.belt
+    return float(bending_loss(belt.bending_stiffness, belt.bending_loss_factor, prepared.radii).sum())
 
 
-def rolling_resistances(drive: Drive) -> FloatArray:
+def rolling_resistances(prepared: Prepared) -> FloatArray:
     """Coefficients of rolling resistance equivalent to the compression losses of the belt.
 
     Per metre of belt, rho times the normal force along an arc of the angle phi takes rho phi T.  T is that at rest.
 
     Parameters
     ----------
-    drive : Drive
+    prepared : Prepared
 
     Returns
     -------
     ndarray, shape (n,)
         rho of each pulley.
     """
-    if drive.belt.compression_loss_factor == 0.0:
-        return np.zeros(len(drive.pulleys))
-    return np.asarray(compression_losses(drive) / (drive.tension_at_rest * np.abs(drive.path.wrap_angles)))
+    if prepared.belt.compression_loss_factor == 0.0:
+        return np.zeros(len(prepared.pulleys))
+    return np.asarray(compression_losses(prepared) / (prepared.tension_at_rest * np.abs(prepared.path.wrap_angles)))
 
 
-def compression_losses(drive: Drive) -> FloatArray:
+def compression_losses(prepared: Prepared) -> FloatArray:
     """Resisting force of compression on each pulley of a drive, at the tension at rest, N.
 
     Parameters
     ----------
-    drive : Drive
+    prepared : Prepared
 
     Returns
     -------
     ndarray, shape (n,)
         Zero where the back of the belt touches, which no groove presses.
     """
-    belt = drive.belt
+    belt = prepared.belt
     if belt.contact_stiffness is None or belt.compression_loss_factor == 0.0:
-        return np.zeros(len(drive.pulleys))
-    stiffness, tension = belt.contact_stiffness, drive.tension_at_rest
-    losses = compression_loss(tension, belt.bending_stiffness, stiffness, belt.compression_loss_factor, drive.radii)
-    return np.asarray(losses * np.array([pulley.side == "inside" for pulley in drive.pulleys]))
+        return np.zeros(len(prepared.pulleys))
+    stiffness, tension = belt.contact_stiffness, prepared.tension_at_rest
+    losses = compression_loss(tension, belt.bending_stiffness, stiffness, belt.compression_loss_factor, prepared.radii)
+    return np.asarray(losses * np.array([pulley.side == "inside" for pulley in prepared.pulleys]))

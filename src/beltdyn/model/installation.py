@@ -5,10 +5,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from beltdyn.arrays import FloatArray
-from beltdyn.model.carrier import moved
-from beltdyn.model.drive import Drive
+from beltdyn.model.belt import Belt
 from beltdyn.model.path import Path
-from beltdyn.model.tensioner_balance import TensionerBalance, all_balances
 from beltdyn.theory.sagging_span import lowest_frequency, sag_parameter
 
 
@@ -55,91 +53,23 @@ class Installation:
     span_frequencies: FloatArray
 
 
-def install(drive: Drive) -> Installation:
-    """Estimate tension, penetration and tensioner positions for the belt at rest.
-
-    `beltdyn.model.static_estimate` and `beltdyn.model.tensioner_balance` have the equations, which leave out bending
-    stiffness and weight; `beltdyn.bring_to_rest` finds static equilibrium.
-
-    Parameters
-    ----------
-    drive : Drive
-
-    Returns
-    -------
-    Installation
-
-    Examples
-    --------
-    >>> round(bd.install(drive).tension, 1)  # N
-    26.6
-    """
-    estimate, positions = drive.balance
-    path = estimate.path
-    turned = path.span_directions[: path.count] - np.roll(path.span_directions, 1, axis=0)[: path.count]
-    tensions = np.full(path.spans, estimate.tension)
-    return describe(drive, tensions, estimate.penetrations.copy(), estimate.tension * turned, positions.copy())
-
-
-def describe(
-    drive: Drive, span_tensions: FloatArray, penetrations: FloatArray, hub_loads: FloatArray, positions: FloatArray
-) -> Installation:
-    """Describe a belt at rest."""
-    path = moved(drive.path, drive.carriers, positions)
-    laid = path.length / drive.belt_length
-    return Installation(
-        strain=laid - 1,
-        laid_tension=float(drive.belt.stretch_parameters.tension(laid)),
-        tension=float(span_tensions.mean()),
-        span_tensions=span_tensions,
-        penetrations=penetrations,
-        tensioner_positions=positions,
-        path=path,
-        hub_loads=hub_loads,
-        span_frequencies=_span_frequencies(drive, path, span_tensions),
-    )
-
-
-def tensioner_balances(drive: Drive, installation: Installation) -> tuple[tuple[TensionerBalance, ...], ...]:
-    """Find all equilibrium positions of each spring-loaded tensioner, with the others held.
-
-    Parameters
-    ----------
-    drive : Drive
-    installation : Installation
-        The belt at rest.
-
-    Returns
-    -------
-    tuple of tuples of TensionerBalance
-        For each tensioner, in ascending order of the positions; without bending stiffness and weight.
-
-    Examples
-    --------
-    >>> bd.tensioner_balances(drive, bd.install(drive))  # it has no tensioners
-    ()
-    """
-    belt, contact = drive.loaded_belt, drive.completed.contact
-    return all_balances(drive.path, belt, contact, drive.carriers, installation.tensioner_positions)
-
-
-def _span_frequencies(drive: Drive, path: Path, tensions: FloatArray) -> FloatArray:
-    """First frequencies of spans, Hz; see `theory.sagging_span`.
+def span_frequencies(belt: Belt, path: Path, tensions: FloatArray, gravity: tuple[float, float]) -> FloatArray:
+    """First frequencies of the spans of a belt of given length, Hz; see `theory.sagging_span`.
 
     The mass of a metre is that of the stretched belt. A slack belt does not swing: zero.
     """
     if not tensions.min() > 0.0:
         return np.zeros(path.spans)
-    belt, mass = drive.belt, drive.belt.mass_per_length * drive.belt_length / path.length
-    across = np.abs(path.span_directions @ np.array([-drive.gravity[1], drive.gravity[0]]))
+    mass = belt.mass_per_length * belt.given_length / path.length
+    across = np.abs(path.span_directions @ np.array([-gravity[1], gravity[0]]))
     found = [
         lowest_frequency(
             length,
             tension,
             mass,
             bending=belt.bending_stiffness,
-            sag_parameter=sag_parameter(mass * gravity, length, tension, belt.local_stiffness(tension)),
+            sag_parameter=sag_parameter(mass * weight, length, tension, belt.local_stiffness(tension)),
         )
-        for length, gravity, tension in zip(path.span_lengths.tolist(), across.tolist(), tensions.tolist(), strict=True)
+        for length, weight, tension in zip(path.span_lengths.tolist(), across.tolist(), tensions.tolist(), strict=True)
     ]
     return np.array(found)

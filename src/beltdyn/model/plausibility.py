@@ -9,7 +9,8 @@ from beltdyn.arrays import FloatArray
 from beltdyn.errors import BeltdynError
 from beltdyn.machines.loads.load import Load
 from beltdyn.model.drive import Drive
-from beltdyn.model.installation import Installation, install
+from beltdyn.model.installation import Installation
+from beltdyn.model.prepared import install
 from beltdyn.model.pulley import Pulley
 from beltdyn.parts.messages import Finding, listing
 from beltdyn.parts.quantity import RPM

@@ -7,7 +7,7 @@ from numpy.typing import NDArray
 
 from beltdyn.arrays import BoolArray, FloatArray
 from beltdyn.errors import ConvergenceError, SlipError
-from beltdyn.model import Drive
+from beltdyn.model import Drive, Prepared
 from beltdyn.parts.quantity import RPM
 from beltdyn.results.checks.sliding import SWEEP_REMEDY
 from beltdyn.results.friction_work import FrictionWork, MaterialWork, Touch
@@ -99,17 +99,19 @@ class Observer:
 
     Parameters
     ----------
-    drive, system
+    prepared, system
         What is simulated.
     belt_coordinate : ndarray, shape (points,)
         Of the contact points, m.
     """
 
-    def __init__(self, drive: Drive, system: System, belt_coordinate: FloatArray) -> None:
-        self._drive, self._system, self._belt_coordinate = drive, system, belt_coordinate
+    def __init__(self, prepared: Prepared, system: System, belt_coordinate: FloatArray) -> None:
+        self._prepared, self._system, self._belt_coordinate = prepared, system, belt_coordinate
         lengths = curve_lengths(system)
         self._shares = lengths / np.sum(lengths)
-        self._friction_work = FrictionWork(drive, np.outer(lengths, system.contact.weights).ravel(), len(lengths))
+        self._friction_work = FrictionWork(
+            prepared.drive, np.outer(lengths, system.contact.weights).ravel(), len(lengths)
+        )
         self._material_work = MaterialWork(lengths)
         self._energy = EnergyAccount()
         self._flutter = None if isinstance(system.frame, Flowing) else FlutterWatch(system)
@@ -131,7 +133,7 @@ class Observer:
         """
         seen = observe_motion(self._system, states.position, states.velocity, states.forces, shown)
         touched, centers, places = seen.contact_pulley, seen.pulley_center, seen.contact_position
-        aside = mid_span_displacements(self._drive, centers, places, touched)
+        aside = mid_span_displacements(self._prepared.drive, centers, places, touched)
         lost = np.abs(seen.friction_force * seen.slip_velocity)
         on_arc, on_belt = self._works(Touch(states.time, centers, places, touched, lost), states, shown)
         potential = np.stack([seen.spring_energy, seen.potential_energy], axis=1)
@@ -145,7 +147,7 @@ class Observer:
         at_outputs = {
             **rows,
             **sliding_of_pulleys(
-                self._drive,
+                self._prepared.drive,
                 self._belt_coordinate,
                 rows["contact_pulley"],
                 rows["normal_force"],

@@ -11,7 +11,7 @@ import numpy as np
 
 from beltdyn.arrays import FloatArray, IntArray
 from beltdyn.errors import SlipError
-from beltdyn.model import Drive
+from beltdyn.model import Prepared
 from beltdyn.model.advice import other_creep
 from beltdyn.model.simulation import Frame, FrameName
 from beltdyn.observation.band_limit import BandLimit
@@ -39,9 +39,9 @@ _NEAR = 0.4
 """Mean step over a bound from which on the bound is felt."""
 
 
-def step_bound(drive: Drive, statistics: Statistics, reached: float) -> str:
+def step_bound(prepared: Prepared, statistics: Statistics, reached: float) -> str:
     """Say what bounds the time steps, and what would let them be longer."""
-    simulation = drive.simulation
+    simulation = prepared.simulation
     taken, rejected = statistics.steps, statistics.rejected_steps
     if taken == 0:
         return ""
@@ -49,8 +49,8 @@ def step_bound(drive: Drive, statistics: Statistics, reached: float) -> str:
     if share > _MANY:
         return (
             f"{share:.0%} of the time steps are rejected because friction builds up within a small slip "
-            f"or contact is stiff. For a faster run, {other_creep(drive, _GENTLER)}, which adds to the "
-            f"slip; or reduce contact.stiffness = {drive.contact_stiffness:.2g} N/m^2, which reduces "
+            f"or contact is stiff. For a faster run, {other_creep(prepared.drive, _GENTLER)}, which adds to the "
+            f"slip; or reduce contact.stiffness = {prepared.contact_stiffness:.2g} N/m^2, which reduces "
             "the tension."
         )
     if simulation.max_step is not None and mean > _NEAR * simulation.max_step:
@@ -60,7 +60,7 @@ def step_bound(drive: Drive, statistics: Statistics, reached: float) -> str:
         return f"Steps end on outputs: a simulation.output_interval above {interval:g} s is faster."
     return (
         f"Steps are as short as simulation.rtol = {simulation.rtol:g} requires where the belt vibrates "
-        f"on its pulleys. A larger value is faster, as are fewer belt.elements than {drive.elements}; "
+        f"on its pulleys. A larger value is faster, as are fewer belt.elements than {prepared.elements}; "
         "`beltdyn check` shows the loss of accuracy."
     )
 
@@ -68,10 +68,10 @@ def step_bound(drive: Drive, statistics: Statistics, reached: float) -> str:
 # Names and reference coordinates of the results of a drive
 
 
-def result_layout(drive: Drive, system: System) -> Layout:
+def result_layout(prepared: Prepared, system: System) -> Layout:
     """Names and reference coordinates of the results."""
-    names = tuple(pulley.name for pulley in drive.pulleys)
-    spans = tuple(f"{a}-{b}" for a, b in drive.spans)
+    names = tuple(pulley.name for pulley in prepared.pulleys)
+    spans = tuple(f"{a}-{b}" for a, b in prepared.spans)
     lengths = curve_lengths(system)
     starts = np.cumsum(lengths) - lengths
     return Layout(
@@ -82,17 +82,17 @@ def result_layout(drive: Drive, system: System) -> Layout:
         belt_coordinate=(starts[:, None] + lengths[:, None] * system.contact.points).ravel(),
         coordinate_names=element_kind(system).coordinates,
         tensioners=tuple(names[pulley] for pulley in system.tensioners.pulley),
-        bodies=_bodies(drive, system),
+        bodies=_bodies(prepared, system),
     )
 
 
-def _bodies(drive: Drive, system: System) -> tuple[str, ...]:
+def _bodies(prepared: Prepared, system: System) -> tuple[str, ...]:
     """Names of rims, of bodies and controllers behind them, of the belt that flows, and of tensioners."""
-    names = [pulley.name for pulley in drive.pulleys]
-    hubs = [f"{one.name} hub[{number}]" for one in drive.pulleys for number, _ in enumerate(one.hub, 1)]
+    names = [pulley.name for pulley in prepared.pulleys]
+    hubs = [f"{one.name} hub[{number}]" for one in prepared.pulleys for number, _ in enumerate(one.hub, 1)]
     lags = [
         f"{one.name} load[{number}]"
-        for one in drive.pulleys
+        for one in prepared.pulleys
         for number, load in enumerate(one.load, 1)
         if load.state_lag is not None
     ]
@@ -109,7 +109,7 @@ _GROUP = 64
 """Of these that are filtered together."""
 
 
-_GIVEN = ("_drive", "_system", "_title", "_about", "_instants", "statistics", "watch", "integrator")
+_GIVEN = ("_prepared", "_system", "_title", "_about", "_instants", "statistics", "watch", "integrator")
 _GROWING = ("_filter", "_filtered", "_observer", "_findings", "_before", "_done", "_written", "_step", "_channels")
 _KEPT = _GIVEN + _GROWING
 """What a recording that is gone on with takes over."""
@@ -123,7 +123,7 @@ class Recording:
 
     Parameters
     ----------
-    drive, system
+    prepared, system
         What is simulated.
     output
         Result file, or None for memory.
@@ -144,7 +144,7 @@ class Recording:
 
     def __init__(
         self,
-        drive: Drive,
+        prepared: Prepared,
         system: System,
         output: Path | str | None,
         title: str,
@@ -154,18 +154,21 @@ class Recording:
     ) -> None:
         self.statistics = Statistics()
         self.watch: Callable[[Arrays], None] | None = None
-        self.integrator: str = drive.simulation.integrator
-        self._drive, self._system, self._progress = drive, system, progress
+        self.integrator: str = prepared.simulation.integrator
+        self._prepared, self._system, self._progress = prepared, system, progress
         self._path = Path(output) if output is not None else None
         self._title, self._about = title, attributes
-        layout, origin = result_layout(drive, system), provenance(drive.text, title) | self._mesh() | attributes
+        layout, origin = (
+            result_layout(prepared, system),
+            provenance(prepared.drive.text, title) | self._mesh() | attributes,
+        )
         self._recorder: Recorder = (
             FileRecorder(self._path, layout, origin, overwrite) if self._path else MemoryRecorder(layout, origin)
         )
-        self._instants = drive.simulation.instants
+        self._instants = prepared.simulation.instants
         self._filter = BandLimit(self._instants.interval)
         self._filtered = FILTER_REACH
-        self._observer = Observer(drive, system, layout.belt_coordinate)
+        self._observer = Observer(prepared, system, layout.belt_coordinate)
         self._findings: dict[str, Any] = {}
         self._waiting: list[Chunk] = []
         self._before: tuple[Chunk, Arrays] | None = None
@@ -181,8 +184,8 @@ class Recording:
     def _mesh(self) -> dict[str, Any]:
         """Attributes that tell of the mesh."""
         name: FrameName = "travelling" if isinstance(self._system.frame, Travelling) else "staying"
-        frame = self._drive.frame if self._drive.frame.name == name else Frame(name, "as the analysis needs it")
-        return mesh_used(self._drive, frame, len(self._system.length))
+        frame = self._prepared.frame if self._prepared.frame.name == name else Frame(name, "as the analysis needs it")
+        return mesh_used(self._prepared.drive, frame, len(self._system.length))
 
     def keep(self) -> dict[str, Any]:
         """Write what waits, and give all that is needed to go on from there in another process."""
@@ -205,7 +208,7 @@ class Recording:
         for name in _KEPT:
             setattr(made, name, kept[name])
         made._path, made._progress = output, progress
-        layout = result_layout(made._drive, made._system)
+        layout = result_layout(made._prepared, made._system)
         made._recorder = FileRecorder.resumed(output, layout, {name: kept["counts"][name] for name in TIMES})
         made._waiting, made._pace, made._ended, made._cpu_ended, made._ending = [], Pace(), None, 0.0, False
         spent, made._last_write = kept["spent"], time.perf_counter()
@@ -241,21 +244,21 @@ class Recording:
     def prepare(self) -> None:
         """Compile the kernels, so that the time taken is that of the simulation."""
         self.tell(self._instants.begin, "compiling")
-        compile_kernels(self._system, laid(self._system, self._drive.path))
+        compile_kernels(self._system, laid(self._system, self._prepared.path))
         self._compiled = self._started = time.perf_counter()
         self._cpu_started = time.process_time()
 
-    def start(self, drive: Drive, system: System, unstable: tuple[str, ...]) -> None:
+    def start(self, prepared: Prepared, system: System, unstable: tuple[str, ...]) -> None:
         """Note that the state at the beginning is known."""
-        layout = result_layout(drive, system)
-        if drive is not self._drive:
-            origin = provenance(drive.text, self._title) | self._mesh()
-            attributes = origin | {"drive_as_given": self._drive.text, **self._about}
+        layout = result_layout(prepared, system)
+        if prepared.drive is not self._prepared.drive:
+            origin = provenance(prepared.drive.text, self._title) | self._mesh()
+            attributes = origin | {"drive_as_given": self._prepared.drive.text, **self._about}
             self._recorder.revise(layout, attributes)
         if unstable:
             self._findings["unstable_tensioners"] = ", ".join(unstable)
-        self._drive, self._system = drive, system
-        self._observer = Observer(drive, system, layout.belt_coordinate)
+        self._prepared, self._system = prepared, system
+        self._observer = Observer(prepared, system, layout.belt_coordinate)
         self._started = time.perf_counter()
 
     def take(self, chunk: Chunk, phase: Phase = "integrating") -> None:
@@ -271,10 +274,10 @@ class Recording:
     def tell(self, reached: float, phase: Phase) -> None:
         """Tell of progress."""
         if self._progress is not None:
-            duration, passed = self._drive.simulation.duration, reached - self._instants.begin
+            duration, passed = self._prepared.simulation.duration, reached - self._instants.begin
             outputs = self._instants.until(float(self._waiting[-1].time[-1])) if self._waiting else self._written
             elapsed = time.perf_counter() - self._started if phase == "integrating" else 0.0
-            bound = step_bound(self._drive, self.statistics, passed)
+            bound = step_bound(self._prepared, self.statistics, passed)
             pace = self._pace.at(elapsed, passed)
             self._progress(Progress(passed, duration, self._step, outputs, phase, elapsed, bound, pace))
 
@@ -292,7 +295,7 @@ class Recording:
 
     def run(self) -> Run:
         """The run that was recorded."""
-        return Run(None if self.file else self._recorder.dataset(), self._drive, self.file)
+        return Run(None if self.file else self._recorder.dataset(), self._prepared.drive, self.file)
 
     @property
     def file(self) -> Path | None:

@@ -5,7 +5,7 @@ from math import floor
 from beltdyn.errors import ModelError
 from beltdyn.machines import Constant
 from beltdyn.machines.loads.load import Load
-from beltdyn.model import Drive, Pulley
+from beltdyn.model import Drive, Pulley, prepare
 from beltdyn.state.staying import bring_to_stand
 from beltdyn.state.steady import instant_given
 from beltdyn.transient.sweep import without_schedules
@@ -14,7 +14,7 @@ from beltdyn.transient.sweep import without_schedules
 def held_at(drive: Drive, at: float | str | None) -> Drive:
     """Hold speeds, torques and schedules as they are at an instant, with the belt's length or take-up found."""
     held = at_instant(drive, at)
-    return held if held.belt.installed_tension is None else bring_to_stand(held).drive
+    return held if held.belt.installed_tension is None else bring_to_stand(prepare(held)).drive
 
 
 def at_instant(drive: Drive, at: float | str | None) -> Drive:

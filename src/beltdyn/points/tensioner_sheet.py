@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from beltdyn.arrays import FloatArray
 from beltdyn.errors import ConvergenceError, ModelError
 from beltdyn.machines.tensioners.tensioner import MovingTensioner
-from beltdyn.model import Drive, Installation
+from beltdyn.model import Drive, Installation, Prepared, prepare
 from beltdyn.model.carrier import moved
 from beltdyn.model.tensioner_balance import held_belt
 from beltdyn.parts.messages import reason
@@ -115,8 +115,8 @@ def tensioner_sheet(
     number = _number_of(drive, pulley)
     tell = progress or (lambda _: None)
     tell(Progress(0.0, drive.simulation.duration, 0.0, 0, "equilibrium"))
-    rest = bring_to_stand(drive).drive
-    held = rest.replace(contact=rest.completed.contact)
+    rest = bring_to_stand(prepare(drive)).prepared
+    held = rest.replace(contact=rest.contact)
     sheet = _Sheet(held, number)
     nominal = held.belt_length
     spread, worn = _length("tolerance", tolerance, nominal), _length("wear", wear, nominal)
@@ -132,10 +132,10 @@ def tensioner_sheet(
 class _Sheet:
     """The states of a tensioner, one after the other."""
 
-    def __init__(self, drive: Drive, number: int) -> None:
-        self._drive, self._number = drive, number
-        self._carrier = drive.carriers[number]
-        self._tensioner = drive.moving_tensioners[number]
+    def __init__(self, prepared: Prepared, number: int) -> None:
+        self._prepared, self._number = prepared, number
+        self._carrier = prepared.carriers[number]
+        self._tensioner = self._carrier.tensioner
         self._rows = dict[str, dict[str, float]]()
         self._failures = dict[str, str]()
         rate, preload = self._tensioner.rate, self._tensioner.preload
@@ -146,7 +146,7 @@ class _Sheet:
         self._stops = {"upper stop": upper, "lower stop": lower}
         self._free = min(upper, preload / rate if rate else np.inf)
         at_lower = self._placed(lower)
-        self._shortest = moved(drive.path, drive.carriers, at_lower).length if np.isfinite(lower) else np.nan
+        self._shortest = moved(prepared.path, prepared.carriers, at_lower).length if np.isfinite(lower) else np.nan
 
     def add_free(self) -> None:
         """The tensioner without a belt, where its spring has no force or its stop holds it."""
@@ -162,7 +162,7 @@ class _Sheet:
     def add_belt(self, state: str, length: float) -> None:
         """A belt of a length, m."""
         try:
-            self._rows[state] = self._row(self._drive, length)
+            self._rows[state] = self._row(self._prepared, length)
         except (ConvergenceError, ModelError) as error:
             if state == _NOMINAL:
                 raise
@@ -180,14 +180,14 @@ class _Sheet:
                 self._failures[state] = str(error)
                 self._rows[state] = {"position": stop}
 
-    def _at(self, drive: Drive, stop: float) -> dict[str, float]:
+    def _at(self, prepared: Prepared, stop: float) -> dict[str, float]:
         """The row of the belt that brings a tensioner without stops to a place, m or rad, by the secant method."""
         length = held_belt(
-            drive.path, drive.belt, drive.contact, drive.carriers, self._placed(stop), self._number
+            prepared.path, prepared.belt, prepared.contact, prepared.carriers, self._placed(stop), self._number
         ).length
         slope, before = None, None
         for _ in range(_MOST_TRIALS):
-            row = self._row(drive, length)
+            row = self._row(prepared, length)
             missing = stop - row["position"]
             if abs(missing) <= _ACCURACY * max(1.0, abs(stop)):
                 break
@@ -197,11 +197,11 @@ class _Sheet:
             length += missing * (slope or row["leverage"])
         return row
 
-    def _row(self, drive: Drive, length: float) -> dict[str, float]:
+    def _row(self, prepared: Prepared, length: float) -> dict[str, float]:
         """What is told of a belt of a length, m."""
-        drive = drive.replace(belt=drive.belt.replace(length=length))
-        there, tensioner = _balanced(drive), drive.moving_tensioners[self._number]
-        carrier, position = drive.carriers[self._number], float(there.tensioner_positions[self._number])
+        prepared = prepared.replace(belt=prepared.drive.belt.replace(length=length))
+        there, tensioner = _balanced(prepared), prepared.carriers[self._number].tensioner
+        carrier, position = prepared.carriers[self._number], float(there.tensioner_positions[self._number])
         force = there.hub_loads[carrier.pulley]
         row = {
             "belt_length": length,
@@ -216,22 +216,22 @@ class _Sheet:
             "slack": length - self._shortest,
         }
         for name, push in self._frictions.items():
-            pushed = self._with(tensioner.replace(preload=tensioner.preload + push), drive)
+            pushed = self._with(tensioner.replace(preload=tensioner.preload + push), prepared)
             with suppress(ConvergenceError, ModelError):
                 row[f"tension_after_{name}"] = _balanced(pushed).tension
         return row
 
     def _placed(self, position: float) -> FloatArray:
         """Places of all tensioners, with this one elsewhere and the others where the nominal belt has them."""
-        positions = self._drive.balance[1].copy()
+        positions = self._prepared.installation.tensioner_positions.copy()
         positions[self._number] = position
         return positions
 
-    def _with(self, tensioner: MovingTensioner, drive: Drive | None = None) -> Drive:
+    def _with(self, tensioner: MovingTensioner, prepared: Prepared | None = None) -> Prepared:
         """A drive with another tensioner in the place of this one."""
-        drive = drive or self._drive
-        own = drive.moving_tensioners[self._number]
-        return drive.replace(tensioner=[tensioner if one is own else one for one in drive.tensioners])
+        prepared = prepared or self._prepared
+        own = prepared.carriers[self._number].tensioner
+        return prepared.replace(tensioner=[tensioner if one is own else one for one in prepared.drive.tensioners])
 
     def result(self, given: str) -> Result:
         """The sheet; the text is that of the drive as it is given."""
@@ -249,7 +249,9 @@ class _Sheet:
             "tension_spread": (Variable((), "1", "Tension range over all belts"), spread),
         }
         names = {"state": (Variable(_STATE, "1", "State", "str"), states)}
-        result = build_result("tensioner_sheet", self._drive, {**variables, **more}, names, list(self._warnings()))
+        result = build_result(
+            "tensioner_sheet", self._prepared.drive, {**variables, **more}, names, list(self._warnings())
+        )
         result.dataset.attrs |= {"drive_as_given": given, "pulley": self._tensioner.pulley}
         return result
 
@@ -276,10 +278,10 @@ class _Sheet:
                 )
 
 
-def _balanced(drive: Drive) -> Installation:
+def _balanced(prepared: Prepared) -> Installation:
     """The belt at rest."""
-    rest = stand(drive, fineness=_FINENESS)
-    return looked_at(drive, rest.system, rest.state).installation
+    rest = stand(prepared, fineness=_FINENESS)
+    return looked_at(prepared, rest.system, rest.state).installation
 
 
 def _number_of(drive: Drive, pulley: str | None) -> int:

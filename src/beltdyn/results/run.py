@@ -12,7 +12,7 @@ import numpy as np
 
 from beltdyn.analyses import EQUILIBRIUM, RUN
 from beltdyn.errors import ModelError
-from beltdyn.model import ERROR_LIMITS, Drive, layer_lengths
+from beltdyn.model import ERROR_LIMITS, Drive, Prepared, layer_lengths, prepare
 from beltdyn.results.atomic import stamp, unreadable
 from beltdyn.results.checks import Finding, find
 from beltdyn.results.dataset import complete_dataset, kind_of, open_dataset, read_dataset
@@ -206,6 +206,11 @@ class Run(Result):
         """Number of recorded outputs."""
         with self.recorded() as recorded:
             return len(recorded["time"])
+
+    @cached_property
+    def prepared(self) -> Prepared:
+        """The drive with all that it leaves open; see `prepare`."""
+        return prepare(self.drive)
 
     @cached_property
     def findings(self) -> list[Finding]:

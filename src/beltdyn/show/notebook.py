@@ -10,8 +10,8 @@ from jinja2 import Environment, PackageLoader
 
 from beltdyn.model.advice import advise
 from beltdyn.model.drive import Drive
-from beltdyn.model.installation import install
 from beltdyn.model.path import Path
+from beltdyn.model.prepared import install
 from beltdyn.results.result import Result
 from beltdyn.results.schema import runs_steadily
 from beltdyn.show.sheet import sheet

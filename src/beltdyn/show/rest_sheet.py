@@ -2,7 +2,7 @@
 
 import math
 
-from beltdyn.model import Drive, Installation, describe_time, tensioner_balances
+from beltdyn.model import Drive, Installation, describe_time, prepare, tensioner_balances
 from beltdyn.model.hysteresis import bending_resistance, compression_losses
 from beltdyn.model.plausibility import other_diameters
 from beltdyn.model.simulation import unused_settings
@@ -97,7 +97,8 @@ def _taken_up(drive: Drive) -> list[tuple[str, str]]:
 
 def _lost_in_the_belt(drive: Drive) -> list[tuple[str, str]]:
     """The loss in bending and compression, independent of speed and load."""
-    forces = {"bending": bending_resistance(drive), "compression": compression_losses(drive).sum()}
+    prepared = prepare(drive)
+    forces = {"bending": bending_resistance(prepared), "compression": compression_losses(prepared).sum()}
     return [
         (f"{cause} loss", f"{force:.3g} N of belt pull, {force:.3g} W per m/s of belt speed")
         for cause, force in forces.items()

@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from beltdyn.arrays import BoolArray, FloatArray, IntArray
-from beltdyn.model import Drive, install
+from beltdyn.model import Prepared
 from beltdyn.model.pulley import fastest_rim
 from beltdyn.model.simulation import SAME, Instants
 from beltdyn.system.arrays import ENERGY_WORKS, BodyForces, System
@@ -223,13 +223,13 @@ class Integrator(Protocol):
         """Integrate, handing out chunks as they come."""
 
 
-def drive_task(drive: Drive, system: System, start: State, statistics: Statistics) -> Task:
+def drive_task(prepared: Prepared, system: System, start: State, statistics: Statistics) -> Task:
     """The initial value problem that a drive file describes."""
-    settings = drive.simulation
-    return Task(system, start, settings.instants, drive.breakpoints, velocity_scale(drive), statistics)
+    settings = prepared.simulation
+    return Task(system, start, settings.instants, prepared.breakpoints, velocity_scale(prepared), statistics)
 
 
-def velocity_scale(drive: Drive) -> float:
+def velocity_scale(prepared: Prepared) -> float:
     """Velocity that local errors are measured by: the fastest rim that is driven, or what the strain can cause."""
-    rim = fastest_rim(drive.pulleys, drive.radii, drive.simulation.end)
-    return max(rim, install(drive).strain * drive.belt.wave_speed)
+    rim = fastest_rim(prepared.pulleys, prepared.radii, prepared.simulation.end)
+    return max(rim, prepared.installation.strain * prepared.belt.wave_speed)

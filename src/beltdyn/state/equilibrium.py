@@ -4,12 +4,12 @@ from collections.abc import Mapping
 from typing import Any
 
 from beltdyn.errors import ModelError
-from beltdyn.model import Drive
+from beltdyn.model import Drive, Prepared, prepare
 from beltdyn.observation.recording import Recording
 from beltdyn.results import StaticResult, mesh_error_attribute, static_result
 from beltdyn.solvers.progress import Report
 from beltdyn.solvers.trajectory import Chunk
-from beltdyn.state.installation import bring_to_rest, on_equal_elements
+from beltdyn.state.installation import bring_to_rest, on_equal_elements, rest_of
 from beltdyn.state.refinement import refine_at_rest
 from beltdyn.state.static import standing
 from beltdyn.state.staying import bring_to_stand, stand
@@ -54,10 +54,10 @@ def equilibrium(drive: Drive, *, force_tolerance: float | None = None, progress:
     tolerance = drive.simulation.force_tolerance if force_tolerance is None else force_tolerance
     if tolerance is not None:
         return _refined(drive, tolerance, progress)
-    given, drive = drive.text, on_equal_elements(drive)
-    rest = bring_to_rest(drive, progress)
-    said = {"drive_as_given": given}
-    return _seen(drive, rest.drive, standing(rest.system), rest.state, rest.unstable, progress, said)
+    prepared = prepare(on_equal_elements(drive))
+    rest = rest_of(prepared, progress)
+    said = {"drive_as_given": drive.text}
+    return _seen(prepared, rest.prepared, standing(rest.system), rest.state, rest.unstable, progress, said)
 
 
 def _refined(drive: Drive, tolerance: float, progress: Report | None) -> StaticResult:
@@ -68,15 +68,15 @@ def _refined(drive: Drive, tolerance: float, progress: Report | None) -> StaticR
             "force_tolerance does not apply to an open belt, whose elements are equally long. Omit it, and "
             "increase belt.elements."
         )
-    unstable = bring_to_rest(drive, progress).unstable
-    rest, errors = refine_at_rest(stand(bring_to_stand(drive).drive), tolerance)
+    unstable, prepared = bring_to_rest(drive, progress).unstable, prepare(drive)
+    rest, errors = refine_at_rest(stand(bring_to_stand(prepared).prepared), tolerance)
     said = {"drive_as_given": drive.text} | {mesh_error_attribute(name): error for name, error in errors.items()}
-    return _seen(drive, rest.drive, rest.system, rest.state, unstable, progress, said)
+    return _seen(prepared, rest.prepared, rest.system, rest.state, unstable, progress, said)
 
 
 def _seen(
-    drive: Drive,
-    found: Drive,
+    prepared: Prepared,
+    found: Prepared,
     system: System,
     state: State,
     unstable: tuple[str, ...],
@@ -84,8 +84,8 @@ def _seen(
     said: Mapping[str, Any],
 ) -> StaticResult:
     """A state as results, of a drive and of the one with the length that was found, with what is said of it."""
-    title, reason = f"{drive.title} at rest, in static equilibrium", "as at rest"
-    with Recording(drive, system, None, title, progress, mesh_frame_reason=reason) as recording:
+    title, reason = f"{prepared.drive.title} at rest, in static equilibrium", "as at rest"
+    with Recording(prepared, system, None, title, progress, mesh_frame_reason=reason) as recording:
         recording.start(found, system, unstable)
         recording.note(**said)
         recording.take(Chunk.start(system, state), "equilibrium")

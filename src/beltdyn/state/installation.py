@@ -11,8 +11,9 @@ import numpy as np
 
 from beltdyn.arrays import FloatArray
 from beltdyn.errors import ConvergenceError, ModelError
-from beltdyn.model import Drive, Installation, describe, install
+from beltdyn.model import Drive, Installation
 from beltdyn.model import Path as BeltPath
+from beltdyn.model.prepared import Prepared, prepare
 from beltdyn.model.tensioner_balance import balance_tensioners
 from beltdyn.observation.compilation import compile_kernels
 from beltdyn.parts.messages import listing
@@ -49,8 +50,8 @@ _SHORTER = 1e-5
 class Rest(NamedTuple):
     """A drive at rest."""
 
-    drive: Drive
-    """With the length, or the take-up, that gives the tension asked for."""
+    prepared: Prepared
+    """The drive, with the length, or the take-up, that gives the tension asked for."""
     system: System
     """Its arrays."""
     state: State
@@ -61,6 +62,11 @@ class Rest(NamedTuple):
     """Pulleys whose tensioners are in unstable equilibrium."""
 
     @property
+    def drive(self) -> Drive:
+        """The drive, with the length, or the take-up, that gives the tension asked for."""
+        return self.prepared.drive
+
+    @property
     def tension(self) -> float:
         """Mean of the span tensions, N."""
         return float(self.seen.span_tension[0].mean())
@@ -68,17 +74,17 @@ class Rest(NamedTuple):
     @property
     def installation(self) -> Installation:
         """The computed values in place of the estimates of `beltdyn.model.install`."""
-        seen, drive = self.seen, self.drive
+        seen = self.seen
         positions = self.state.position[self.state.position.size - self.system.tensioners.size :]
-        depths = np.array([np.median(depth) for depth in _depths(drive, seen)])
-        return describe(drive, seen.span_tension[0], depths, seen.hub_force[0], positions)
+        depths = np.array([np.median(depth) for depth in _depths(self.prepared, seen)])
+        return self.prepared.installed(seen.span_tension[0], depths, seen.hub_force[0], positions)
 
 
 class Tightened(Protocol):
     """A drive at rest, of whatever mesh."""
 
     @property
-    def drive(self) -> Drive:
+    def prepared(self) -> Prepared:
         """The drive."""
 
     @property
@@ -117,21 +123,26 @@ def bring_to_rest(drive: Drive, progress: Report | None = None) -> Rest:
     --------
     >>> rest = bd.bring_to_rest(drive)
     >>> rest._fields
-    ('drive', 'system', 'state', 'seen', 'unstable')
+    ('prepared', 'system', 'state', 'seen', 'unstable')
     """
-    given, drive = drive, on_equal_elements(drive)
-    system = drive_system(drive)
-    _tell(drive, progress, "compiling")
-    compile_kernels(system, laid(system, drive.path))
-    _tell(drive, progress, "equilibrium")
-    rest = _at_rest(drive)
-    if drive.belt.installed_tension is not None:
-        rest = tighten(rest, drive.belt.installed_tension, _at_rest)
-    found = rest._replace(unstable=_unstable(rest))
-    if drive is given:
+    moved = on_equal_elements(drive)
+    found = rest_of(prepare(moved), progress)
+    if moved is drive:
         return found
-    belt = found.drive.belt.replace(elements=given.belt.elements)
-    return found._replace(drive=found.drive.replace(belt=belt, simulation=given.simulation))
+    belt = found.drive.belt.replace(elements=drive.belt.elements)
+    return found._replace(prepared=found.prepared.replace(belt=belt, simulation=drive.simulation))
+
+
+def rest_of(prepared: Prepared, progress: Report | None = None) -> Rest:
+    """Static equilibrium of a drive on equal elements, with its installed tension, if given; see `bring_to_rest`."""
+    system = drive_system(prepared)
+    _tell(prepared, progress, "compiling")
+    compile_kernels(system, laid(system, prepared.path))
+    _tell(prepared, progress, "equilibrium")
+    rest, wanted = _at_rest(prepared), prepared.installed_tension
+    if wanted is not None:
+        rest = tighten(rest, wanted, _at_rest)
+    return rest._replace(unstable=_unstable(rest))
 
 
 def on_equal_elements(drive: Drive) -> Drive:
@@ -141,9 +152,9 @@ def on_equal_elements(drive: Drive) -> Drive:
     return drive.replace(simulation=drive.simulation.replace(frame="travelling", force_tolerance=None))
 
 
-def _tell(drive: Drive, progress: Report | None, phase: Phase) -> None:
+def _tell(prepared: Prepared, progress: Report | None, phase: Phase) -> None:
     if progress is not None:
-        progress(Progress(0.0, drive.simulation.duration, 0.0, 0, phase))
+        progress(Progress(0.0, prepared.simulation.duration, 0.0, 0, phase))
 
 
 def _unstable(rest: Rest) -> tuple[str, ...]:
@@ -154,13 +165,13 @@ def _unstable(rest: Rest) -> tuple[str, ...]:
     arms = rest.system.bodies.reach[rest.system.bodies.size - len(compliance) :]
     values, ways = np.linalg.eigh(compliance * np.outer(arms, arms))
     most = [int(np.argmax(np.abs(way))) for value, way in zip(values, ways.T, strict=True) if value < 0.0]
-    return tuple(rest.drive.pulleys[rest.system.tensioners.pulley[number]].name for number in sorted(set(most)))
+    return tuple(rest.prepared.pulleys[rest.system.tensioners.pulley[number]].name for number in sorted(set(most)))
 
 
-def tighten(first: At, wanted: float, at_rest: Callable[[Drive], At]) -> At:
+def tighten(first: At, wanted: float, at_rest: Callable[[Prepared], At]) -> At:
     """Shorten the belt, or move its fixed tensioner, until the mean tension at rest is the one that is wanted."""
-    length = first.drive.belt_length
-    rest, done, slope = first, 0.0, _tension_over_length(first.drive)
+    length = first.prepared.belt_length
+    rest, done, slope = first, 0.0, _tension_over_length(first.prepared)
     sides: dict[bool, tuple[float, At]] = {}  # the nearest trials with too much and too little tension
     for trial in range(_MOST_TRIALS):
         missing = wanted - rest.tension
@@ -174,7 +185,7 @@ def tighten(first: At, wanted: float, at_rest: Callable[[Drive], At]) -> At:
                 return _beside_jump(slack, tight, wanted)
             if trial % 2 or not min(low, high) < done + change < max(low, high):
                 change = 0.5 * (low + high) - done
-        ahead, change = _shortened(first.drive, rest, done, change, at_rest)
+        ahead, change = _shortened(first.prepared, rest, done, change, at_rest)
         gained = ahead.tension - rest.tension
         slope, rest, done = gained / change if gained * change > 0.0 else slope, ahead, done + change
     if abs(rest.tension - first.tension) < abs(wanted - rest.tension):
@@ -184,10 +195,10 @@ def tighten(first: At, wanted: float, at_rest: Callable[[Drive], At]) -> At:
             f"{length:.5g} m, and set the tension by tensioner.preload."
         )
     raise _out_of_reach(
-        first.drive,
-        f"the tension at rest is {rest.tension:.5g} N with a belt length of {rest.drive.belt_length:.6g} m and "
+        first.prepared,
+        f"the tension at rest is {rest.tension:.5g} N with a belt length of {rest.prepared.belt_length:.6g} m and "
         f"{first.tension:.5g} N with {length:.6g} "
-        f"m{', since tensioners hold it' if first.drive.carriers else ''}.",
+        f"m{', since tensioners hold it' if first.prepared.carriers else ''}.",
     )
 
 
@@ -196,78 +207,80 @@ def _beside_jump(slack: At, tight: At, wanted: float) -> At:
     nearer = min(slack, tight, key=lambda one: abs(one.tension - wanted))
     if abs(nearer.tension - wanted) > _JUMP * wanted:
         raise _out_of_reach(
-            nearer.drive,
+            nearer.prepared,
             f"at rest the tension jumps from {slack.tension:.5g} to {tight.tension:.5g} N at a length of "
-            f"{nearer.drive.belt_length:.6g} m, where nodes of the mesh meet pulleys. Increase belt.elements.",
+            f"{nearer.prepared.belt_length:.6g} m, where nodes of the mesh meet pulleys. Increase belt.elements.",
         )
     return nearer
 
 
-def _tension_over_length(drive: Drive) -> float:
+def _tension_over_length(prepared: Prepared) -> float:
     """By how much a belt gets tighter with each metre that it is shorter by, as estimated, N/m.
 
     Where tensioners yield, that is a small part of the belt's own stiffness over its length.
     """
-    belt, length = drive.loaded_belt, drive.belt_length
+    belt, length = prepared.loaded_belt, prepared.belt_length
     shorter = belt.replace(length=(1.0 - _SHORTER) * length)
     try:
-        ahead = balance_tensioners(drive.path, shorter, drive.completed.contact, drive.carriers)[0].tension
+        ahead = balance_tensioners(prepared.path, shorter, prepared.contact, prepared.carriers)[0].tension
     except ValueError:
-        ahead = drive.tension_at_rest
-    slope = (ahead - drive.tension_at_rest) / (_SHORTER * length)
+        ahead = prepared.tension_at_rest
+    slope = (ahead - prepared.tension_at_rest) / (_SHORTER * length)
     return slope if slope > 0.0 else belt.axial_stiffness / length
 
 
-def _shortened(drive: Drive, rest: At, done: float, change: float, at_rest: Callable[[Drive], At]) -> tuple[At, float]:
+def _shortened(
+    prepared: Prepared, rest: At, done: float, change: float, at_rest: Callable[[Prepared], At]
+) -> tuple[At, float]:
     """Shorten a belt some more, or by a part of it where all of it leads to no equilibrium; with what was done, m."""
     while True:
         try:
-            return at_rest(drive.tightened(done + change)), change
+            return at_rest(prepared.tightened(done + change)), change
         except (ConvergenceError, ModelError) as error:
             change *= 0.5
-            if abs(change) < _LEAST_CHANGE * drive.belt_length:
+            if abs(change) < _LEAST_CHANGE * prepared.belt_length:
                 slack = _as_long_as_its_path(rest, at_rest) if change < 0.0 else ""
-                raise _out_of_reach(drive, slack or str(error)) from error
+                raise _out_of_reach(prepared, slack or str(error)) from error
 
 
-def _as_long_as_its_path(rest: At, at_rest: Callable[[Drive], At]) -> str:
+def _as_long_as_its_path(rest: At, at_rest: Callable[[Prepared], At]) -> str:
     """What tensions a belt that is as long as its path, or nothing if it is shorter.
 
     Off the pulleys its bending stiffness spreads it, and its weight lets it sag: its own way is longer than the path.
     """
-    drive, path = rest.drive, install(rest.drive).path
-    if drive.belt_length < (1.0 - _SHORTER) * path.length:
+    prepared, path = rest.prepared, rest.prepared.installation.path
+    if prepared.belt_length < (1.0 - _SHORTER) * path.length:
         return ""
     cause, remedy = "bending stiffness", "reduce belt.bending_stiffness"
-    if drive.gravity != (0.0, 0.0):
+    if prepared.gravity != (0.0, 0.0):
         try:
-            bent = at_rest(drive.replace(gravity=(0.0, 0.0))).tension
+            bent = at_rest(prepared.replace(gravity=(0.0, 0.0))).tension
         except (ConvergenceError, ModelError):
             bent = 0.0  # nothing but its weight holds it against the pulleys
         if bent < 0.5 * rest.tension:
             cause, remedy = "weight", "take a lighter belt"
     return (
-        f"a belt of {drive.belt_length:.6g} m, as long as the path around the pulleys, still has {rest.tension:.5g} N, "
-        f"by its {cause}: increase the tension, or {remedy}."
+        f"a belt of {prepared.belt_length:.6g} m, as long as the path around the pulleys, still has "
+        f"{rest.tension:.5g} N, by its {cause}: increase the tension, or {remedy}."
     )
 
 
-def _out_of_reach(drive: Drive, reason: str) -> ConvergenceError:
+def _out_of_reach(prepared: Prepared, reason: str) -> ConvergenceError:
     return ConvergenceError(
-        f"belt.installed_tension = {drive.belt.installed_tension:.5g} N cannot be reached with {drive.elements} "
+        f"belt.installed_tension = {prepared.installed_tension:.5g} N cannot be reached with {prepared.elements} "
         f"elements: {reason} Change the tension, or give belt.length instead."
     )
 
 
-def _at_rest(drive: Drive) -> Rest:
+def _at_rest(prepared: Prepared) -> Rest:
     """Static equilibrium of a drive with the length that it has.
 
     Where Newton's method does not get there from the laid belt, it follows the equilibria of stiffer or softer contact.
     """
-    system, installation = drive_system(drive), install(drive)
+    system = drive_system(prepared)
 
     def begun(start: float) -> Rest:
-        state, failures = _lying(drive, system, installation, start), list[ConvergenceError]()
+        state, failures = _lying(prepared, system, start), list[ConvergenceError]()
 
         def balance(factor: float) -> bool:
             nonlocal state
@@ -280,12 +293,12 @@ def _at_rest(drive: Drive) -> Rest:
 
         if not follow(start, balance):
             raise failures[0]
-        return looked_at(drive, system, state)
+        return looked_at(prepared, system, state)
 
-    return from_starts(drive, installation, begun)
+    return from_starts(prepared, begun)
 
 
-def from_starts(drive: Drive, installation: Installation, begun: Callable[[float], Found]) -> Found:
+def from_starts(prepared: Prepared, begun: Callable[[float], Found]) -> Found:
     """Find a drive at rest by way of contact as stiff as its own, or else of stiffer or softer contact."""
     failures = list[ConvergenceError]()
     for start in _STARTS:
@@ -293,7 +306,7 @@ def from_starts(drive: Drive, installation: Installation, begun: Callable[[float
             return begun(start)
         except ConvergenceError as error:
             failures.append(error)
-    raise _sunk(drive, installation) or failures[0]
+    raise _sunk(prepared) or failures[0]
 
 
 def follow(start: float, balance: Callable[[float], bool]) -> bool:
@@ -310,9 +323,9 @@ def follow(start: float, balance: Callable[[float], bool]) -> bool:
     return found == 1.0
 
 
-def _lying(drive: Drive, system: System, installation: Installation, factor: float) -> State:
+def _lying(prepared: Prepared, system: System, factor: float) -> State:
     """A belt that lies in its pulleys, as deep as in contact stiffer by a factor."""
-    return laid(system, drawn_in(drive, installation, factor), installation.tensioner_positions)
+    return laid(system, drawn_in(prepared, factor), prepared.installation.tensioner_positions)
 
 
 def with_stiffer_contact(system: System, factor: float) -> System:
@@ -321,23 +334,24 @@ def with_stiffer_contact(system: System, factor: float) -> System:
     return system._replace(law=system.law._replace(normal=normal._replace(stiffness=factor * normal.stiffness)))
 
 
-def drawn_in(drive: Drive, installation: Installation, factor: float) -> BeltPath:
+def drawn_in(prepared: Prepared, factor: float) -> BeltPath:
     """The path of a belt that lies in its pulleys instead of on their rims, as deep as in contact stiffer by a factor.
 
     On the rims themselves rounding decides which nodes touch, and on coarse meshes with contact at nodes the search
     then finds no step that helps.  Rims drawn in by one depth leave spans and wrap angles as they are.
     """
+    installation = prepared.installation
     path = installation.path
-    depth = min(np.min(installation.penetrations) / factor, _DEEPEST_START * np.min(drive.radii))
+    depth = min(np.min(installation.penetrations) / factor, _DEEPEST_START * np.min(prepared.radii))
     return BeltPath(path.centers, path.radii - depth * np.sign(path.radii), path.ends)
 
 
-def looked_at(drive: Drive, system: System, state: State) -> Rest:
+def looked_at(prepared: Prepared, system: System, state: State) -> Rest:
     """An equilibrium in which the belt touches every pulley."""
     seen = observe(standing(system), np.zeros(1), state.position[None], state.velocity[None])
-    depths = _depths(drive, seen)
+    depths = _depths(prepared, seen)
     for pulley, radius, wrap, depth in zip(
-        drive.pulleys, drive.radii, seen.wrap_angle[0], map(np.max, depths), strict=True
+        prepared.pulleys, prepared.radii, seen.wrap_angle[0], map(np.max, depths), strict=True
     ):
         if not wrap > 0.0:
             raise ConvergenceError(
@@ -351,34 +365,34 @@ def looked_at(drive: Drive, system: System, state: State) -> Rest:
                 "tension."
             )
     known = np.isfinite(seen.span_tension[0])
-    short = [f"{start} to {end}" for (start, end), one in zip(drive.spans, known, strict=True) if not one]
+    short = [f"{start} to {end}" for (start, end), one in zip(prepared.spans, known, strict=True) if not one]
     if short:
         raise ConvergenceError(
             f"the span {listing(short)} is shorter than one element, so its tension is unknown. Increase "
             "belt.elements, or move the pulleys apart."
         )
-    return Rest(drive, system, state, seen)
+    return Rest(prepared, system, state, seen)
 
 
-def _depths(drive: Drive, seen: Observations) -> list[FloatArray]:
+def _depths(prepared: Prepared, seen: Observations) -> list[FloatArray]:
     """Penetrations of contact points on each pulley, m; zero where it is touched between points alone."""
     places, touched, centers = seen.contact_position[0], seen.contact_pulley[0], seen.pulley_center[0]
     depths = [
         radius - np.linalg.norm(places[touched == number] - centers[number], axis=1)
-        for number, radius in enumerate(drive.radii)
+        for number, radius in enumerate(prepared.radii)
     ]
     return [depth if depth.size else np.zeros(1) for depth in depths]
 
 
-def _sunk(drive: Drive, installation: Installation) -> ConvergenceError | None:
+def _sunk(prepared: Prepared) -> ConvergenceError | None:
     """Contact so soft that the belt sinks through a pulley, or away from others, if it is."""
-    parts = installation.penetrations / drive.radii
+    parts = prepared.installation.penetrations / prepared.radii
     worst = int(np.argmax(parts))
     if not parts[worst] > _SOUND:
         return None
-    enough = drive.contact_stiffness * parts[worst] / _SOUND
+    enough = prepared.contact_stiffness * parts[worst] / _SOUND
     return ConvergenceError(
-        f'no static equilibrium found. The contact is too soft: on "{drive.pulleys[worst].name}" the belt would sink '
-        f"by {parts[worst]:.0%} of the radius. Increase contact.stiffness from {drive.contact_stiffness:.2g} to "
-        f"{enough:.2g} N/m^2, reduce the tension, or use a larger pulley."
+        f'no static equilibrium found. The contact is too soft: on "{prepared.pulleys[worst].name}" the belt would '
+        f"sink by {parts[worst]:.0%} of the radius. Increase contact.stiffness from {prepared.contact_stiffness:.2g} "
+        f"to {enough:.2g} N/m^2, reduce the tension, or use a larger pulley."
     )

@@ -10,7 +10,7 @@ import numpy as np
 
 from beltdyn.arrays import FloatArray
 from beltdyn.errors import ConvergenceError
-from beltdyn.model import Drive
+from beltdyn.model import Prepared
 from beltdyn.model.resolution import Arc, graded_mesh
 from beltdyn.state.search import SteadySearch
 from beltdyn.state.staying import FINER, MOST_ELEMENTS, Standing, depths, found_arcs, stand
@@ -85,7 +85,7 @@ def steady_from_rest(
     """Find steady running from a belt at rest, on a finer mesh where that on a coarse one leads to no other."""
     ran = False
     for trial in range(1, _MOST_STARTS + 1):
-        search, given = SteadySearch(rest.drive, rest.system, rest.state, time), rule(rest)
+        search, given = SteadySearch(rest.prepared, rest.system, rest.state, time), rule(rest)
         try:
             search.run(rest)
             ran = True
@@ -95,7 +95,7 @@ def steady_from_rest(
         except ConvergenceError:  # what runs on one mesh is there; the search has lost its way on this one
             if not ran or given.elements or trial == _MOST_STARTS:
                 raise
-            rest = stand(rest.drive, fineness=FINER * rest.fineness)
+            rest = stand(rest.prepared, fineness=FINER * rest.fineness)
     return Refined(search, rest, band, errors, found)
 
 
@@ -124,7 +124,7 @@ def _moved(search: SteadySearch, now: Solution, rule: MeshRule) -> MeshRule | No
     for factor in _FINER:
         finer, trial = rule.finer(factor), copy(search)
         try:
-            trial.move_to(_mesh(search.drive, now, finer))
+            trial.move_to(_mesh(search.prepared, now, finer))
         except ConvergenceError:
             search.iterations = trial.iterations
             continue
@@ -137,7 +137,7 @@ def against_coarser(search: SteadySearch, rule: MeshRule) -> tuple[dict[str, flo
     """Compare steady running with that on a coarser mesh."""
     here, coarser = _solution(search), copy(search)
     coarser.tolerance = _COMPARED
-    coarser.move_to(_mesh(search.drive, here, rule.finer(1.0 / FINER)))
+    coarser.move_to(_mesh(search.prepared, here, rule.finer(1.0 / FINER)))
     coarser.tolerance = search.tolerance
     search.iterations = coarser.iterations
     return _differences(_solution(coarser), here), coarser
@@ -148,15 +148,13 @@ def is_fine(errors: Mapping[str, float], tolerance: float) -> bool:
     return errors["peak pressure"] <= tolerance and errors["tension"] <= _OF_TENSION * tolerance
 
 
-def _mesh(drive: Drive, now: Solution, rule: MeshRule) -> FloatArray:
+def _mesh(prepared: Prepared, now: Solution, rule: MeshRule) -> FloatArray:
     """Lengths of elements by a rule, m, with nodes where the belt touches and slides as it does now."""
-    length = drive.belt_length
     if rule.elements:
-        count = round(rule.elements * rule.fineness)
-        return np.full(count, length / count)
+        return prepared.equal_lengths(round(rule.elements * rule.fineness))
     kinks = _kinks(now)
     within = [arc._replace(kinks=tuple(k for k in kinks if arc.start < k < arc.end)) for arc in now.arcs]
-    return graded_mesh(length, within, rule.layer, rule.fineness)
+    return graded_mesh(prepared.belt_length, within, rule.layer, rule.fineness)
 
 
 def _kinks(now: Solution) -> list[float]:
@@ -207,8 +205,8 @@ def refine_at_rest(rest: Standing, tolerance: float) -> tuple[Standing, dict[str
 def _finer(rest: Standing, elements: int | None) -> Standing:
     """The same drive at rest on a finer mesh, of equal elements where their number is given."""
     if elements is None:
-        return stand(rest.drive, fineness=FINER * rest.fineness)
-    return stand(rest.drive, round(FINER * elements))
+        return stand(rest.prepared, fineness=FINER * rest.fineness)
+    return stand(rest.prepared, round(FINER * elements))
 
 
 def _between(rest: Standing, finer: Standing) -> dict[str, float]:

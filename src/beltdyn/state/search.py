@@ -10,7 +10,7 @@ import numpy as np
 
 from beltdyn.arrays import FloatArray
 from beltdyn.errors import ConvergenceError
-from beltdyn.model import Drive
+from beltdyn.model import Drive, Prepared
 from beltdyn.state.newton import FOUND, SteadyWork, find_steady, make_step, steady_work
 from beltdyn.state.slip_limit import GROSS, Passed, Setting, gross_slip, slip_limit
 from beltdyn.state.staying import TOLERANCE, Standing, anchor_at, transfer
@@ -93,7 +93,7 @@ class SteadySearch:
 
     Parameters
     ----------
-    drive, system, state
+    prepared, system, state
         The drive on a staying mesh. The state is changed in place.
     time
         At which speeds, torques and schedules are taken, s.
@@ -104,8 +104,8 @@ class SteadySearch:
         Of the last step of a search, over the smallest radius.
     """
 
-    def __init__(self, drive: Drive, system: System, state: State, time: float) -> None:
-        self.drive, self._time = drive, time
+    def __init__(self, prepared: Prepared, system: System, state: State, time: float) -> None:
+        self.prepared, self._time = prepared, time
         self.state, self.iterations, self.setting = state, 0, Setting()
         self.tolerance = TOLERANCE
         self._passed = list[Passed]()
@@ -130,6 +130,11 @@ class SteadySearch:
         rims = slice(self.constant.first_body, place.size - self.constant.tensioners.size)
         place[rims] = twists(self.constant, self._moments)
         return State(place, self.state.velocity, np.zeros_like(place))
+
+    @property
+    def drive(self) -> Drive:
+        """The drive, with the length, or the take-up, that gives the tension asked for."""
+        return self.prepared.drive
 
     @property
     def belt_parameter(self) -> float:
@@ -163,9 +168,9 @@ class SteadySearch:
 
     def run(self, rest: Standing) -> None:
         """Find steady running under the loads that are asked for."""
-        speed, driver = operating_point(self.constant, self.drive.path.radii, self._prescribed)
+        speed, driver = operating_point(self.constant, self.prepared.path.radii, self._prescribed)
         if driver is not None:
-            self._held_speed = speed / float(self.drive.path.radii[driver])
+            self._held_speed = speed / float(self.prepared.path.radii[driver])
             self._hold(driver)
         gentle = Setting(1.0, _FIRST_LOAD, self._gentle(speed, rest.tension))
         if not self._run_up(rest.place, speed, gentle):
@@ -195,14 +200,14 @@ class SteadySearch:
     def _refusal(self) -> ConvergenceError:
         """Say why there is no steady running."""
         passed = self._refined() or [self._here()]
-        reason = slip_limit(self.drive, self.constant, self._at(Setting()), passed)
+        reason = slip_limit(self.prepared, self.constant, self._at(Setting()), passed)
         return ConvergenceError(f"no steady running found at t = {self._time:g} s: {reason}")
 
     def _refined(self) -> list[Passed]:
         """What was passed on the way to the loads, with more between where a pulley begins to slip as a whole."""
         passed = self._confirmed()
         for _ in range(_BISECTIONS):
-            at, slip = gross_slip(self.drive, self.constant, passed)
+            at, slip = gross_slip(self.prepared, self.constant, passed)
             if at == 0 or slip < _SHARP * GROSS:
                 break
             before, after = passed[at - 1], passed[at]
@@ -248,7 +253,7 @@ class SteadySearch:
         ConvergenceError
             If nothing is found there.
         """
-        other = on_other_mesh(self.drive, self.constant, lengths)
+        other = on_other_mesh(self.prepared, self.constant, lengths)
         self.state, self.constant = transfer(self.constant, self.state, other), other
         self._hold(self._held)
         target = self.setting
@@ -344,15 +349,15 @@ class SteadySearch:
     def _gentle(self, speed: float, tension: float) -> float:
         """Smoothing with which friction is not fully used anywhere."""
         pulleys = self._system.pulleys
-        limits = self._system.law.friction.saturation(tension / self.drive.radii, pulleys.friction, speed)
+        limits = self._system.law.friction.saturation(tension / self.prepared.radii, pulleys.friction, speed)
         least = float(np.min(limits[pulleys.friction > 0.0], initial=np.inf))
         return max(1.0, _GENTLE * abs(speed) / least)
 
     def _start(self, place: FloatArray, speed: float, setting: Setting) -> bool:
         """Begin at a setting, from a place at rest, with a belt of a speed (m/s) that sticks to all pulleys."""
-        state, running, path = self.state, setting.speed * speed, self.drive.path
+        state, running, path = self.state, setting.speed * speed, self.prepared.path
         state.position[:] = place
-        self.constant.frame.speed[0] = running * self.drive.belt_length / path.length
+        self.constant.frame.speed[0] = running * self.prepared.belt_length / path.length
         state.velocity[self._system.first_body :][: path.count] = running / path.radii
         guess_hubs(self._at(setting), state.velocity)
         return self._try(setting)
@@ -388,7 +393,7 @@ class SteadySearch:
         state, system = self.state, self._at(setting)
         before = self.unknowns()
         drive_shafts(system, state.velocity)
-        allowed = (self.tolerance if tolerance is None else tolerance) * float(np.min(self.drive.radii))
+        allowed = (self.tolerance if tolerance is None else tolerance) * float(np.min(self.prepared.radii))
         anchor = anchor_at(state, False)
         status, iterations = find_steady(system, state.at(0.0), anchor, allowed, _MOST, factorised, self._work)
         self.iterations += iterations

@@ -10,7 +10,7 @@ import numpy as np
 from beltdyn.arrays import FloatArray
 from beltdyn.kernel import interpreted
 from beltdyn.machines.profiles.functions import go_on, profile_integral
-from beltdyn.model import Drive, Pulley
+from beltdyn.model import Drive, Prepared, Pulley
 from beltdyn.model.defaults import MOST
 from beltdyn.model.resolution import FINENESS
 from beltdyn.model.simulation import Instants
@@ -84,18 +84,18 @@ class Settling:
     longest: float
 
     def __call__(
-        self, drive: Drive, system: System, state: State, integrator: Integrator, progress: Report | None, /
+        self, prepared: Prepared, system: System, state: State, integrator: Integrator, progress: Report | None, /
     ) -> Start:
         """Settle."""
-        before = self._before(drive)
+        before = self._before(prepared.drive)
         slower = system._replace(profiles=profile_arrays(before.pulleys))
-        task = drive_task(drive, slower, state, Statistics())
-        window = self._window(drive.pulleys[self.pulley])
+        task = drive_task(prepared, slower, state, Statistics())
+        window = self._window(prepared.pulleys[self.pulley])
         stops = self.lead + window * np.arange(1, np.ceil(self.longest / window) + 1)
-        instants = Instants(drive.simulation.output_interval, float(stops[-1]))
+        instants = Instants(prepared.simulation.output_interval, float(stops[-1]))
         task = replace(task, instants=instants, breakpoints=(*before.breakpoints, *stops.tolist()))
-        end, said = settle(task, integrator, stops, drive.simulation.duration, progress)
-        return Start(with_angles(drive, system, slower, said.time), end, said.attributes)
+        end, said = settle(task, integrator, stops, prepared.simulation.duration, progress)
+        return Start(with_angles(prepared, system, slower, said.time), end, said.attributes)
 
     def _before(self, drive: Drive) -> Drive:
         """The drive that reaches the first speed and stays there."""
@@ -183,13 +183,13 @@ def settle(
     return end, Settled(float(last.time[0]), left.part)
 
 
-def with_angles(drive: Drive, system: System, before: System | None = None, time: float = 0.0) -> System:
+def with_angles(prepared: Prepared, system: System, before: System | None = None, time: float = 0.0) -> System:
     """Arrays of a drive whose prescribed angles go on from what they were in another system."""
-    profiles = profile_arrays(drive.pulleys)
-    prescribed = [number for number, pulley in enumerate(drive.pulleys) if pulley.prescribed]
+    profiles = profile_arrays(prepared.pulleys)
+    prescribed = [number for number, pulley in enumerate(prepared.pulleys) if pulley.prescribed]
     integral = interpreted(profile_integral)
     angles = [0.0 if before is None else integral(before.profiles, number, time) for number in prescribed]
-    go_on(profiles, prescribed, drive.simulation.begin, angles)
+    go_on(profiles, prescribed, prepared.simulation.begin, angles)
     return system._replace(profiles=profiles)
 
 
@@ -213,7 +213,7 @@ DIRECTION = "mesh_direction"
 class Beginning(NamedTuple):
     """Where a run begins."""
 
-    drive: Drive
+    prepared: Prepared
     """With the length, or the take-up, that gives the installed tension."""
     system: System
     state: State
@@ -223,18 +223,18 @@ class Beginning(NamedTuple):
     """What is said of it, global attributes of the dataset."""
 
 
-def begin_flowing(drive: Drive, progress: Report | None) -> Beginning:
+def begin_flowing(prepared: Prepared, progress: Report | None) -> Beginning:
     """Find the state in which a run on a staying mesh begins, and the mesh."""
     if progress is not None:
-        progress(Progress(0.0, drive.simulation.duration, 0.0, 0, "equilibrium"))
-    meshed = _meshed(drive)
-    if drive.simulation.start == "steady":
-        meshed = _running(meshed, drive.simulation.force_tolerance)
+        progress(Progress(0.0, prepared.simulation.duration, 0.0, 0, "equilibrium"))
+    meshed = _meshed(prepared)
+    if prepared.simulation.start == "steady":
+        meshed = _running(meshed, prepared.simulation.force_tolerance)
     system, direction = meshed.system, anchor_at(meshed.state, True).direction
-    flowing = with_angles(meshed.drive, flowing_system(system, direction))
+    flowing = with_angles(meshed.rest.prepared, flowing_system(system, direction))
     errors = meshed.errors or {"peak pressure": float("nan")}  # not known
     said = {mesh_error_attribute(name): error for name, error in errors.items()} | {DIRECTION: direction}
-    return Beginning(meshed.drive, flowing, with_passage(system, meshed.state, meshed.speed), attributes=said)
+    return Beginning(meshed.rest.prepared, flowing, with_passage(system, meshed.state, meshed.speed), attributes=said)
 
 
 class _Meshed(NamedTuple):
@@ -249,37 +249,32 @@ class _Meshed(NamedTuple):
     errors: Mapping[str, float]
     """Of the mesh, relative, as far as they are known."""
 
-    @property
-    def drive(self) -> Drive:
-        """With the length, or the take-up, that gives the installed tension."""
-        return self.rest.drive
 
-
-def _meshed(drive: Drive) -> _Meshed:
+def _meshed(prepared: Prepared) -> _Meshed:
     """The drive at rest, on a mesh as it asks for."""
-    settings, given = drive.simulation, drive.belt.elements
+    settings, given = prepared.simulation, prepared.drive.belt.elements
     if settings.mesh == "uniform":
-        rest = bring_to_stand(drive, drive.elements)
-        errors = errors_at_rest(rest, drive.elements)
+        rest = bring_to_stand(prepared, prepared.elements)
+        errors = errors_at_rest(rest, prepared.elements)
     elif settings.force_tolerance is not None:
-        rest, errors = refine_at_rest(stand(bring_to_stand(drive).drive), settings.force_tolerance)
+        rest, errors = refine_at_rest(stand(bring_to_stand(prepared).prepared), settings.force_tolerance)
     else:
-        rest = bring_to_stand(drive)
+        rest = bring_to_stand(prepared)
         fineness = rest.fineness * (given or MOST) / rest.system.nodes
-        rest = stand(rest.drive, fineness=fineness if given else min(FINENESS, fineness))
+        rest = stand(rest.prepared, fineness=fineness if given else min(FINENESS, fineness))
         errors = errors_at_rest(rest)
     return _Meshed(rest, rest.system, rest.state, 0.0, errors)
 
 
 def _running(meshed: _Meshed, force_tolerance: float | None) -> _Meshed:
     """Steady running at the beginning, on the same mesh, or on one that is refined up to a tolerance."""
-    rest, time = meshed.rest, meshed.drive.simulation.begin
+    rest, time = meshed.rest, meshed.rest.prepared.simulation.begin
     if force_tolerance is None:
-        search, system, errors = SteadySearch(rest.drive, rest.system, rest.state, time), rest.system, meshed.errors
+        search, system, errors = SteadySearch(rest.prepared, rest.system, rest.state, time), rest.system, meshed.errors
         search.run(rest)
     else:
         search, rest, _, errors, _ = steady_from_rest(rest, time, _same_mesh, force_tolerance, bands=False)
-        system = on_other_mesh(rest.drive, rest.system, search.constant.length)
+        system = on_other_mesh(rest.prepared, rest.system, search.constant.length)
     return meshed._replace(rest=rest, system=system, state=search.running(), speed=search.belt_parameter, errors=errors)
 
 

@@ -10,7 +10,7 @@ from typing import NamedTuple
 import numpy as np
 
 from beltdyn.arrays import FloatArray
-from beltdyn.model import Drive
+from beltdyn.model import Prepared
 from beltdyn.parts.quantity import RPM
 from beltdyn.system.arrays import System
 from beltdyn.system.constant_drive import own_torque
@@ -56,10 +56,10 @@ class Passed(NamedTuple):
     """As from `SteadySearch.unknowns`."""
 
 
-def slip_limit(drive: Drive, system: System, asked: System, passed: Sequence[Passed]) -> str:
+def slip_limit(prepared: Prepared, system: System, asked: System, passed: Sequence[Passed]) -> str:
     """Name the pulley that slips, and say how much it transmits."""
-    slips = np.array([_slips(drive, system, one) for one in passed])
-    last, (at, slip) = passed[-1], gross_slip(drive, system, passed)
+    slips = np.array([_slips(prepared, system, one) for one in passed])
+    last, (at, slip) = passed[-1], gross_slip(prepared, system, passed)
     here = passed[at] if slip > GROSS else last
     torques, used = _transmitted(system, here)
     used[[_idles(asked, here, p) for p in range(used.size)]] = 0.0
@@ -68,36 +68,36 @@ def slip_limit(drive: Drive, system: System, asked: System, passed: Sequence[Pas
     worst = int(np.argmax(most if slip <= GROSS else np.where(slips[0] > GROSS, -1.0, slips[at])))
     if slip <= GROSS and used[worst] < _FULL:
         return (
-            f"the search ends at {last.setting.load:.1%} of the loads, where `{drive.pulleys[worst].name}` uses "
+            f"the search ends at {last.setting.load:.1%} of the loads, where `{prepared.pulleys[worst].name}` uses "
             f"{used[worst]:.0%} of its friction. Simulate the drive over time with `beltdyn simulate`."
         )
     torque = abs(float(torques[worst]))
-    wanted = abs(_asked_of(drive, asked, last, slips[-1], worst))
+    wanted = abs(_asked_of(prepared, asked, last, slips[-1], worst))
     of = f" of the {wanted:.4g} N m required" if wanted > torque else ""
     speed = RPM * abs(float(here.state.velocity[system.first_body + worst]))
     return (
-        f"the belt slips on `{drive.pulleys[worst].name}`, which transmits at most {torque:.4g} N m{of} at this "
+        f"the belt slips on `{prepared.pulleys[worst].name}`, which transmits at most {torque:.4g} N m{of} at this "
         f"tension ({speed:.4g} rpm). Raise the tension, the friction or the wrap angle, or reduce the load."
     )
 
 
-def gross_slip(drive: Drive, system: System, passed: Sequence[Passed]) -> tuple[int, float]:
+def gross_slip(prepared: Prepared, system: System, passed: Sequence[Passed]) -> tuple[int, float]:
     """Find the first of the solutions in which a pulley slips as a whole that did not at first, and its slip.
 
     Without one, 0 and 0. An idler that slips at the least loads already limits nothing.
     """
     if not passed:
         return 0, 0.0
-    slips = np.array([_slips(drive, system, one) for one in passed])
+    slips = np.array([_slips(prepared, system, one) for one in passed])
     slips[:, slips[0] > GROSS] = 0.0
     beyond = np.flatnonzero(np.max(slips, axis=1) > GROSS)
     return (int(beyond[0]), float(np.max(slips[beyond[0]]))) if beyond.size else (0, 0.0)
 
 
-def _slips(drive: Drive, system: System, one: Passed) -> FloatArray:
+def _slips(prepared: Prepared, system: System, one: Passed) -> FloatArray:
     """Difference of speed of each rim and the belt, over the larger of them."""
-    rims = np.abs(one.state.velocity[system.first_body :][: system.pulleys.size] * drive.rolling_radii)
-    belt = abs(one.belt_parameter) * drive.path.length / drive.belt_length
+    rims = np.abs(one.state.velocity[system.first_body :][: system.pulleys.size] * prepared.rolling_radii)
+    belt = abs(one.belt_parameter) * prepared.path.length / prepared.belt_length
     return np.asarray(np.abs(rims - belt) / np.maximum(rims, belt))
 
 
@@ -121,7 +121,7 @@ def _idles(asked: System, here: Passed, pulley: int) -> bool:
     return bool(asked.bodies.unknown[shaft] >= 0 and own_torque(asked, here.state, pulley, speed) == 0.0)
 
 
-def _asked_of(drive: Drive, asked: System, last: Passed, slips: FloatArray, pulley: int) -> float:
+def _asked_of(prepared: Prepared, asked: System, last: Passed, slips: FloatArray, pulley: int) -> float:
     """Torque of the loads of a pulley without slip, or else what those of the others need of it, N m."""
     shafts = asked.pulleys.shaft
     speeds = last.state.velocity[asked.first_body + shafts] / (1.0 - np.minimum(slips, _MOST))
@@ -129,4 +129,4 @@ def _asked_of(drive: Drive, asked: System, last: Passed, slips: FloatArray, pull
     if asked.bodies.unknown[shafts[pulley]] >= 0:
         return float(torques[pulley])
     free = asked.bodies.unknown[shafts] >= 0
-    return float(np.sum((torques / drive.path.radii)[free])) * float(drive.path.radii[pulley])
+    return float(np.sum((torques / prepared.path.radii)[free])) * float(prepared.path.radii[pulley])

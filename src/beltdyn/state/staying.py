@@ -7,8 +7,8 @@ import numpy as np
 
 from beltdyn.arrays import FloatArray
 from beltdyn.errors import ConvergenceError
-from beltdyn.model import Drive, Installation, install
-from beltdyn.model.resolution import Arc, Laid, graded_mesh, layer_length, layer_lengths
+from beltdyn.model import Drive, Prepared
+from beltdyn.model.resolution import Arc, Laid
 from beltdyn.state.installation import drawn_in, follow, from_starts, looked_at, tighten, with_stiffer_contact
 from beltdyn.state.newton import FOUND, find_steady, steady_work
 from beltdyn.state.static import only_tensioners
@@ -40,7 +40,7 @@ _SAMPLES = 16
 class Standing(NamedTuple):
     """A drive at rest, without friction, on a staying mesh."""
 
-    drive: Drive
+    prepared: Prepared
     system: System
     state: State
     place: FloatArray
@@ -51,6 +51,11 @@ class Standing(NamedTuple):
     """Length of the layers at the ends of arcs, m."""
     fineness: float
     """Of its graded mesh."""
+
+    @property
+    def drive(self) -> Drive:
+        """The drive, with the length, or the take-up, that gives the tension asked for."""
+        return self.prepared.drive
 
 
 def laid_state(laid: Laid, system: System, tensioners: FloatArray) -> State:
@@ -68,65 +73,54 @@ def anchor_at(state: State, at_rest: bool) -> Anchor:
     return Anchor(state.position[:2].copy(), slope / np.hypot(*slope), at_rest)
 
 
-def bring_to_stand(drive: Drive, elements: int | None = None) -> Standing:
+def bring_to_stand(prepared: Prepared, elements: int | None = None) -> Standing:
     """Find the equilibrium at rest, with the installed tension that was asked for if one was.
 
     The length for that tension is found on a mesh that is fine enough for it.
     """
-    rest, wanted = stand(drive, elements), drive.belt.installed_tension
+    rest, wanted = stand(prepared, elements), prepared.installed_tension
     if wanted is None:
         return rest
     change = np.inf
     while elements is None and change > _SETTLED and rest.system.nodes < MOST_ELEMENTS:
-        finer = stand(drive, fineness=FINER * rest.fineness)
+        finer = stand(prepared, fineness=FINER * rest.fineness)
         change, rest = abs(finer.tension / rest.tension - 1.0), finer
     return tighten(rest, wanted, partial(stand_like, like=rest))
 
 
-def stand(drive: Drive, elements: int | None = None, *, fineness: float = FIRST_FINENESS) -> Standing:
+def stand(prepared: Prepared, elements: int | None = None, *, fineness: float = FIRST_FINENESS) -> Standing:
     """Find the equilibrium at rest, without friction, of a drive with the length that it has.
 
     Where Newton's method does not get there from the laid belt, it follows the equilibria of stiffer or softer contact.
     """
-    installation = install(drive)
-    layer = layer_length(*layer_lengths(drive, installation.tension))
-    span = installation.path.longest_span
-    if elements is not None:
-        lengths = np.full(elements, drive.belt_length / elements)
-    else:
-        arcs = Laid.on(installation.path, drive.belt_length, span).arcs()
-        lengths = graded_mesh(drive.belt_length, arcs, layer, fineness)
-    system = staying_system(drive, lengths)
-    state, tension = _from_laid(drive, system, installation)
-    return Standing(drive, system, state, state.position.copy(), tension, layer, fineness)
+    lengths = prepared.graded_lengths(fineness) if elements is None else prepared.equal_lengths(elements)
+    system = staying_system(prepared, lengths)
+    state, tension = _from_laid(prepared, system)
+    return Standing(prepared, system, state, state.position.copy(), tension, prepared.layer, fineness)
 
 
-def _from_laid(drive: Drive, system: System, installation: Installation) -> tuple[State, float]:
+def _from_laid(prepared: Prepared, system: System) -> tuple[State, float]:
     """Equilibrium from the belt laid on its path; see `_balanced`."""
-    return from_starts(
-        drive,
-        installation,
-        lambda start: _balanced(drive, system, _lying(drive, system, installation, start), start),
-    )
+    return from_starts(prepared, lambda start: _balanced(prepared, system, _lying(prepared, system, start), start))
 
 
-def _balanced(drive: Drive, system: System, state: State, start: float = 1.0) -> tuple[State, float]:
+def _balanced(prepared: Prepared, system: System, state: State, start: float = 1.0) -> tuple[State, float]:
     """Equilibrium from a state nearby, in contact stiffer by a factor; also the mean tension of its spans, N."""
-    if not follow(start, partial(_balance, drive, system, state, anchor_at(state, True))):
+    if not follow(start, partial(_balance, prepared, system, state, anchor_at(state, True))):
         raise _no_rest(system)
-    return state, looked_at(drive, system, state).tension
+    return state, looked_at(prepared, system, state).tension
 
 
-def stand_like(drive: Drive, like: Standing) -> Standing:
+def stand_like(prepared: Prepared, like: Standing) -> Standing:
     """Find the equilibrium of a drive that differs a little, in the length of its belt, from that of the other."""
     nodes, bodies = np.split(like.place, [like.system.first_body])
-    system, state = carried(drive, like.drive, like.system.length, nodes)
+    system, state = carried(prepared, like.prepared, like.system.length, nodes)
     state.position[system.first_body :] += bodies
     try:
-        state, tension = _balanced(drive, system, state)
+        state, tension = _balanced(prepared, system, state)
     except ConvergenceError:
-        state, tension = _from_laid(drive, system, install(drive))
-    return like._replace(drive=drive, system=system, state=state, place=state.position.copy(), tension=tension)
+        state, tension = _from_laid(prepared, system)
+    return like._replace(prepared=prepared, system=system, state=state, place=state.position.copy(), tension=tension)
 
 
 def _no_rest(system: System) -> ConvergenceError:
@@ -136,14 +130,14 @@ def _no_rest(system: System) -> ConvergenceError:
     )
 
 
-def carried(drive: Drive, other: Drive, lengths: FloatArray, nodes: FloatArray) -> tuple[System, State]:
+def carried(prepared: Prepared, other: Prepared, lengths: FloatArray, nodes: FloatArray) -> tuple[System, State]:
     """The mesh of a drive that differs a little from another one, and a state near to that of the other one.
 
     Arcs keep their nodes: the mesh changes as the path does, and places and slopes as those of a belt laid on it.
 
     Parameters
     ----------
-    drive, other
+    prepared, other
         The drives.
     lengths : ndarray, shape (N,)
         Those of the elements of the other one, m.
@@ -155,11 +149,10 @@ def carried(drive: Drive, other: Drive, lengths: FloatArray, nodes: FloatArray) 
     system, state
         A state without speeds, its bodies moved from zero by as much as tensioners move at rest.
     """
-    before, after = install(other), install(drive)
-    span = before.path.longest_span
-    here, there = Laid.on(before.path, other.belt_length, span), Laid.on(after.path, drive.belt_length, span)
+    before, after = other.installation, prepared.installation
+    here, there = other.laid, Laid.on(after.path, prepared.belt_length, before.path.longest_span)
     moved = np.interp(np.append(0.0, np.cumsum(lengths)), here.marks(), there.marks())
-    new = staying_system(drive, np.diff(moved))
+    new = staying_system(prepared, np.diff(moved))
     state = laid_state(there, new, after.tensioner_positions)
     state.position[:] -= laid_state(here, new._replace(length=lengths), before.tensioner_positions).position
     state.nodes(new)[:, _CURVATURE] = 0.0  # it jumps at the ends of arcs, where nodes may be
@@ -167,10 +160,10 @@ def carried(drive: Drive, other: Drive, lengths: FloatArray, nodes: FloatArray) 
     return new, state
 
 
-def _balance(drive: Drive, system: System, state: State, anchor: Anchor, factor: float) -> bool:
+def _balance(prepared: Prepared, system: System, state: State, anchor: Anchor, factor: float) -> bool:
     """Bring a state to equilibrium with contact stiffer by a factor; if that fails, False, and the state as it was."""
     still, begun = without_friction(with_stiffer_contact(system, factor)), state.position.copy()
-    tolerance = TOLERANCE * float(np.min(drive.radii))
+    tolerance = TOLERANCE * float(np.min(prepared.radii))
     found = find_steady(still, state.at(0.0), anchor, tolerance, _MOST, False, steady_work(still))[0] == FOUND
     if not found:
         state.position[:] = begun
@@ -185,10 +178,10 @@ def without_friction(system: System) -> System:
     return system._replace(pulleys=pulleys, bodies=only_tensioners(system), tensioners=tensioners)
 
 
-def _lying(drive: Drive, system: System, installation: Installation, factor: float) -> State:
+def _lying(prepared: Prepared, system: System, factor: float) -> State:
     """A belt that lies in its pulleys instead of on their rims, as deep as in contact stiffer by a factor."""
-    laid = Laid.on(drawn_in(drive, installation, factor), drive.belt_length, installation.path.longest_span)
-    return laid_state(laid, system, installation.tensioner_positions)
+    laid = prepared.laid_on(drawn_in(prepared, factor))
+    return laid_state(laid, system, prepared.installation.tensioner_positions)
 
 
 def found_arcs(system: System, state: State) -> list[Arc]:

@@ -8,7 +8,7 @@ import numpy as np
 
 from beltdyn.arrays import FloatArray
 from beltdyn.errors import ConvergenceError, ModelError
-from beltdyn.model import Drive
+from beltdyn.model import Drive, Prepared, prepare
 from beltdyn.observation.recording import Recording
 from beltdyn.parts.quantity import number_in
 from beltdyn.results import Run, mesh_error_attribute
@@ -51,27 +51,27 @@ def require_neighbour(drive: Drive, start: Run, elements: int | None) -> None:
         )
 
 
-def with_length_of(drive: Drive, start: Run) -> Drive | None:
+def with_length_of(prepared: Prepared, start: Run) -> Prepared | None:
     """The drive with the length of the belt, or the take-up, that is known; None if it must be found."""
-    if drive.belt.installed_tension is None:
-        return drive
-    return start.drive if start.dataset.attrs["drive_as_given"] == drive.text else None
+    if prepared.installed_tension is None:
+        return prepared
+    return start.prepared if start.dataset.attrs["drive_as_given"] == prepared.drive.text else None
 
 
-def search_from(drive: Drive, start: Run, time: float) -> SteadySearch:
+def search_from(prepared: Prepared, start: Run, time: float) -> SteadySearch:
     """A search for steady running that begins with that of a neighbour, on its mesh.
 
     Its speeds are changed in proportion to those that are prescribed.
     """
     found = start.dataset
-    lengths = np.diff(found.node_coordinate.values, append=start.drive.belt_length)
-    system, state = carried(drive, start.drive, lengths, found.nodal_coordinates.values[-1].ravel())
+    lengths = np.diff(found.node_coordinate.values, append=start.prepared.belt_length)
+    system, state = carried(prepared, start.prepared, lengths, found.nodal_coordinates.values[-1].ravel())
     if system.tensioners.size:
         state.position[-system.tensioners.size :] += found.tensioner_position.values[-1]
     bodies, speeds = state.velocity[system.first_body :], found.pulley_speed.values[-1]
     bodies[: speeds.size] = speeds
     take_along(system, bodies, found.shaft_speed.values[-1])
-    search = SteadySearch(drive, system, state, time)
+    search = SteadySearch(prepared, system, state, time)
     faster = _faster(search.constant, bodies)
     bodies *= faster
     system.frame.speed[0] = faster * found.attrs["belt_parameter"]
@@ -160,28 +160,29 @@ def steady_state(
     require_steady(drive)
     if start is not None:
         require_neighbour(drive, start, elements)
+    prepared = prepare(drive)
     if force_tolerance is None and elements is None and drive.steady.mesh == "uniform":
-        elements = drive.elements
+        elements = prepared.elements
     tolerance = _tolerance(drive, force_tolerance)
     _require_sense(tolerance, elements)
     instant = instant_given(drive, at)
     if progress is not None:
         progress(Progress(0.0, drive.simulation.duration, 0.0, 0, "equilibrium"))
-    found = _continued(drive, start, instant, tolerance, bands=True) if start is not None else None
-    return _as_run(drive, instant, found or _from_rest(drive, instant, tolerance, elements, bands=True))
+    found = _continued(prepared, start, instant, tolerance, bands=True) if start is not None else None
+    return _as_run(prepared, instant, found or _from_rest(prepared, instant, tolerance, elements, bands=True))
 
 
 def steady_from(drive: Drive, start: Run | None, force_tolerance: float | None, *, bands: bool) -> Run:
     """Find the steady running of a drive from that of another one, or from rest, as `steady_state` does."""
-    instant, tolerance = drive.simulation.end, _tolerance(drive, force_tolerance)
-    found = None if start is None else _continued(drive, start, instant, tolerance, bands=bands)
-    return _as_run(drive, instant, found or _from_rest(drive, instant, tolerance, None, bands=bands))
+    prepared, instant, tolerance = prepare(drive), drive.simulation.end, _tolerance(drive, force_tolerance)
+    found = None if start is None else _continued(prepared, start, instant, tolerance, bands=bands)
+    return _as_run(prepared, instant, found or _from_rest(prepared, instant, tolerance, None, bands=bands))
 
 
 class Beside(NamedTuple):
     """Steady running that was found on the mesh of that of a drive that differs a little."""
 
-    drive: Drive
+    prepared: Prepared
     search: SteadySearch
     start: Run
     """Of the other drive; the errors of its mesh are taken over."""
@@ -195,7 +196,7 @@ class Beside(NamedTuple):
         errors = {name: error for name, error in self.start.resolution.errors.items() if np.isfinite(error)}
         band = self.search.friction_band(self.start.dataset.attrs) if bands else {}
         found = _Found(self.search, band, errors, _rule_of(self.start), self.seconds)
-        return _as_run(self.drive, self.drive.simulation.end, found)
+        return _as_run(self.prepared, self.prepared.simulation.end, found)
 
 
 def steady_beside(
@@ -203,18 +204,19 @@ def steady_beside(
 ) -> Beside | None:
     """Look for the steady running of a drive on the mesh of another one; None if it is not found from there."""
     require_neighbour(drive, start, None)
-    search, begun = _begin(drive, start, drive.simulation.end), time.perf_counter()
+    prepared = prepare(drive)
+    search, begun = _begin(prepared, start, drive.simulation.end), time.perf_counter()
     carried = search.unknowns()
     if guess is not None:
         search.place(carried + guess)
     if not search.resume(tangent):
         return None
-    return Beside(drive, search, start, search.unknowns() - carried, time.perf_counter() - begun)
+    return Beside(prepared, search, start, search.unknowns() - carried, time.perf_counter() - begun)
 
 
 def tangent_of(run: Run) -> SteadyWork:
     """The factorised tangent of steady running, from `steady_state`."""
-    return _begin(run.drive, run, float(run.dataset.attrs["steady_at"])).factorised()
+    return _begin(run.prepared, run, float(run.dataset.attrs["steady_at"])).factorised()
 
 
 def steady_on_mesh(drive: Drive, start: Run) -> Run:
@@ -247,9 +249,11 @@ class _Found(NamedTuple):
     """Of the search, s."""
 
 
-def _from_rest(drive: Drive, instant: float, force_tolerance: float, elements: int | None, *, bands: bool) -> _Found:
+def _from_rest(
+    prepared: Prepared, instant: float, force_tolerance: float, elements: int | None, *, bands: bool
+) -> _Found:
     """Find steady running from rest, retrying from a finer mesh if the search fails."""
-    rest, begun = bring_to_stand(drive, elements), time.perf_counter()
+    rest, begun = bring_to_stand(prepared, elements), time.perf_counter()
 
     def rule(standing: Standing) -> MeshRule:
         return MeshRule(0.0, elements=elements) if elements else MeshRule(standing.layer, standing.fineness)
@@ -258,12 +262,12 @@ def _from_rest(drive: Drive, instant: float, force_tolerance: float, elements: i
     return _Found(found.search, found.band, found.errors, found.rule, time.perf_counter() - begun)
 
 
-def _continued(drive: Drive, start: Run, instant: float, force_tolerance: float, *, bands: bool) -> _Found | None:
+def _continued(prepared: Prepared, start: Run, instant: float, force_tolerance: float, *, bands: bool) -> _Found | None:
     """Find steady running from that of a neighbour, on its mesh, or on another one where that is too coarse.
 
     None if that fails.
     """
-    search, begun = _begin(drive, start, instant), time.perf_counter()
+    search, begun = _begin(prepared, start, instant), time.perf_counter()
     if not search.resume():
         return None
     rule = _rule_of(start)
@@ -278,9 +282,9 @@ def _continued(drive: Drive, start: Run, instant: float, force_tolerance: float,
     return _Found(search, band, errors, rule, time.perf_counter() - begun)
 
 
-def _begin(drive: Drive, start: Run, instant: float) -> SteadySearch:
+def _begin(prepared: Prepared, start: Run, instant: float) -> SteadySearch:
     """A search that begins with the steady running of a neighbour."""
-    return search_from(with_length_of(drive, start) or bring_to_stand(drive).drive, start, instant)
+    return search_from(with_length_of(prepared, start) or bring_to_stand(prepared).prepared, start, instant)
 
 
 def _rule_of(start: Run) -> MeshRule:
@@ -288,18 +292,17 @@ def _rule_of(start: Run) -> MeshRule:
     return MeshRule(*start.dataset.attrs["mesh_rule"].tolist())
 
 
-def _as_run(drive: Drive, instant: float, found: _Found) -> Run:
+def _as_run(prepared: Prepared, instant: float, found: _Found) -> Run:
     """What was found, as the results of a run of two turns of the belt."""
-    search = found.search
-    duration = _TURNS * search.drive.belt_length / abs(search.belt_parameter)
+    search, drive = found.search, prepared.drive
+    duration = _TURNS * search.prepared.belt_length / abs(search.belt_parameter)
     turns = drive.simulation.replace(
         duration=duration, output_interval=duration, field_interval=None, start="equilibrium", start_at=None
     )
-    shown = search.drive.model_copy(update={"simulation": turns})  # nothing else follows from a simulation
     title = f"{drive.title} in steady running, as at {instant:g} s"
     mesh = mesh_used(drive, STAYING, search.constant.nodes)
-    with Recording(shown, search.constant, None, title, None, **mesh) as recording:
-        recording.start(search.drive, search.constant, ())
+    with Recording(search.prepared.over(turns), search.constant, None, title, None, **mesh) as recording:
+        recording.start(search.prepared, search.constant, ())
         recording.take(_running(search.constant, search.running(), duration))
         recording.note(
             drive_as_given=drive.text,

@@ -12,7 +12,7 @@ from beltdyn.contact.normal import NoPull
 from beltdyn.contact.surface import KINDS, SHAPE, RoundRims, ShapedRims
 from beltdyn.errors import ModelError
 from beltdyn.machines import Tensioner
-from beltdyn.model import Belt, Contact, Drive, Path, Pulley
+from beltdyn.model import Belt, Contact, Path, Prepared, Pulley
 from beltdyn.model.hysteresis import Passing, passing_strains, rolling_resistances
 from beltdyn.model.pulley import SURFACES, friction_on
 from beltdyn.model.routing import radii as effective_radii
@@ -61,25 +61,24 @@ Closure = Literal["shared_node", "multipliers", "open"]
 """How the ends of a belt meet: at one node (Eq. 27), by Lagrange multipliers (Eq. 25), or not at all."""
 
 
-def drive_system(drive: Drive) -> System:
+def drive_system(prepared: Prepared) -> System:
     """Arrays of a drive."""
-    belt, contact = drive.completed.belt, drive.completed.contact
-    return system_of(drive, belt, contact, "open" if drive.ends else drive.simulation.joint, **_at_ends(drive))
+    closure: Closure = "open" if prepared.ends else prepared.simulation.joint
+    return system_of(prepared, prepared.belt, prepared.contact, closure, **_at_ends(prepared))
 
 
-def system_of(drive: Drive, belt: Belt, contact: Contact, closure: Closure, **more: Any) -> System:
+def system_of(prepared: Prepared, belt: Belt, contact: Contact, closure: Closure, **more: Any) -> System:
     """Arrays of a drive with a belt and a contact in place of its own; further arguments as for `belt_system`."""
-    completed = drive.completed
     return belt_system(
         belt,
-        completed.pulleys,
+        prepared.pulleys,
         contact,
         closure,
-        tensioners=completed.tensioners,
-        path=completed.path,
-        gravity=drive.gravity,
-        passing=passing_strains(drive) if belt.has_hysteresis else None,
-        rolling=rolling_resistances(drive),
+        tensioners=prepared.tensioners,
+        path=prepared.path,
+        gravity=prepared.gravity,
+        passing=passing_strains(prepared) if belt.has_hysteresis else None,
+        rolling=rolling_resistances(prepared),
         **more,
     )
 
@@ -222,9 +221,9 @@ def _rims(pulleys: Sequence[Pulley], radii: FloatArray) -> RoundRims | ShapedRim
     return ShapedRims(radii, table)
 
 
-def _at_ends(drive: Drive) -> dict[str, Any]:
+def _at_ends(prepared: Prepared) -> dict[str, Any]:
     """Keywords of `belt_system` for the ends of an open belt."""
-    ends, turned = tuple(zip((0, -1), drive.ends, strict=False)), drive.element_kind.turned
+    ends, turned = tuple(zip((0, -1), prepared.ends, strict=False)), prepared.element_kind.turned
     held = [(node, c) for node, end in ends if end.held for c in (0, 1)]
     clamped = [(node, turned + c) for node, end in ends if end.turning_held for c in (0, 1)]
     return {

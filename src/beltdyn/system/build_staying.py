@@ -6,7 +6,7 @@ import numpy as np
 
 from beltdyn.arrays import FloatArray
 from beltdyn.elements.quintic import QUINTIC, Quintic
-from beltdyn.model import Belt, Drive
+from beltdyn.model import Belt, Prepared
 from beltdyn.model.hysteresis import bending_at_points, passing_strains
 from beltdyn.records import records
 from beltdyn.system.arrays import BODY, System
@@ -19,13 +19,13 @@ _STAYING_ELASTIC, _STAYING_CONTACT = 8, 12
 """Gauss points of an element that stays, for elastic forces and for contact."""
 
 
-def staying_system(drive: Drive, lengths: FloatArray) -> System:
+def staying_system(prepared: Prepared, lengths: FloatArray) -> System:
     """Arrays of a drive with a closed belt on a staying mesh, of quintic elements with hysteresis of their own.
 
     Parameters
     ----------
-    drive
-        A checked drive.
+    prepared
+        The drive.
     lengths : ndarray, shape (elements,)
         Reference lengths of the elements, m.
 
@@ -34,23 +34,21 @@ def staying_system(drive: Drive, lengths: FloatArray) -> System:
     System
         With a belt that does not flow.
     """
-    given, belt = drive.completed.belt, _staying_belt(drive, lengths.size)
-    contact = drive.completed.contact.replace(
-        sampling="distributed", integration="zone", quadrature_points=_STAYING_CONTACT
-    )
-    system = system_of(drive, belt, contact, "shared_node", lengths=lengths)
-    if given.bending_loss_factor > 0.0:
-        modulus, length = bending_at_points(drive)
+    belt = _staying_belt(prepared, lengths.size)
+    contact = prepared.contact.replace(sampling="distributed", integration="zone", quadrature_points=_STAYING_CONTACT)
+    system = system_of(prepared, belt, contact, "shared_node", lengths=lengths)
+    if prepared.belt.bending_loss_factor > 0.0:
+        modulus, length = bending_at_points(prepared)
         system = _with_section(system, bending_hysteresis=modulus, passing_length=length)
     return system._replace(frame=staying(system.control, system.length, belt.mass_per_length))
 
 
-def on_other_mesh(drive: Drive, system: System, lengths: FloatArray) -> System:
+def on_other_mesh(prepared: Prepared, system: System, lengths: FloatArray) -> System:
     """The same arrays of a drive with a belt on another staying mesh.
 
     Parameters
     ----------
-    drive
+    prepared
         The drive.
     system
         From `staying_system`.
@@ -62,23 +60,23 @@ def on_other_mesh(drive: Drive, system: System, lengths: FloatArray) -> System:
     System
         With the machines of the other one, and a belt that does not flow.
     """
-    belt = _staying_belt(drive, lengths.size)
+    belt = _staying_belt(prepared, lengths.size)
     mesh = discretize(belt, lengths)
-    passing = passing_strains(drive) if belt.has_hysteresis else None
+    passing = passing_strains(prepared) if belt.has_hysteresis else None
     supports = nodal_supports(lengths.size, len(mesh.scale), (), (), ())
     return system._replace(
         **mesh._asdict() | {"element": system.element},
         nodes=lengths.size,
         first_body=lengths.size * len(mesh.scale),
         hysteresis=hysteresis_rows(belt, mesh.length, mesh.control, passing),
-        supports=supports._replace(force=weight_forces(mesh, lengths.size, drive.gravity)),
+        supports=supports._replace(force=weight_forces(mesh, lengths.size, prepared.gravity)),
         frame=staying(mesh.control, mesh.length, belt.mass_per_length),
     )
 
 
-def _staying_belt(drive: Drive, elements: int) -> Belt:
+def _staying_belt(prepared: Prepared, elements: int) -> Belt:
     """The belt of a drive on a staying mesh; it has hysteresis of bending point by point, apart."""
-    return drive.completed.belt.replace(
+    return prepared.belt.replace(
         discretization=QUINTIC.name,
         elements=elements,
         integration="full",

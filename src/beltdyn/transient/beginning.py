@@ -7,13 +7,13 @@ import numpy as np
 
 from beltdyn.arrays import FloatArray
 from beltdyn.errors import ModelError
-from beltdyn.model import Drive
+from beltdyn.model import Drive, Prepared, prepare
 from beltdyn.model.simulation import EarlierRun, Frame, Instants
 from beltdyn.observation.compilation import compile_kernels
 from beltdyn.solvers.generalized_alpha import GeneralizedAlpha
 from beltdyn.solvers.progress import Report
 from beltdyn.solvers.trajectory import Integrator, Statistics, drive_task
-from beltdyn.state.installation import Rest, bring_to_rest
+from beltdyn.state.installation import Rest, rest_of
 from beltdyn.state.search import SteadySearch
 from beltdyn.state.settling import Beginning, Start, begin_flowing, settle, with_angles
 from beltdyn.state.staying import stand
@@ -39,15 +39,15 @@ _TURNS = 5
 
 def steady_state_on(rest: Rest) -> State:
     """Steady running at the beginning of a run, as near as the travelling mesh comes to it."""
-    standing = stand(rest.drive)
-    search = SteadySearch(rest.drive, standing.system, standing.state, rest.drive.simulation.begin)
+    standing = stand(rest.prepared)
+    search = SteadySearch(rest.prepared, standing.system, standing.state, rest.prepared.simulation.begin)
     search.run(standing)
     return taken_over(search, rest.system)
 
 
 def taken_over(search: SteadySearch, system: System) -> State:
     """The curve and motion of steady running on the nodes of another mesh, which travels with the belt."""
-    found, given, length = search.running(), search.constant, search.drive.belt_length
+    found, given, length = search.running(), search.constant, search.prepared.belt_length
 
     def nodes(ahead: float) -> FloatArray:
         along = (point_coordinates(system) + ahead) % length
@@ -66,28 +66,28 @@ class Held:
     """A run at the speeds and loads of the beginning, until nothing but the ripple of the mesh is left."""
 
     def __call__(
-        self, drive: Drive, system: System, state: State, integrator: Integrator, progress: Report | None, /
+        self, prepared: Prepared, system: System, state: State, integrator: Integrator, progress: Report | None, /
     ) -> Start:
         """Settle."""
-        held = constant_drive(system, drive.simulation.begin)._replace(tensioners=system.tensioners)
-        stops = np.arange(1.0, _WINDOWS * _TURNS + 1.0) * _window(drive, system, state)
-        task = drive_task(drive, held, state, Statistics())
-        instants = Instants(drive.simulation.output_interval, float(stops[-1]))
+        held = constant_drive(system, prepared.simulation.begin)._replace(tensioners=system.tensioners)
+        stops = np.arange(1.0, _WINDOWS * _TURNS + 1.0) * _window(prepared, system, state)
+        task = drive_task(prepared, held, state, Statistics())
+        instants = Instants(prepared.simulation.output_interval, float(stops[-1]))
         task = replace(task, instants=instants, breakpoints=stops.tolist())
-        end, settled = settle(task, integrator, stops, drive.simulation.duration, progress)
-        return Start(with_angles(drive, system, held, settled.time), end, settled.attributes)
+        end, settled = settle(task, integrator, stops, prepared.simulation.duration, progress)
+        return Start(with_angles(prepared, system, held, settled.time), end, settled.attributes)
 
 
-def _window(drive: Drive, system: System, state: State) -> float:
+def _window(prepared: Prepared, system: System, state: State) -> float:
     """Time in which a whole number of elements pass, about a part of a turn of the belt, s."""
     elements = curve_lengths(system).size
     passing = max(elements // _WINDOWS, 1) / elements
-    speeds = np.abs(state.velocity[system.first_body :][: system.pulleys.size] * drive.rolling_radii)
-    return float(passing * drive.path.length / speeds.max())
+    speeds = np.abs(state.velocity[system.first_body :][: system.pulleys.size] * prepared.rolling_radii)
+    return float(passing * prepared.path.length / speeds.max())
 
 
-Begin = Callable[[Drive, System, State, Integrator, Report | None], Start]
-"""``begin(drive, system, state, integrator, progress) -> Start``, from the drive and its state at rest."""
+Begin = Callable[[Prepared, System, State, Integrator, Report | None], Start]
+"""``begin(prepared, system, state, integrator, progress) -> Start``, from the drive and its state at rest."""
 
 
 def settled(drive: Drive, integrator: Integrator) -> tuple[Drive, Frame]:
@@ -106,58 +106,57 @@ def settled(drive: Drive, integrator: Integrator) -> tuple[Drive, Frame]:
 
 def compile_ahead(drive: Drive) -> None:
     """Compile the kernels of a run once, before several processes need them."""
-    if drive.frame.stays:
-        lengths = np.full(drive.elements, drive.belt_length / drive.elements)
-        system = flowing_system(staying_system(drive, lengths), np.array([1.0, 0.0]))
+    prepared = prepare(drive)
+    if prepared.frame.stays:
+        lengths = prepared.equal_lengths(prepared.elements)
+        system = flowing_system(staying_system(prepared, lengths), np.array([1.0, 0.0]))
     else:
-        system = drive_system(drive)
-    compile_kernels(system, laid(system, drive.path))
+        system = drive_system(prepared)
+    compile_kernels(system, laid(system, prepared.path))
 
 
-def mesh_of(drive: Drive, integrator: Integrator, progress: Report | None = None) -> Beginning:
+def mesh_of(prepared: Prepared, integrator: Integrator, progress: Report | None = None) -> Beginning:
     """The mesh of a run, with the state on it where the mesh is found by that."""
-    settings = drive.simulation
-    staying = drive.frame.stays
+    settings, staying = prepared.simulation, prepared.frame.stays
     if staying and not isinstance(integrator, GeneralizedAlpha):
         raise ModelError(
             f'the integrator "{integrator.name}" does not support simulation.frame = "staying". Omit the '
             'integrator, or set simulation.frame = "travelling".'
         )
     if settings.start == "steady":
-        require_steady_start(drive)
+        require_steady_start(prepared.drive)
     if isinstance(settings.start, EarlierRun):
-        return begin_from(drive)
+        return begin_from(prepared.drive)
     if staying:
-        return begin_flowing(drive, progress)
-    system = drive_system(drive)
-    return Beginning(drive, system, laid(system, drive.path))
+        return begin_flowing(prepared, progress)
+    system = drive_system(prepared)
+    return Beginning(prepared, system, laid(system, prepared.path))
 
 
 def begin_on(
     mesh: Beginning, integrator: Integrator, progress: Report | None = None, begin: Begin | None = None
 ) -> Beginning:
     """The state in which a run begins."""
-    settings = mesh.drive.simulation
-    if mesh.drive.frame.stays or isinstance(settings.start, EarlierRun):
+    settings = mesh.prepared.simulation
+    if mesh.prepared.frame.stays or isinstance(settings.start, EarlierRun):
         found = mesh
     else:
         found = _travelling(mesh, progress)
         begin = begin or (Held() if settings.start == "steady" else None)
     if begin is None:
         return found
-    system, state, said = begin(found.drive, found.system, found.state, integrator, progress)
+    system, state, said = begin(found.prepared, found.system, found.state, integrator, progress)
     return found._replace(system=system, state=state, attributes={**found.attributes, **said})
 
 
 def _travelling(mesh: Beginning, progress: Report | None) -> Beginning:
     """The state in which a run on the travelling mesh begins."""
-    drive = mesh.drive
-    start = drive.simulation.start
-    if drive.belt.installed_tension is None and start == "laid":
+    start = mesh.prepared.simulation.start
+    if mesh.prepared.installed_tension is None and start == "laid":
         return mesh
-    rest = bring_to_rest(drive, progress)
+    rest = rest_of(mesh.prepared, progress)
     if start == "steady":
         state = steady_state_on(rest)
     else:
-        state = rest.state if start == "equilibrium" else laid(rest.system, rest.drive.path)
-    return Beginning(rest.drive, rest.system, state, rest.unstable)
+        state = rest.state if start == "equilibrium" else laid(rest.system, rest.prepared.path)
+    return Beginning(rest.prepared, rest.system, state, rest.unstable)

@@ -28,7 +28,7 @@ from beltdyn.errors import ModelError
 from beltdyn.kernel.cache import PACKAGE, source_hash
 from beltdyn.machines.loads.shaft import ShaftLoads
 from beltdyn.machines.profiles.functions import Profiles
-from beltdyn.model import Drive
+from beltdyn.model import Drive, Prepared, prepare
 from beltdyn.model.drive import drive_of_text
 from beltdyn.model.simulation import Instants
 from beltdyn.observation.band_limit import BandLimit
@@ -120,8 +120,8 @@ class _Writer:
             return {"is": "rows" if isinstance(value, np.recarray) else "array"} | self._array(value)
         if isinstance(value, np.generic):
             return {"is": "row" if isinstance(value, np.record) else "scalar"} | self._array(np.asarray(value))
-        if kind is Drive:
-            return {"is": "drive", "of": value.text}
+        if kind is Drive or kind is Prepared:
+            return {"is": kind.__name__.lower(), "of": (value.drive if kind is Prepared else value).text}
         return self._record(value)
 
     def _record(self, value: Any) -> dict[str, Any]:
@@ -172,6 +172,8 @@ class _Reader:
             return self._array(kind, node)
         if kind == "drive":
             return drive_of_text(content)
+        if kind == "prepared":
+            return prepare(drive_of_text(content))
         if kind not in self._packing.classes:
             raise ModelError(f"{kind} has no place in it")
         cls = self._packing.classes[kind]

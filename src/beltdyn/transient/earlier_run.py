@@ -9,7 +9,7 @@ import numpy as np
 
 from beltdyn.errors import ModelError
 from beltdyn.machines.profiles.functions import go_on
-from beltdyn.model import Drive, loads
+from beltdyn.model import Drive, Prepared, loads, prepare
 from beltdyn.model.simulation import EarlierRun
 from beltdyn.parts.quantity import number_in
 from beltdyn.parts.text_file import entry_name, shorten
@@ -51,10 +51,10 @@ def instant_of(run: Run, at: float | str | None, name: str = "at") -> float:
     return nearest
 
 
-def staying_mesh(drive: Drive, run: Run) -> System:
+def staying_mesh(prepared: Prepared, run: Run) -> System:
     """The arrays of a drive over time on the mesh of a run that stays, with a belt that does not flow."""
-    lengths = np.diff(run.dataset["node_coordinate"].values, append=drive.belt_length)
-    return staying_system(drive, lengths)
+    lengths = np.diff(run.dataset["node_coordinate"].values, append=prepared.belt_length)
+    return staying_system(prepared, lengths)
 
 
 def recorded_state(run: Run, time: float, system: System) -> State:
@@ -84,20 +84,20 @@ def begin_from(drive: Drive) -> Beginning:
     assert isinstance(start, EarlierRun)
     assert start.time is not None
     with _opened(start) as run:
-        drive = _as_installed(drive, run)
+        prepared = prepare(_as_installed(drive, run))
         attributes: dict[str, Any] = {}
-        if drive.frame.stays:
+        if prepared.frame.stays:
             direction = np.array(run.dataset.attrs[DIRECTION], dtype=float)
             attributes = {DIRECTION: direction}
-            system = flowing_system(staying_mesh(drive, run), direction)
+            system = flowing_system(staying_mesh(prepared, run), direction)
         else:
-            system = drive_system(drive)
+            system = drive_system(prepared)
         _require_same_mesh(system, run)
         state = recorded_state(run, start.time, system)
     shafts = [number for number, pulley in enumerate(drive.pulleys) if pulley.prescribed]
     angles = state.position[system.first_body + system.pulleys.shaft[shafts]]
     go_on(system.profiles, shafts, drive.simulation.begin, angles.tolist())
-    return Beginning(drive, system, state, attributes=attributes)
+    return Beginning(prepared, system, state, attributes=attributes)
 
 
 @contextmanager

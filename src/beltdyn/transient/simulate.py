@@ -5,7 +5,7 @@ from pathlib import Path
 from typing import get_args
 
 from beltdyn.errors import ConvergenceError, ModelError
-from beltdyn.model import Drive, Simulation
+from beltdyn.model import Drive, Simulation, prepare
 from beltdyn.model.drive import has_functions
 from beltdyn.observation.compilation import compile_kernels
 from beltdyn.observation.observer import Arrays
@@ -113,16 +113,17 @@ def record_run(
         require_steady(drive)
     integrator = integrator or choose_integrator(drive)
     drive, frame = settled(drive, integrator)
-    mesh = mesh_of(drive, integrator, progress)
+    prepared = prepare(drive)
+    mesh = mesh_of(prepared, integrator, progress)
     title = f"{drive.title}, {drive.simulation.duration:g} s"
     about = {**attributes, **mesh.attributes, "mesh_frame_reason": frame.reason}
-    with Recording(drive, mesh.system, output, title, progress, overwrite, **about) as recording:
+    with Recording(prepared, mesh.system, output, title, progress, overwrite, **about) as recording:
         recording.prepare()
         found = begin_on(mesh, integrator, progress, begin)
         recording.integrator, recording.watch = integrator.name, watch
-        recording.start(found.drive, found.system, found.unstable)
+        recording.start(found.prepared, found.system, found.unstable)
         recording.note(**found.attributes)
-        task = drive_task(found.drive, found.system, found.state, recording.statistics)
+        task = drive_task(found.prepared, found.system, found.state, recording.statistics)
         if isinstance(integrator, GeneralizedAlpha) and not has_functions(given):
             keeper = Keeper(Path(output) if output is not None else None, checkpoint, given, compare_steady)
             _integrate(integrator.begin(task), recording, keeper)
@@ -167,7 +168,7 @@ def _resume(drive: Drive, output: Path | str | None, progress: Report | None, ch
             f'this one ended with simulation.start = {{ file = "{path}" }}, or run it again.'
         )
     point = read_checkpoint(checkpoint_file(path))
-    if drive not in (point.drive, point.recording["_drive"]):
+    if drive not in (point.drive, point.recording["_prepared"].drive):
         raise ModelError(
             f"{checkpoint_file(path)} belongs to another drive than the given one. Give the drive file with "
             "which the run started, or run this one from the beginning, without resume."

@@ -12,7 +12,7 @@ from beltdyn.arrays import FloatArray
 from beltdyn.errors import ModelError
 from beltdyn.kernel import interpreted
 from beltdyn.machines.profiles.functions import go_on, profile_integral, profile_value
-from beltdyn.model import Drive, Pulley
+from beltdyn.model import Drive, Pulley, prepare
 from beltdyn.parts.quantity import number_in
 from beltdyn.results.balance import STORED
 from beltdyn.solvers.generalized_alpha import GeneralizedAlpha
@@ -93,11 +93,11 @@ class Simulator:
             raise ModelError(
                 f'a simulator supports only generalized_alpha, not "{integrator.name}". Omit simulation.integrator.'
             )
-        begin = begin_on(mesh_of(settled(drive, integrator)[0], integrator, progress), integrator, progress)
-        self.drive = begin.drive
+        begin = begin_on(mesh_of(prepare(settled(drive, integrator)[0]), integrator, progress), integrator, progress)
+        self.drive = begin.prepared.drive
         """With the length, or the take-up, that gives the installed tension."""
-        self._integration = integrator.begin(drive_task(begin.drive, begin.system, begin.state, Statistics()))
-        self._pulleys: tuple[Pulley, ...] = tuple(begin.drive.pulleys)
+        self._integration = integrator.begin(drive_task(begin.prepared, begin.system, begin.state, Statistics()))
+        self._pulleys: tuple[Pulley, ...] = begin.prepared.pulleys
         self._wanted: dict[int, float] = {}
         self._centers: dict[int, tuple[float, float]] = {}
         self._anew, self._moves = True, False

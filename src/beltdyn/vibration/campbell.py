@@ -9,7 +9,7 @@ from numpy.typing import ArrayLike
 
 from beltdyn.arrays import FloatArray
 from beltdyn.errors import ModelError
-from beltdyn.model import Drive
+from beltdyn.model import Drive, prepare
 from beltdyn.parts.quantity import RPM, numbers_in
 from beltdyn.points.changed_drive import at_instant, at_speed, driver_of, held_at, sense_of
 from beltdyn.points.operating_points import Axes, OperatingPoints
@@ -87,7 +87,7 @@ class CampbellDiagram:
         self, drive: Drive, speeds: FloatArray, excitations: Sequence[Excitation], count: int, stuck: bool
     ) -> None:
         self._drive, self._speeds, self._excitations, self._count = drive, speeds, excitations, count
-        self._stuck = dry_tensioners(drive) if stuck else None
+        self._stuck = dry_tensioners(prepare(drive)) if stuck else None
         self._tracks = Tracks(count)
         self._lines = list[list[float]]()
         self._flutter = list[complex]()

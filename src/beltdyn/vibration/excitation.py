@@ -103,7 +103,7 @@ class Excitation(NamedTuple):
     def frequency(self, run: Run) -> float:
         """Its frequency in steady running, Hz."""
         if self.turning == BELT:
-            return self.order * abs(float(run.dataset.attrs["belt_parameter"])) / run.drive.belt_length
+            return self.order * abs(float(run.dataset.attrs["belt_parameter"])) / run.prepared.belt_length
         return self.order * abs(float(run.dataset[self.turning][-1, self.pulley])) / (2.0 * np.pi)
 
 

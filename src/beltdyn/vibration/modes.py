@@ -82,7 +82,7 @@ class _Found(NamedTuple):
 
 def modes_about(motions: SmallMotions, count: int) -> Result:
     """Find the modes of small motions about a state, with sliding and with stuck tensioners."""
-    points, dry = belt_points(motions), dry_tensioners(motions.drive)
+    points, dry = belt_points(motions), dry_tensioners(motions.prepared)
     found = [_find(motions, points, count, SLIDING if dry.size else "")]
     if dry.size:
         found.append(_find(motions.with_stuck(dry), points, count, STUCK))

@@ -58,7 +58,7 @@ class ForcedMotion:
 
     def __init__(self, run: Run, stuck: bool) -> None:
         self._motions = about_steady(run, all_shafts=True)
-        self._held = self._motions.with_stuck(dry_tensioners(run.drive)) if stuck else self._motions
+        self._held = self._motions.with_stuck(dry_tensioners(run.prepared)) if stuck else self._motions
         self._pulley_shafts = np.asarray(self._motions.system.pulleys.shaft)
         self._driven = np.flatnonzero([one.prescribed for one in run.drive.pulleys])
         state = self._motions.state
@@ -79,18 +79,18 @@ class ForcedMotion:
             np.array([one[name] for one in answers]) for name in ("span_tension", "tensioner_position")
         )
         still, state = self._still, self._motions.state
-        drive, last = self._motions.drive, state.position.size - self._motions.system.tensioners.size
+        prepared, last = self._motions.prepared, state.position.size - self._motions.system.tensioners.size
         values = SteadyValues(
             still["span_tension"][0], still["belt_speed"][0], still["pulley_center"][0], state.position[last:]
         )
         rubbed = np.abs(tensions).sum(axis=0)
-        if dry_tensioners(drive).size:
+        if dry_tensioners(prepared).size:
             rubbed = np.abs(self._rubbed(excitations)).sum(axis=0)
-        return range_of(drive, values, [one.frequency for one in excitations], tensions, positions, rubbed)
+        return range_of(prepared.drive, values, [one.frequency for one in excitations], tensions, positions, rubbed)
 
     def _rubbed(self, excitations: Sequence[Excited]) -> ComplexArray:
         """Amplitudes of span tensions with dry friction of tensioners, as dashpots that take the same work."""
-        motions, tensioners = self._motions, drive_system(self._motions.drive).tensioners
+        motions, tensioners = self._motions, drive_system(self._motions.prepared).tensioners
         senses = ("tensioning_friction", "yielding_friction")
         friction = np.mean([dry_friction_of(tensioners, one) for one in senses], axis=0)
         creep = dry_friction_of(tensioners, "creep_speed")

@@ -11,7 +11,7 @@ import numpy as np
 
 from beltdyn.arrays import FloatArray, IntArray
 from beltdyn.errors import ModelError
-from beltdyn.model import Drive
+from beltdyn.model import Drive, Prepared, prepare
 from beltdyn.results import Run
 from beltdyn.solvers.flutter import Vibrations
 from beltdyn.state.settling import DIRECTION, with_passage
@@ -45,12 +45,12 @@ def require_mesh_that_stays(run: Run) -> None:
 
 def state_of(run: Run, time: float) -> tuple[System, State, float]:
     """A drive at an instant of a run, with speeds, torques and schedules as they are then."""
-    given = staying_mesh(run.drive, run)
+    given = staying_mesh(run.prepared, run)
     flowing = flowing_system(given, np.array(run.dataset.attrs[DIRECTION]))
     moving, place = recorded_state(run, time, flowing), flowing.frame.place
     speed = float(moving.velocity[place])
     state = State(*(np.delete(vector, place) for vector in (moving.position, moving.velocity, moving.acceleration)))
-    held = constant_drive(given, time)._replace(element=staying_system(run.drive, given.length).element)
+    held = constant_drive(given, time)._replace(element=staying_system(run.prepared, given.length).element)
     held.frame.speed[0] = speed
     return held, state, speed
 
@@ -66,7 +66,7 @@ all pulleys, which roll on radii a little smaller than those of its centreline."
 class SmallMotions(NamedTuple):
     """A drive about a state, linearised."""
 
-    drive: Drive
+    prepared: Prepared
     system: System
     """Its belt flows through a staying mesh."""
     state: State
@@ -74,6 +74,11 @@ class SmallMotions(NamedTuple):
     """K, shape (n, n): nodal coordinates, free bodies, the last of which is the length of belt that has passed."""
     damping: "csc_array"
     mass: "csc_array"
+
+    @property
+    def drive(self) -> Drive:
+        """The drive."""
+        return self.prepared.drive
 
     @property
     def bodies(self) -> IntArray:
@@ -99,12 +104,12 @@ class SmallMotions(NamedTuple):
         last = self.system.bodies.size - self.system.tensioners.size
         yield from ((unit[place], _NO_FORCE) for place in bodies[:last] if place >= 0)
         pulley, together = rim_of_bodies(self.system), unit[bodies[last - 1]].copy()
-        for number, radius in enumerate(self.drive.path.radii):
+        for number, radius in enumerate(self.prepared.path.radii):
             chain = bodies[:last][pulley == number]
             if np.any(chain < 0):
                 return
             yield unit[chain].sum(axis=0), _NO_FORCE
-            together += unit[chain].sum(axis=0) * self.drive.path.length / self.drive.belt_length / radius
+            together += unit[chain].sum(axis=0) * self.prepared.path.length / self.prepared.belt_length / radius
         yield together, _LITTLE_FORCE
 
     def with_stuck(self, tensioners: Sequence[int] | IntArray) -> "SmallMotions":
@@ -118,12 +123,12 @@ class SmallMotions(NamedTuple):
         bodies["unknown"] = np.where(self.bodies < 0, -1, self.bodies - later - self.system.first_body)
         bodies["unknown"][places] = -1
         own = (matrix[kept][:, kept] for matrix in (self.stiffness, self.damping, self.mass))
-        return SmallMotions(self.drive, self.system._replace(bodies=bodies), self.state, *own)
+        return SmallMotions(self.prepared, self.system._replace(bodies=bodies), self.state, *own)
 
 
-def dry_tensioners(drive: Drive) -> IntArray:
+def dry_tensioners(prepared: Prepared) -> IntArray:
     """Numbers of the moving tensioners of a drive that have dry friction."""
-    tensioners = drive_system(drive).tensioners
+    tensioners = drive_system(prepared).tensioners
     return np.flatnonzero(sum(dry_friction_of(tensioners, name) for name in _DRY))
 
 
@@ -135,7 +140,7 @@ def about_rest(drive: Drive) -> SmallMotions:
     """
     if drive.ends:
         raise ModelError("the belt is open, but modes need a closed belt. Simulate the drive with `beltdyn simulate`.")
-    return about_standing(bring_to_stand(drive))
+    return about_standing(bring_to_stand(prepare(drive)))
 
 
 def about_standing(rest: Standing) -> SmallMotions:
@@ -144,8 +149,8 @@ def about_standing(rest: Standing) -> SmallMotions:
     held.profiles.segment.offset[:] = 0.0
     smooth = held.pulleys.copy()
     smooth["friction"] = 0.0
-    sliding = _linearised(rest.drive, held._replace(pulleys=smooth), rest.state, 0.0)
-    creeping = _linearised(rest.drive, held, rest.state, 0.0).damping - sliding.damping
+    sliding = _linearised(rest.prepared, held._replace(pulleys=smooth), rest.state, 0.0)
+    creeping = _linearised(rest.prepared, held, rest.state, 0.0).damping - sliding.damping
     return sliding._replace(stiffness=sliding.stiffness + _sticking_rate(rest.tension, held) * creeping)
 
 
@@ -160,17 +165,19 @@ def _sticking_rate(tension: float, system: System) -> float:
 
 def about_steady(run: Run, *, all_shafts: bool = False) -> SmallMotions:
     """A drive in steady running."""
-    search = search_from(run.drive, run, float(run.dataset.attrs["steady_at"]))
+    search = search_from(run.prepared, run, float(run.dataset.attrs["steady_at"]))
     search.resume()
-    return _in_motion(run.drive, search.constant, search.state, search.belt_parameter, all_shafts=all_shafts)
+    return _in_motion(run.prepared, search.constant, search.state, search.belt_parameter, all_shafts=all_shafts)
 
 
 def about_instant(run: Run, time: float) -> SmallMotions:
     """A drive at an instant of a run over time, as if it stayed in that state."""
-    return _in_motion(run.drive, *state_of(run, time))
+    return _in_motion(run.prepared, *state_of(run, time))
 
 
-def _in_motion(drive: Drive, system: System, state: State, speed: float, *, all_shafts: bool = False) -> SmallMotions:
+def _in_motion(
+    prepared: Prepared, system: System, state: State, speed: float, *, all_shafts: bool = False
+) -> SmallMotions:
     """A drive whose belt passes at a speed, m/s, with hub chains that transmit the moments of the belt."""
     rims = slice(system.first_body, state.position.size - system.tensioners.size)
     seen = body_forces_at(system, np.zeros(1), state.position[None].copy(), state.velocity[None].copy())
@@ -179,12 +186,12 @@ def _in_motion(drive: Drive, system: System, state: State, speed: float, *, all_
         bodies = system.bodies.copy()
         bodies["unknown"] = np.arange(bodies.size)
         system = system._replace(bodies=bodies)
-    return _linearised(drive, system, state, speed)
+    return _linearised(prepared, system, state, speed)
 
 
-def _linearised(drive: Drive, held: System, state: State, speed: float) -> SmallMotions:
+def _linearised(prepared: Prepared, held: System, state: State, speed: float) -> SmallMotions:
     """Linearise a drive with constant torques, on a staying mesh, with the damping of its tensioners."""
-    tensioners = drive_system(drive).tensioners.copy()
+    tensioners = drive_system(prepared).tensioners.copy()
     for kind in tensioners.dtype.names or ():
         for name in _DRY if "spring" in (tensioners.dtype[kind].names or ()) else ():
             tensioners[kind]["spring"][name] = 0.0
@@ -192,4 +199,4 @@ def _linearised(drive: Drive, held: System, state: State, speed: float) -> Small
     flowing = with_passage(held, state, speed)
     vibrations = Vibrations(system)
     tangents = vibrations.tangents(0.0, flowing.position, flowing.velocity)
-    return SmallMotions(drive, system, flowing, *map(vibrations.matrix, tangents))
+    return SmallMotions(prepared, system, flowing, *map(vibrations.matrix, tangents))

@@ -12,7 +12,7 @@ from beltdyn.designs.calibrate import _warnings, calibrate, fit
 from beltdyn.designs.designs import Free
 from beltdyn.designs.found_state import Resting
 from beltdyn.errors import ModelError
-from beltdyn.model import CalibrationStudy, Drive, loads
+from beltdyn.model import CalibrationStudy, Drive, loads, prepare
 from beltdyn.results import Result, open_result, summarize
 from beltdyn.solvers.progress import Progress
 from beltdyn.state.staying import bring_to_stand
@@ -101,7 +101,9 @@ def test_stiffness_from_frequencies_at_rest(drive: Drive, tmp_path: Path) -> Non
     lengths = np.array([1.2443, 1.2403])
     lines = [f"belt.length [mm], frequency[{SPAN}] [Hz]"]
     for length in lengths:
-        state = Resting(bring_to_stand(true.with_({"belt.length": length, "belt.youngs_modulus": TRUE_MODULUS})))
+        state = Resting(
+            bring_to_stand(prepare(true.with_({"belt.length": length, "belt.youngs_modulus": TRUE_MODULUS})))
+        )
         lines.append(f"{float(1e3 * length)}, {state.value(f'frequency[{SPAN}]')}")
     (tmp_path / "slip.csv").write_text("\n".join(lines), encoding="utf-8")
     file = study_file(tmp_path)

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from beltdyn.designs.found_state import Resting, Running
-from beltdyn.model import Drive
+from beltdyn.model import Drive, prepare
 from beltdyn.results import summarize
 from beltdyn.state.equilibrium import equilibrium
 from beltdyn.state.staying import bring_to_stand
@@ -25,7 +25,7 @@ def running(drive_under_load: Drive) -> Running:
 
 @pytest.fixture(scope="module")
 def resting(drive_under_load: Drive) -> Resting:
-    return Resting(bring_to_stand(drive_under_load))
+    return Resting(bring_to_stand(prepare(drive_under_load)))
 
 
 def test_modes_are_found_up_to_a_frequency(running: Running) -> None:

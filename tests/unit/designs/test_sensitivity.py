@@ -11,7 +11,7 @@ from beltdyn.designs.designs import SmallChanges
 from beltdyn.designs.found_state import Running
 from beltdyn.designs.sensitivity import chosen_numbers, numbers_of, sensitivity
 from beltdyn.errors import ModelError
-from beltdyn.model import Drive, loads
+from beltdyn.model import Drive, loads, prepare
 from beltdyn.parts.change import value_at
 from beltdyn.results import Result, summarize
 from beltdyn.state.staying import bring_to_stand
@@ -157,7 +157,7 @@ def test_derivatives_do_not_depend_on_the_step() -> None:
     """Hub loads of a drive of seven pulleys are sums of contact forces, which tell states apart by 1e-9 of a radius."""
     drive = loads(files("beltdyn").joinpath("examples", "accessory_drive.toml").read_text(encoding="utf-8"))
     given = without_schedules(drive, drive.simulation.end)[0]
-    rest = bring_to_stand(given)
+    rest = bring_to_stand(prepare(given))
     state, changes, path = Running(steady_state(rest.drive)), SmallChanges(given, rest), "pulley[alternator].radius"
     radius, load = value_at(given, path), "hub_load[alternator]"
 

@@ -11,7 +11,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from beltdyn.errors import ModelError
-from beltdyn.model import Belt, Contact, Drive, Pulley, Simulation, dumps, install, loads
+from beltdyn.model import Belt, Contact, Drive, Pulley, Simulation, dumps, install, loads, prepare
 
 MakeDrive = Callable[..., Drive]
 SLIDING = {"kind": "sliding", "pulley": "idler", "direction": (0, 1), "mass": 0.5, "preload": 300.0, "rate": 2e3}
@@ -201,7 +201,7 @@ def test_a_tightened_drive_has_nothing_open(make_drive: MakeDrive, tensioner: tu
     """A belt that is shortened keeps the stiffness that belongs to its tension."""
     contact = {"allowed_penetration": 1e-5}
     drive = make_drive("flat", contact=contact, tensioner=tensioner, installed_tension=200.0)
-    tightened = drive.tightened(1e-4)
+    tightened = prepare(drive).tightened(1e-4).drive
     assert (tightened.belt.length, tightened.belt.installed_tension) == (drive.belt_length - 1e-4, None)
     assert (tightened.contact.stiffness, tightened.contact.allowed_penetration) == (drive.contact_stiffness, None)
     assert tightened.tensioners == drive.tensioners
@@ -209,7 +209,7 @@ def test_a_tightened_drive_has_nothing_open(make_drive: MakeDrive, tensioner: tu
 
 def test_a_tightened_belt_of_given_length_takes_up_more(make_drive: MakeDrive) -> None:
     drive = make_drive("flat", tensioner=[TAKE_UP], length=2.57, installed_tension=500.0)
-    tightened = drive.tightened(1e-5)
+    tightened = prepare(drive).tightened(1e-5).drive
     assert (tightened.belt.length, tightened.belt.installed_tension) == (2.57, None)
     assert tightened.path.length - drive.path.length == pytest.approx(1e-5, rel=1e-3)  # small against the curvature
     assert tightened.pulleys == drive.pulleys

@@ -5,7 +5,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from beltdyn.model import Belt, Contact, Drive, advise, dumps, install, loads, mesh_errors
+from beltdyn.model import Belt, Contact, Drive, advise, dumps, install, loads, mesh_errors, prepare
 from beltdyn.model.defaults import critical_damping
 from beltdyn.model.resolution import Running
 
@@ -141,7 +141,7 @@ def test_it_is_told_which_mesh_resolves_pressures() -> None:
 def test_a_settled_drive_keeps_what_was_chosen() -> None:
     """Its length changes a little, and the numbers of computation stay."""
     given = drive()
-    settled = given.tightened(1e-6)
+    settled = prepare(given).tightened(1e-6).drive
     assert settled.completed.choices == ()
     assert settled.completed.contact == given.completed.contact
     assert settled.elements == given.elements

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from beltdyn.errors import ModelError
-from beltdyn.model import Drive, FixedEnd, PulledEnd, WeightEnd, describe, dumps, install, loads
+from beltdyn.model import Drive, FixedEnd, PulledEnd, WeightEnd, dumps, install, loads, prepare
 from beltdyn.model.end import ends_on_path, pulling
 from beltdyn.stretch import Linear
 
@@ -84,7 +84,7 @@ def test_fixed_ends_take_a_length_or_a_tension() -> None:
 
 def test_a_slack_belt_swings_at_no_frequency_on_any_span() -> None:
     drive = strap(ANCHOR, PULL)
-    slack = describe(drive, np.array([50.0, 0.0]), np.zeros(1), np.zeros((1, 2)), np.zeros(0))
+    slack = prepare(drive).installed(np.array([50.0, 0.0]), np.zeros(1), np.zeros((1, 2)), np.zeros(0))
     np.testing.assert_array_equal(slack.span_frequencies, [0.0, 0.0])
 
 

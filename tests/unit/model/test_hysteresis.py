@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from beltdyn.elements.planar_curve import CREEPING, hysteretic
-from beltdyn.model import Drive, install
+from beltdyn.model import Drive, install, prepare
 from beltdyn.model.hysteresis import (
     SMOOTHED,
     bending_at_points,
@@ -19,7 +19,7 @@ MakeDrive = Callable[..., Drive]
 
 
 def test_fixed_centres_strain_alike_to_both_sides(drive: Drive) -> None:
-    passing = passing_strains(drive)
+    passing = passing_strains(prepare(drive))
     tension = drive.belt.axial_stiffness * passing.strain * (1.0 + 2.0 * passing.strain) ** 0.5  # by Green's law
     assert tension == pytest.approx(install(drive).tension)
     assert passing.stretch_share == STRETCH_SHARE
@@ -48,7 +48,7 @@ def test_smoothing_is_made_up_for(drive: Drive, ratio: float) -> None:
     """Loss of the curvature exp(s / l), then 1, in means over elements of the length h, over 1/2: 1 within 2 %."""
     layer = (drive.belt.bending_stiffness / install(drive).tension) ** 0.5
     elements = max(3, round(drive.belt_length / (ratio * layer)))
-    passing = passing_strains(drive)
+    passing = passing_strains(prepare(drive))
     h = drive.belt_length / elements
     s = np.linspace(-12.0 * layer - h, 0.5 * h, 100_001)
     ends = s - 0.5 * h, s + 0.5 * h
@@ -63,15 +63,15 @@ def test_smoothing_is_made_up_for(drive: Drive, ratio: float) -> None:
 def test_a_tensioner_holds_the_slack_side(make_drive: MakeDrive) -> None:
     spring = {"kind": "sliding", "pulley": "idler", "direction": (0.0, 1.0), "mass": 1.0, "preload": 300.0, "rate": 1e3}
     drive = make_drive("flat", tensioner=[spring], length=2.2)
-    assert passing_strains(drive).stretch_share == BENDING_SHARE
+    assert passing_strains(prepare(drive)).stretch_share == BENDING_SHARE
 
 
 def test_bending_holds_the_belt_back_on_every_pulley(drive: Drive) -> None:
     """By pi/4 eta EI / R^2."""
     belt = drive.belt.replace(bending_loss_factor=0.2)
     expected = 0.05 * np.pi * belt.bending_stiffness * sum(1.0 / radius**2 for radius in drive.radii)
-    assert bending_resistance(drive.replace(belt=belt)) == pytest.approx(expected)
-    assert bending_resistance(drive) == 0.0
+    assert bending_resistance(prepare(drive.replace(belt=belt))) == pytest.approx(expected)
+    assert bending_resistance(prepare(drive)) == 0.0
 
 
 def test_rolling_resistance_along_the_arc_takes_the_loss_of_compression(drive: Drive) -> None:
@@ -79,9 +79,9 @@ def test_rolling_resistance_along_the_arc_takes_the_loss_of_compression(drive: D
     belt, tension = drive.belt.replace(compression_loss_factor=0.5, contact_stiffness=2e7), install(drive).tension
     pressed = drive.replace(belt=belt)
     expected = compression_loss(tension, belt.bending_stiffness, 2e7, 0.5, drive.radii)
-    np.testing.assert_allclose(compression_losses(pressed), expected)
-    np.testing.assert_allclose(rolling_resistances(pressed) * tension * drive.path.wrap_angles, expected)
-    assert not rolling_resistances(drive).any()
+    np.testing.assert_allclose(compression_losses(prepare(pressed)), expected)
+    np.testing.assert_allclose(rolling_resistances(prepare(pressed)) * tension * drive.path.wrap_angles, expected)
+    assert not rolling_resistances(prepare(drive)).any()
 
 
 def test_only_grooves_compress(make_drive: MakeDrive) -> None:
@@ -89,14 +89,14 @@ def test_only_grooves_compress(make_drive: MakeDrive) -> None:
     pressed = drive.replace(belt=drive.belt.replace(compression_loss_factor=0.5, contact_stiffness=2e7))
     inside = np.array([pulley.side == "inside" for pulley in drive.pulleys])
     assert 0 < inside.sum() < inside.size
-    np.testing.assert_array_equal(rolling_resistances(pressed) > 0.0, inside)
+    np.testing.assert_array_equal(rolling_resistances(prepare(pressed)) > 0.0, inside)
 
 
 def test_at_points_the_whole_loss_is_left(drive: Drive) -> None:
     """Of the curvature exp(s / l), then 1, as on a stiff pulley; softer ones leave less: 1/2 within 2 %."""
     lossy = drive.replace(belt=drive.belt.replace(bending_loss_factor=0.2))
     layer = (drive.belt.bending_stiffness / install(drive).tension) ** 0.5
-    modulus, length = bending_at_points(lossy)
+    modulus, length = bending_at_points(prepare(lossy))
     share = modulus / (BENDING_SHARE * 0.2 * drive.belt.bending_stiffness)
     s = np.linspace(-20.0 * layer, 0.0, 10_001)
     curvature = np.exp(s / layer)

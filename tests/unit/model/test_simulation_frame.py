@@ -5,7 +5,7 @@ from typing import Any
 import pytest
 
 from beltdyn.errors import ModelError
-from beltdyn.model import Drive
+from beltdyn.model import Drive, prepare
 from beltdyn.model.simulation import unused_settings
 
 BELT = {
@@ -57,7 +57,7 @@ def test_the_mesh_stays_unless_asked_otherwise() -> None:
 def test_what_only_the_other_mesh_has_makes_it_travel(groups: dict[str, Any], reason: str) -> None:
     """And it does so too once the length of the belt is found, and read from a file."""
     given = drive(**groups)
-    for one in (given, given.tightened(0.0), Drive(**given.data)):
+    for one in (given, prepare(given).tightened(0.0).drive, Drive(**given.data)):
         assert one.frame == ("travelling", f"since {reason}")
         assert one.element_kind.name == given.belt.discretization or one.element_kind.name == "ancf"
 

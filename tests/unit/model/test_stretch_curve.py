@@ -9,7 +9,7 @@ import pytest
 from beltdyn.errors import ModelError
 from beltdyn.model import Belt, Drive, dumps, loads
 from beltdyn.model.advice import advise
-from beltdyn.model.installation import install
+from beltdyn.model.prepared import install
 from beltdyn.model.stretch_curve import StretchCurve
 from beltdyn.stretch import Green, Linear
 

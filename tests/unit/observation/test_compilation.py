@@ -18,7 +18,7 @@ from beltdyn.system.state import laid
 
 drive = loaded_two_pulley()
 drive = drive.replace(belt=drive.belt.replace(discretization="{}"))
-system = drive_system(drive)
+system = drive_system(prepare(drive))
 compile_kernels(system, laid(system, drive.path))
 print(sum(dispatch.dispatcher.stats.cache_hits.values()), sum(dispatch.dispatcher.stats.cache_misses.values()))
 """

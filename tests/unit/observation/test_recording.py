@@ -7,7 +7,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from beltdyn.model import Drive
+from beltdyn.model import Drive, prepare
 from beltdyn.observation.recording import Recording, result_layout
 from beltdyn.results import open_run
 from beltdyn.solvers.trajectory import Chunk
@@ -21,7 +21,7 @@ Change = Callable[..., Drive]
 
 @pytest.fixture
 def system(change: Change) -> System:
-    return drive_system(change())
+    return drive_system(prepare(change()))
 
 
 def chunk(change: Change, system: System, time: float) -> Chunk:
@@ -36,7 +36,7 @@ def test_closes_with_its_status(
     change: Change, system: System, tmp_path: Path, error: type[BaseException] | None, status: str
 ) -> None:
     file = tmp_path / "run.nc"
-    recording = Recording(change(), system, file, "title", None)
+    recording = Recording(prepare(change()), system, file, "title", None)
 
     def record() -> None:
         with recording:
@@ -58,7 +58,7 @@ def test_closes_with_its_status(
 
 def test_empty_chunks_only_tell(change: Change, system: System) -> None:
     told: list[float] = []
-    with Recording(change(), system, None, "title", lambda progress: told.append(progress.time)) as recording:
+    with Recording(prepare(change()), system, None, "title", lambda progress: told.append(progress.time)) as recording:
         none, works = np.empty((0, 62)), np.empty((0, len(ENERGY_WORKS)))
         recording.take(Chunk(np.empty(0), np.empty(0), none, none, works, body_forces_history(system, 0), reached=0.5))
     assert told[-1] == 0.5
@@ -68,7 +68,7 @@ def test_empty_chunks_only_tell(change: Change, system: System) -> None:
 @pytest.mark.parametrize(("joint", "nodes"), [("shared_node", 10), ("multipliers", 11)])
 def test_layout(change: Change, joint: str, nodes: int) -> None:
     drive = change(simulation={"joint": joint})
-    layout = result_layout(drive, drive_system(drive))
+    layout = result_layout(prepare(drive), drive_system(prepare(drive)))
     length = drive.belt_length / 10
     assert layout.pulleys == ("driver", "driven")
     assert layout.spans == ("driver-driven", "driven-driver")

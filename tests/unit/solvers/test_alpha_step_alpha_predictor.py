@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from beltdyn.model import Drive
+from beltdyn.model import Drive, prepare
 from beltdyn.solvers.alpha_step import follow_trend, method_of, predict
 from beltdyn.solvers.integrator_state import IntegratorState, new_state
 from beltdyn.system.arrays import System
@@ -18,7 +18,7 @@ STEP = 2e-3
 def flowing(drive: Drive) -> System:
     """A drive on a mesh that stays."""
     drive = drive.replace(belt=drive.belt.replace(discretization="quintic"))
-    mesh = staying_system(drive, np.full(16, drive.belt_length / 16))
+    mesh = staying_system(prepare(drive), np.full(16, drive.belt_length / 16))
     return flowing_system(mesh, np.array([0.6, 0.8]))
 
 
@@ -72,7 +72,7 @@ def test_nothing_persists_after_a_restart(flowing: System) -> None:
 
 
 def test_nothing_persists_where_nodes_travel(drive: Drive) -> None:
-    system = drive_system(drive)
+    system = drive_system(prepare(drive))
     state = begun(system)
     end_with(state, STEP * state.trend)
     follow_trend(system, state, STEP)

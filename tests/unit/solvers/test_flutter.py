@@ -9,7 +9,7 @@ import pytest
 from numpy.typing import NDArray
 
 from beltdyn.contact.friction import ForceSlope
-from beltdyn.model import Drive
+from beltdyn.model import Drive, prepare
 from beltdyn.solvers import flutter
 from beltdyn.solvers.flutter import FlutterWatch, growth_rates, growth_within, longest_pieces
 from beltdyn.system.arrays import System
@@ -41,7 +41,7 @@ class Vibrations:
 
 @pytest.fixture
 def system(change: Change) -> System:
-    return drive_system(change())
+    return drive_system(prepare(change()))
 
 
 @pytest.fixture

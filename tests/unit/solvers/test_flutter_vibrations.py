@@ -5,7 +5,7 @@ from importlib.resources import files
 import numpy as np
 import pytest
 
-from beltdyn.model import Drive, Path, install, loads
+from beltdyn.model import Drive, Path, install, loads, prepare
 from beltdyn.solvers.flutter import Vibrations
 from beltdyn.system.arrays import System
 from beltdyn.system.build import drive_system
@@ -42,7 +42,7 @@ def drive(request: pytest.FixtureRequest) -> Drive:
 
 
 def sliding(drive: Drive) -> tuple[System, State]:
-    system, installation = drive_system(drive), install(drive)
+    system, installation = drive_system(prepare(drive)), install(drive)
     path = installation.path
     pressed = Path(path.centers, path.radii - DEPTH * np.sign(path.radii))
     state = laid(system, pressed, installation.tensioner_positions)

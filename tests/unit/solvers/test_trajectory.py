@@ -6,7 +6,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from beltdyn.model import Drive
+from beltdyn.model import Drive, prepare
 from beltdyn.model.simulation import Instants
 from beltdyn.solvers.trajectory import Chunk, Statistics, Task, drive_task, velocity_scale
 from beltdyn.system.arrays import ENERGY_WORKS
@@ -18,8 +18,8 @@ Change = Callable[..., Drive]
 
 
 def task_of(drive: Drive) -> Task:
-    system = drive_system(drive)
-    return drive_task(drive, system, laid(system, drive.path), Statistics())
+    system = drive_system(prepare(drive))
+    return drive_task(prepare(drive), system, laid(system, drive.path), Statistics())
 
 
 @pytest.mark.parametrize(
@@ -52,24 +52,26 @@ def test_velocity_scale(drive: Drive, change: Change) -> None:
     """The rim runs at 0.975 m/s at the end; a belt end that is let go runs at strain times wave speed."""
     strain = drive.path.length / drive.belt_length - 1.0
     recoil = strain * np.sqrt(1e8 / 1036.0)
-    assert velocity_scale(drive) == pytest.approx(max(12.0 * 0.08125, recoil))
+    assert velocity_scale(prepare(drive)) == pytest.approx(max(12.0 * 0.08125, recoil))
     fast: list[dict[str, Any]] = [pulley.model_dump(exclude_none=True) for pulley in drive.pulleys]
     fast[0]["speed"] = {"kind": "constant", "value": -120.0}
-    assert velocity_scale(change(pulley=fast)) == pytest.approx(120.0 * 0.08125)
-    assert velocity_scale(change(simulation={"duration": 0.01, "output_interval": 0.01})) == pytest.approx(recoil)
+    assert velocity_scale(prepare(change(pulley=fast))) == pytest.approx(120.0 * 0.08125)
+    assert velocity_scale(prepare(change(simulation={"duration": 0.01, "output_interval": 0.01}))) == pytest.approx(
+        recoil
+    )
 
 
 def test_a_motor_drives_up_to_its_synchronous_speed(drive: Drive, change: Change) -> None:
     motor = {"kind": "motor", "breakdown_torque": 5.0, "breakdown_slip": 0.2, "synchronous_speed": -100.0}
     pulleys: list[dict[str, Any]] = [pulley.model_dump(exclude_none=True) for pulley in drive.pulleys]
     pulleys[0] |= {"speed": None, "inertia": 0.1, "load": [motor]}
-    assert velocity_scale(change(pulley=pulleys)) == pytest.approx(100.0 * 0.08125)
+    assert velocity_scale(prepare(change(pulley=pulleys))) == pytest.approx(100.0 * 0.08125)
 
 
 @pytest.mark.parametrize("interval", [0.05, 0.011, 0.5])
 def test_outputs_need_only_the_states_around_them(change: Change, interval: float) -> None:
     """Steps of all lengths, some of which end on outputs; the states in between change nothing."""
-    system, instants = drive_system(change()), Instants(interval, 3.0)
+    system, instants = drive_system(prepare(change())), Instants(interval, 3.0)
     random = np.random.default_rng(1)
     times = np.unique(np.append(random.uniform(0.0, 3.0, 120), instants[np.arange(0, instants.count, 2)]))
     count = len(times)

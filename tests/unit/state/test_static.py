@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from beltdyn.errors import ConvergenceError
-from beltdyn.model import Drive, install
+from beltdyn.model import Drive, prepare
 from beltdyn.state.installation import drawn_in
 from beltdyn.state.static import find_equilibrium
 from beltdyn.system.arrays import System
@@ -62,8 +62,8 @@ def test_equilibrium_is_left_alone(cantilever: System) -> None:
 
 
 def test_pulleys_stand_still(drive: Drive) -> None:
-    system = drive_system(drive)
-    found = find_equilibrium(system, laid(system, drawn_in(drive, install(drive), 1.0)))
+    system = drive_system(prepare(drive))
+    found = find_equilibrium(system, laid(system, drawn_in(prepare(drive), 1.0)))
     np.testing.assert_array_equal(found.state.position[-2:], 0.0)
 
 

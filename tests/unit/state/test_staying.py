@@ -8,7 +8,7 @@ import pytest
 
 import beltdyn as bd
 from beltdyn.errors import ConvergenceError
-from beltdyn.model import Drive
+from beltdyn.model import Drive, prepare
 from beltdyn.model.resolution import Laid
 from beltdyn.state import staying
 from beltdyn.state.newton import find_steady
@@ -32,7 +32,7 @@ def test_dry_friction_of_a_tensioner_is_left_out_at_rest(monkeypatch: pytest.Mon
 
     monkeypatch.setattr(staying, "find_steady", counted)
     drive = bd.load(str(files("beltdyn") / "examples" / "accessory_drive.toml"))
-    stand(drive)
+    stand(prepare(drive))
     assert sum(taken) <= 10
 
 
@@ -46,23 +46,23 @@ def test_arcs_of_a_laid_belt(drive: Drive) -> None:
 
 def test_at_rest_the_tension_is_the_one_asked_for(drive: Drive) -> None:
     wanted = drive.replace(belt=drive.belt.replace(installed_tension=100.0))
-    assert bring_to_stand(wanted).tension == pytest.approx(100.0, rel=1e-6)
+    assert bring_to_stand(prepare(wanted)).tension == pytest.approx(100.0, rel=1e-6)
 
 
 def test_rest_with_a_little_more_tension_is_found_next_to_the_one_before(drive: Drive) -> None:
     """On a mesh in proportion, as from a laid belt."""
-    rest, tighter = stand(drive, 60), with_length(drive, drive.belt_length - 1e-4)
-    found = stand_like(tighter, rest)
+    rest, tighter = stand(prepare(drive), 60), with_length(drive, drive.belt_length - 1e-4)
+    found = stand_like(prepare(tighter), rest)
     np.testing.assert_allclose(found.system.length, rest.system.length * tighter.belt_length / drive.belt_length)
     assert found.tension > rest.tension
-    assert found.tension == pytest.approx(stand(tighter, 60).tension, rel=1e-8)
+    assert found.tension == pytest.approx(stand(prepare(tighter), 60).tension, rel=1e-8)
 
 
 def test_where_its_neighbour_leads_nowhere_it_is_found_from_the_laid_belt(
     drive: Drive, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    rest, tighter = stand(drive, 60), with_length(drive, drive.belt_length - 1e-4)
-    expected = stand_like(tighter, rest)
+    rest, tighter = stand(prepare(drive), 60), with_length(drive, drive.belt_length - 1e-4)
+    expected = stand_like(prepare(tighter), rest)
 
     def lost(*arguments: Any) -> tuple[Any, Any]:
         system, state = carried(*arguments)
@@ -70,7 +70,7 @@ def test_where_its_neighbour_leads_nowhere_it_is_found_from_the_laid_belt(
         return system, state
 
     monkeypatch.setattr(staying, "carried", lost)
-    assert stand_like(tighter, rest).tension == pytest.approx(expected.tension, rel=1e-8)
+    assert stand_like(prepare(tighter), rest).tension == pytest.approx(expected.tension, rel=1e-8)
 
 
 @pytest.mark.parametrize(
@@ -84,20 +84,20 @@ def test_without_rest_contact_that_is_too_soft_is_told(
     contact = drive.contact.replace(stiffness=stiffness, allowed_penetration=None, damping=None)
     softer = drive.replace(contact=contact, belt=drive.belt.replace(length=None, installed_tension=100.0))
     with pytest.raises(ConvergenceError, match=said):
-        stand(softer)
+        stand(prepare(softer))
 
 
 def test_the_mesh_is_carried_with_the_layout(drive: Drive) -> None:
     """A drive that is moved as a whole carries mesh and curve along; arcs keep their nodes where a radius grows."""
-    rest, way = stand(drive), np.array([0.3, -0.2])
+    rest, way = stand(prepare(drive)), np.array([0.3, -0.2])
     nodes = rest.place[: rest.system.first_body]
     moved = drive.replace(pulley=[one.replace(center=tuple(one.center + way)) for one in drive.pulleys])
-    system, state = carried(moved, drive, rest.system.length, nodes)
+    system, state = carried(prepare(moved), rest.prepared, rest.system.length, nodes)
     np.testing.assert_allclose(system.length, rest.system.length, rtol=1e-12)
     expected = nodes.reshape(-1, 6) + np.append(way, np.zeros(4))
     np.testing.assert_allclose(state.position[: nodes.size].reshape(-1, 6), expected, atol=1e-9)
     larger = drive.with_({f"pulley[{drive.pulleys[1].name}].radius": 1.01 * float(drive.radii[1])})
-    grown = carried(larger, drive, rest.system.length, nodes)[0]
+    grown = carried(prepare(larger), rest.prepared, rest.system.length, nodes)[0]
     laid = Laid.on(larger.path, larger.belt_length, 0)
     ends = np.append(0.0, np.cumsum(grown.length))
     before = np.append(0.0, np.cumsum(rest.system.length))
@@ -108,22 +108,22 @@ def test_the_mesh_is_carried_with_the_layout(drive: Drive) -> None:
 
 def test_graded_and_fine_meshes_have_the_same_equilibrium(drive: Drive) -> None:
     """The graded mesh of some 30 elements has the tension of 120 equal ones."""
-    graded, fine = stand(drive), stand(drive, 120)
+    graded, fine = stand(prepare(drive)), stand(prepare(drive), 120)
     assert graded.system.nodes < 40
     assert graded.tension == pytest.approx(fine.tension, rel=2e-3)
 
 
 def test_the_belt_touches_where_it_was_laid(drive: Drive) -> None:
-    rest = stand(drive)
+    rest = stand(prepare(drive))
     found, laid = found_arcs(rest.system, rest.state), Laid.on(drive.path, drive.belt_length, 0).arcs()
     np.testing.assert_allclose([one[:2] for one in found], [one[:2] for one in laid], atol=0.02)
 
 
 def test_a_finer_mesh_takes_the_curve_over(drive: Drive) -> None:
     """Nodes on the curve, and deviations between them far below the penetration of 30 um."""
-    rest = stand(drive)
+    rest = stand(prepare(drive))
     lengths = np.repeat(rest.system.length / 2.0, 2)
-    finer = staying_system(drive, lengths)
+    finer = staying_system(prepare(drive), lengths)
     moved = transfer(rest.system, rest.state, finer)
     along = np.linspace(0.0, drive.belt_length * 0.999, 500)
     one, other = (

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from beltdyn.arrays import FloatArray
-from beltdyn.model import Drive, Path
+from beltdyn.model import Drive, Path, prepare
 from beltdyn.system.arrays import RingMatrix, System
 from beltdyn.system.build import drive_system
 from beltdyn.system.state import State, laid
@@ -118,7 +118,7 @@ def small(request: pytest.FixtureRequest, make_drive: Callable[..., Drive]) -> D
 
 @pytest.fixture(scope="session")
 def system(small: Drive) -> System:
-    return drive_system(small)
+    return drive_system(prepare(small))
 
 
 @pytest.fixture(scope="session")

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from beltdyn.arrays import FloatArray
-from beltdyn.model import Drive, Path
+from beltdyn.model import Drive, Path, prepare
 from beltdyn.system.arrays import POWERS, System
 from beltdyn.system.build import drive_system
 from beltdyn.system.first_order import FirstOrder, mass_matrix
@@ -78,7 +78,7 @@ def machines(request: pytest.FixtureRequest, with_machines: Callable[[str], Driv
     """A drive with losses in the belt, a tensioner on its stop, a hub chain and loads, disturbed."""
     tensioner, losses = request.param
     drive = with_machines(tensioner)
-    system = drive_system(drive.replace(belt=drive.belt.replace(**losses, **PRESSED)))
+    system = drive_system(prepare(drive.replace(belt=drive.belt.replace(**losses, **PRESSED))))
     rest = laid(system, Path(system.pulleys.center, system.pulleys.radius - 1e-4), np.array([-2e-3])).position
     scale = np.concatenate([np.tile(1.0 / np.array(system.scale), system.nodes), 1.0 / system.bodies.reach])
     noise = np.random.default_rng(1).normal(size=(2, rest.size)) * scale

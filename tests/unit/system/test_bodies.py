@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from beltdyn.arrays import FloatArray
-from beltdyn.model import Drive, Path
+from beltdyn.model import Drive, Path, prepare
 from beltdyn.system.arrays import (
     COUPLING_LOSS,
     TENSIONER_LOSS,
@@ -30,7 +30,7 @@ IDLER, FIRST_HUB, SECOND_HUB, TENSIONER = 2, 3, 4, 5
 
 @pytest.fixture(scope="module", params=["rotary", "sliding"])
 def system(request: pytest.FixtureRequest, with_machines: Callable[[str], Drive]) -> System:
-    return drive_system(with_machines(request.param))
+    return drive_system(prepare(with_machines(request.param)))
 
 
 @pytest.fixture(scope="module")

@@ -2,7 +2,7 @@ import numpy as np
 import pytest
 
 from beltdyn.errors import ModelError
-from beltdyn.model import Drive
+from beltdyn.model import Drive, prepare
 from beltdyn.quadrature import gauss_points
 from beltdyn.system.build import Closure, belt_system, drive_system
 from beltdyn.system.discretization import belt_section
@@ -36,7 +36,7 @@ def test_damping_is_stiffness_times_its_time(drive: Drive) -> None:
 
 
 def test_weight_joins_the_forces_on_the_nodes(drive: Drive) -> None:
-    heavy = drive_system(drive.replace(gravity=(0.0, "-9.81 m/s^2")))
+    heavy = drive_system(prepare(drive.replace(gravity=(0.0, "-9.81 m/s^2"))))
     weight = drive.belt.mass_per_length * drive.belt_length * 9.81
     assert heavy.supports.force.reshape(-1, 6)[:, :2].sum(axis=0) == pytest.approx([0.0, -weight])
     pulled = belt_system(drive.belt, forces=[(0, (0.0, 5.0))], gravity=(0.0, -9.81))
@@ -55,7 +55,7 @@ def test_nodes_by_closure(drive: Drive, closure: Closure, extra: int) -> None:
 
 
 def test_the_elements_make_up_the_belt(drive: Drive) -> None:
-    system = drive_system(drive)
+    system = drive_system(prepare(drive))
     assert system.length.sum() == pytest.approx(drive.belt_length)
     shift = np.tile([1, 0, 0, 0, 0, 0], 2)
     mass = np.einsum("i,kij,j->", shift, system.mass, shift)
@@ -64,7 +64,7 @@ def test_the_elements_make_up_the_belt(drive: Drive) -> None:
 
 
 def test_pulleys(drive: Drive) -> None:
-    system = drive_system(drive)
+    system = drive_system(prepare(drive))
     pulleys = system.pulleys
     np.testing.assert_array_equal(pulleys.center, [pulley.center for pulley in drive.pulleys])
     np.testing.assert_array_equal(pulleys.radius, [pulley.radius for pulley in drive.pulleys])

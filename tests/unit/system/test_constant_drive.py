@@ -7,7 +7,7 @@ import pytest
 
 from beltdyn.machines.loads.shaft import shaft_torque
 from beltdyn.machines.tensioners.registry import tensioner_force
-from beltdyn.model import Drive
+from beltdyn.model import Drive, prepare
 from beltdyn.system.arrays import System
 from beltdyn.system.build import drive_system
 from beltdyn.system.constant_drive import constant_drive, drive_shafts, rim_of_bodies, twists, with_speeds_unknown
@@ -18,7 +18,7 @@ DRIVEN, FIRST_HUB, SECOND_HUB = 2, 3, 4
 
 @pytest.fixture(scope="module")
 def system(with_machines: Callable[[str], Drive]) -> System:
-    return constant_drive(drive_system(with_machines("rotary")), 0.3)
+    return constant_drive(drive_system(prepare(with_machines("rotary"))), 0.3)
 
 
 def test_harmonics_are_left_out(system: System) -> None:
@@ -33,7 +33,7 @@ def test_harmonics_are_left_out(system: System) -> None:
 
 def test_speeds_are_those_of_the_instant(drive: Drive) -> None:
     ramp = drive.pulleys[0].replace(speed={"kind": "ramp", "start": 0.0, "end": 1.0, "value": 40.0})
-    held = constant_drive(drive_system(drive.replace(pulley=[ramp, drive.pulleys[1]])), 0.25)
+    held = constant_drive(drive_system(prepare(drive.replace(pulley=[ramp, drive.pulleys[1]]))), 0.25)
     velocity = np.zeros(held.first_body + held.bodies.size)
     drive_shafts(with_speeds_unknown(held), velocity)
     assert velocity[held.first_body] == pytest.approx(10.0)

@@ -5,7 +5,7 @@ from typing import Any
 import pytest
 
 from beltdyn.errors import ModelError
-from beltdyn.model import Drive
+from beltdyn.model import Drive, prepare
 from beltdyn.system.build import drive_system
 from beltdyn.system.constant_drive import constant_drive, operating_point
 
@@ -14,7 +14,7 @@ MOTOR = {"kind": "motor", "breakdown_torque": 60.0, "breakdown_slip": 0.2, "sync
 
 def found(drive: Drive, driver: dict[str, Any], driven: dict[str, Any]) -> tuple[float, int | None]:
     first, second = ({"name": p.name, "center": p.center, "radius": p.radius, "inertia": 0.1} for p in drive.pulleys)
-    system = constant_drive(drive_system(drive.replace(pulley=[first | driver, second | driven])), 1.0)
+    system = constant_drive(drive_system(prepare(drive.replace(pulley=[first | driver, second | driven]))), 1.0)
     return operating_point(system, drive.path.radii, system.bodies.unknown[system.pulleys.shaft] < 0)
 
 

@@ -7,7 +7,7 @@ import pytest
 
 from beltdyn.arrays import FloatArray
 from beltdyn.errors import ModelError
-from beltdyn.model import Belt, Drive, Path
+from beltdyn.model import Belt, Drive, Path, prepare
 from beltdyn.quadrature import gauss_points, lobatto_points
 from beltdyn.system.arrays import NO_TANGENT, Motion, System
 from beltdyn.system.assembly import assemble
@@ -134,8 +134,8 @@ def test_sections_stand_upright(drive: Drive) -> None:
 
 @pytest.mark.parametrize("kind", ["ancf", *LINKS])
 def test_contact_points(make_drive: Make, kind: str) -> None:
-    by_points = drive_system(make_drive("force_slope", "zone", discretization=kind))
-    by_nodes = drive_system(make_drive("force_slope", "nodal", discretization=kind))
+    by_points = drive_system(prepare(make_drive("force_slope", "zone", discretization=kind)))
+    by_nodes = drive_system(prepare(make_drive("force_slope", "nodal", discretization=kind)))
     assert by_points.law.follow_zone
     assert not by_nodes.law.follow_zone
     np.testing.assert_array_equal(by_points.contact, gauss_points(5))
@@ -146,7 +146,7 @@ def test_contact_points(make_drive: Make, kind: str) -> None:
 @pytest.mark.parametrize("kind", ["ancf", *LINKS])
 def test_forces_at_rest_are_the_slope_of_the_energies(make_drive: Make, kind: str, places: str) -> None:
     """Elasticity and penalty contact of a belt that is pushed 0.4 mm into its pulleys and disturbed by 0.1 mm."""
-    system = drive_system(make_drive("force_slope", places, discretization=kind))
+    system = drive_system(prepare(make_drive("force_slope", places, discretization=kind)))
     sunk = laid(system, Path(system.pulleys.center, system.pulleys.radius - 4e-4)).position
     metre = np.concatenate([np.tile(1.0 / np.array(system.scale), system.nodes), np.ones(2)])
     sunk += 1e-4 * np.random.default_rng(3).normal(size=sunk.size) * metre

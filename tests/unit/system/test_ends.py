@@ -5,7 +5,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from beltdyn.model import Drive
+from beltdyn.model import Drive, prepare
 from beltdyn.solvers.engine import accelerate
 from beltdyn.system.arrays import Motion
 from beltdyn.system.build import belt_system, drive_system
@@ -41,18 +41,18 @@ def pulled(drive: Drive) -> Drive:
 
 def test_ends_are_held_and_pulled(drive: Drive, pulled: Drive) -> None:
     """Place and section r_y of a clamp; the second end moves, and its force adds to the belt's weight."""
-    system, weightless = drive_system(pulled), drive_system(pulled.replace(gravity=(0.0, 0.0)))
+    system, weightless = drive_system(prepare(pulled)), drive_system(prepare(pulled.replace(gravity=(0.0, 0.0))))
     assert (system.nodes, system.closed, system.joint) == (13, False, False)
     assert np.flatnonzero(system.supports.fixed).tolist() == [0, 1, 4, 5]
     forces = weightless.supports.force.reshape(13, 6)
     np.testing.assert_array_equal(forces[-1], [0.0, -20.0, 0.0, 0.0, 0.0, 0.0])
     assert not np.any(forces[:-1])
     both = strap(drive, kind="fixed", point=(-0.1, -0.6))
-    assert np.flatnonzero(drive_system(both).supports.fixed).tolist() == [0, 1, 4, 5, 72, 73]
+    assert np.flatnonzero(drive_system(prepare(both)).supports.fixed).tolist() == [0, 1, 4, 5, 72, 73]
 
 
 def test_a_weight_moves_with_its_end(drive: Drive) -> None:
-    bare, heavy = (drive_system(strap(drive, kind="weight", mass=mass)) for mass in (2.0, 5.0))
+    bare, heavy = (drive_system(prepare(strap(drive, kind="weight", mass=mass))) for mass in (2.0, 5.0))
     more = mass_matrix(heavy) - mass_matrix(bare)
     places = [72, 73]
     np.testing.assert_allclose(more[places, places], 3.0)
@@ -69,7 +69,7 @@ def test_a_mass_at_the_first_end(drive: Drive) -> None:
 
 
 def test_the_laid_belt_runs_from_end_to_end(pulled: Drive) -> None:
-    system = drive_system(pulled)
+    system = drive_system(prepare(pulled))
     nodes = laid(system, pulled.path).nodes(system)
     assert pulled.path.ends is not None
     np.testing.assert_allclose(nodes[[0, -1], :2], pulled.path.ends, atol=1e-14)
@@ -77,7 +77,7 @@ def test_the_laid_belt_runs_from_end_to_end(pulled: Drive) -> None:
 
 def test_held_coordinates_have_no_acceleration_in_the_first_order_form(pulled: Drive) -> None:
     """And the others have that of the solution with the tangent's rows of the clamp."""
-    system = drive_system(pulled)
+    system = drive_system(prepare(pulled))
     state, equations = laid(system, pulled.path), FirstOrder(system)
     rates = equations.unpack(equations.rates(0.0, equations.pack(state)))[1]
     acceleration = np.empty_like(rates)
@@ -93,7 +93,7 @@ def test_spans_of_an_open_belt(pulled: Drive) -> None:
 
     The last span is that before the drum.
     """
-    system = drive_system(pulled)
+    system = drive_system(prepare(pulled))
     state = laid(system, pulled.path)
     nodes = state.nodes(system)
     along = np.concatenate([[0.0], np.cumsum(curve_lengths(system))])

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from beltdyn.arrays import FloatArray
-from beltdyn.model import Drive, Path, Pulley
+from beltdyn.model import Drive, Path, Pulley, prepare
 from beltdyn.solvers.engine import accelerate
 from beltdyn.system.arrays import POWERS, Motion, System
 from beltdyn.system.build import drive_system
@@ -104,7 +104,7 @@ def assert_columns(system: System, equations: FirstOrder, y: FloatArray, unknown
 @pytest.mark.parametrize("tensioner", ["rotary", "sliding"])
 def test_jacobian_of_bodies(with_machines: Callable[[str], Drive], tensioner: str) -> None:
     """Tensioner, hub chain and loads, each row at its own size beside the far larger ones of the belt."""
-    system = drive_system(with_machines(tensioner))
+    system = drive_system(prepare(with_machines(tensioner)))
     rest = laid(system, Path(system.pulleys.center, system.pulleys.radius - 3e-4), np.array([2e-3])).position
     velocity = 0.5 * np.random.default_rng(1).normal(size=rest.size)
     equations = FirstOrder(system)
@@ -119,7 +119,7 @@ def test_jacobian_where_a_tensioner_is_the_only_free_body(with_machines: Callabl
     steady = {"speed": {"kind": "constant", "value": 5.0}, "inertia": 0.1, "mass": 0.3}
     kept = ("name", "center", "radius")
     pulleys = [Pulley(**steady | {key: getattr(pulley, key) for key in kept}) for pulley in drive.pulleys]
-    system = drive_system(drive.replace(pulley=pulleys))
+    system = drive_system(prepare(drive.replace(pulley=pulleys)))
     rest = laid(system, Path(system.pulleys.center, system.pulleys.radius - 3e-4), np.array([2e-3])).position
     velocity = 0.5 * np.random.default_rng(1).normal(size=rest.size)
     equations = FirstOrder(system)
@@ -133,7 +133,7 @@ def test_jacobian_of_a_driver_behind_an_isolator(make_drive: Callable[..., Drive
     drive = make_drive("force_slope", "fixed")
     driver, driven = drive.pulleys
     isolator = {"kind": "isolator", "stiffness": 50.0, "damping": 0.3, "inertia": 0.1}
-    system = drive_system(drive.replace(pulley=[driver.replace(hub=[isolator], inertia=0.02), driven]))
+    system = drive_system(prepare(drive.replace(pulley=[driver.replace(hub=[isolator], inertia=0.02), driven])))
     assert system.bodies.unknown.tolist() == [0, 1, -1]
     rest = laid(system, Path(system.pulleys.center, system.pulleys.radius - 3e-4)).position
     rest[system.first_body :] = [0.2, 0.1, 0.5]
@@ -154,7 +154,7 @@ def test_a_drive_without_free_bodies(make_drive: Callable[..., Drive]) -> None:
     drive = make_drive("force_slope", "zone")
     driver, driven = drive.pulleys
     steady = Pulley(name="steady", center=driven.center, radius=driven.radius, speed={"kind": "constant", "value": 2.0})
-    system = drive_system(drive.replace(pulley=[driver, steady]))
+    system = drive_system(prepare(drive.replace(pulley=[driver, steady])))
     rest = laid(system, Path(system.pulleys.center, system.pulleys.radius - 3e-4)).position
     equations = FirstOrder(system)
     y = equations.pack(State(rest, 0.0 * rest, 0.0 * rest))

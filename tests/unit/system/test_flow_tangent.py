@@ -11,7 +11,7 @@ from numpy.polynomial.polynomial import polyder, polyint, polymul, polyval
 from beltdyn.arrays import FloatArray
 from beltdyn.elements.quintic import QUINTIC
 from beltdyn.kernel import interpreted
-from beltdyn.model import Drive, Path
+from beltdyn.model import Drive, Path, prepare
 from beltdyn.model.resolution import Laid
 from beltdyn.state.staying import laid_state
 from beltdyn.system.arrays import NO_TANGENT, Equations, System, TangentFactors
@@ -61,7 +61,7 @@ def test_tangent(with_machines: Callable[[str], Drive], tensioner: str, law: str
         contact = drive.contact.model_dump(exclude_none=True) | {"friction_law": law, "creep_ratio": 0.15}
         contact.pop("creep_rate_factor")
         drive = drive.replace(contact=contact)
-    mesh = staying_system(drive, np.full(16, drive.belt_length / 16))
+    mesh = staying_system(prepare(drive), np.full(16, drive.belt_length / 16))
     system, random = flowing_system(mesh, np.array([0.6, 0.8])), np.random.default_rng(5)
     drawn_in = Path(drive.path.centers, drive.path.radii - 1e-3 * np.sign(drive.path.radii))
     state = laid_state(Laid.on(drawn_in, drive.belt_length, 0), system, np.array([2e-3]))

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from beltdyn.model import Drive, Path
+from beltdyn.model import Drive, Path, prepare
 from beltdyn.system.build import drive_system
 from beltdyn.system.discretization import point_coordinates
 from beltdyn.system.frame import centreline_points
@@ -13,7 +13,7 @@ from beltdyn.system.state import laid
 @pytest.mark.parametrize("kind", ["ancf", "quintic"])
 def test_points_of_a_laid_belt(drive: Drive, kind: str) -> None:
     """At the nodes they are those of the path; between these the derivatives are those of the places."""
-    system = drive_system(drive.replace(belt=drive.belt.replace(discretization=kind, elements=12)))
+    system = drive_system(prepare(drive.replace(belt=drive.belt.replace(discretization=kind, elements=12))))
     path = Path(drive.path.centers, drive.path.radii)
     state = laid(system, path)
     nodes = point_coordinates(system)

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from beltdyn.arrays import FloatArray
-from beltdyn.model import Drive
+from beltdyn.model import Drive, prepare
 from beltdyn.system.arrays import Motion, System
 from beltdyn.system.build import drive_system
 from beltdyn.system.element_state import element_workspace
@@ -37,7 +37,7 @@ def whole_mass(system: System) -> FloatArray:
 
 @pytest.fixture(params=["rotary", "sliding"])
 def machines(request: pytest.FixtureRequest, with_machines: Callable[[str], Drive]) -> System:
-    return drive_system(with_machines(request.param))
+    return drive_system(prepare(with_machines(request.param)))
 
 
 def assert_trapezoidal_is_free(system: System) -> None:

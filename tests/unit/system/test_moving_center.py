@@ -4,14 +4,14 @@ import numpy as np
 import pytest
 
 from beltdyn.kernel import interpreted
-from beltdyn.model import Drive
+from beltdyn.model import Drive, prepare
 from beltdyn.system.build import drive_system
 from beltdyn.system.moving_center import moving_to, pulley_center, pulley_state, with_movers
 from beltdyn.system.state import State, laid
 
 
 def test_a_center_moves_at_constant_speed_to_its_place(drive: Drive) -> None:
-    given = drive_system(drive)
+    given = drive_system(prepare(drive))
     system, still = with_movers(given, [1]), laid(given, drive.path)
     longer = State(*(np.append(one, 0.0) for one in (still.position, still.velocity, still.acceleration)))
     system, state = moving_to(system, longer, 0, {1: (0.7, 0.1)}, 0.5)

@@ -7,7 +7,7 @@ import pytest
 from scipy.interpolate import CubicHermiteSpline
 
 from beltdyn.arrays import FloatArray
-from beltdyn.model import Drive, Path, install
+from beltdyn.model import Drive, Path, install, prepare
 from beltdyn.quadrature import gauss_points
 from beltdyn.state.static import find_equilibrium
 from beltdyn.system.arrays import System
@@ -32,7 +32,7 @@ def fine(drive: Drive) -> Drive:
 @pytest.fixture(scope="module", params=[0.0, SPEED], ids=["at rest", "shifting"])
 def seen(request: pytest.FixtureRequest, fine: Drive) -> tuple[float, Observations]:
     """The belt in equilibrium on its pulleys, with a velocity of the whole belt to the right."""
-    system = drive_system(fine)
+    system = drive_system(prepare(fine))
     state = find_equilibrium(system, laid(system, fine.path)).state
     velocity = np.zeros_like(state.velocity)
     velocity[: system.first_body : len(system.scale)] = request.param
@@ -66,7 +66,7 @@ def test_the_hubs_take_the_power_that_contact_loses(seen: tuple[float, Observati
 @pytest.mark.parametrize("arm", ["point", "rim"])
 def test_friction_turns_a_pulley_with_the_arm_of_the_model(fine: Drive, arm: str) -> None:
     """A rim that runs through a belt at rest drives it by friction; both arms differ by the penetration."""
-    system = drive_system(fine.replace(contact=fine.contact.replace(moment_arm=arm)))
+    system = drive_system(prepare(fine.replace(contact=fine.contact.replace(moment_arm=arm))))
     state = find_equilibrium(system, laid(system, fine.path)).state
     velocity = np.zeros_like(state.velocity)
     velocity[system.first_body + 1] = 50.0
@@ -118,7 +118,7 @@ def test_spinning_pulleys_have_kinetic_energy(system: System, moving: State) -> 
 
 @pytest.fixture(scope="module")
 def fixed_points(make_drive: Callable[..., Drive]) -> System:
-    return drive_system(make_drive("force_slope", "fixed"))
+    return drive_system(prepare(make_drive("force_slope", "fixed")))
 
 
 def test_forces_at_points_add_up_to_hub_forces_and_torques(fixed_points: System) -> None:

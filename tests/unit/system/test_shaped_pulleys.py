@@ -8,7 +8,7 @@ import pytest
 from beltdyn.arrays import FloatArray
 from beltdyn.contact.surface import RoundRims, ShapedRims
 from beltdyn.errors import ModelError
-from beltdyn.model import Drive, Path
+from beltdyn.model import Drive, Path, prepare
 from beltdyn.system.arrays import NO_TANGENT, Motion, RingMatrix, System, TangentFactors
 from beltdyn.system.assembly import assemble
 from beltdyn.system.build import drive_system
@@ -31,7 +31,7 @@ def drive_of(request: pytest.FixtureRequest, make_drive: Callable[..., Drive]) -
 @pytest.fixture
 def turned(drive_of: Drive) -> tuple[System, State]:
     """Both pulleys are eccentric, have turned, and creep; the belt is 0.3 mm deep and shaken."""
-    system = drive_system(shaped(drive_of, ECCENTRIC, ECCENTRIC))
+    system = drive_system(prepare(shaped(drive_of, ECCENTRIC, ECCENTRIC)))
     state = laid(system, Path(system.pulleys.center, system.pulleys.radius - 3e-4))
     noise = np.random.default_rng(3).normal(size=(2, system.first_body)) * np.tile(
         1.0 / np.array(system.scale), system.nodes
@@ -46,9 +46,9 @@ def turned(drive_of: Drive) -> tuple[System, State]:
 
 def test_only_a_drive_with_a_shaped_pulley_knows_of_shapes(drive_of: Drive) -> None:
     circle = {"kind": "circle"}
-    assert isinstance(drive_system(drive_of).rims, RoundRims)
-    assert isinstance(drive_system(shaped(drive_of, None, circle)).rims, RoundRims)
-    rims = drive_system(shaped(drive_of, None, ECCENTRIC)).rims
+    assert isinstance(drive_system(prepare(drive_of)).rims, RoundRims)
+    assert isinstance(drive_system(prepare(shaped(drive_of, None, circle))).rims, RoundRims)
+    rims = drive_system(prepare(shaped(drive_of, None, ECCENTRIC))).rims
     assert isinstance(rims, ShapedRims)
     np.testing.assert_array_equal(rims.table.eccentricity, [0.0, 1e-3])
     np.testing.assert_array_equal(rims.table.reach, [0.0, 1e-3])

@@ -1,7 +1,7 @@
 import numpy as np
 import pytest
 
-from beltdyn.model import Drive
+from beltdyn.model import Drive, prepare
 from beltdyn.system.build import belt_system, drive_system
 from beltdyn.system.state import at_rest, crossing_time, laid, straight
 
@@ -9,7 +9,7 @@ EXACT = 1e-12  # rounding of the path's arcs
 
 
 def test_laid_belt_lies_on_its_path(drive: Drive) -> None:
-    system = drive_system(drive)
+    system = drive_system(prepare(drive))
     state = laid(system, drive.path)
     nodes = state.nodes(system)
     stretch = drive.path.length / drive.belt_length
@@ -38,7 +38,7 @@ def test_straight_belt(drive: Drive) -> None:
 
 
 def test_a_state_owns_its_coordinates(drive: Drive) -> None:
-    system = drive_system(drive)
+    system = drive_system(prepare(drive))
     coordinates = np.ones((system.nodes, 6))
     state = at_rest(system, coordinates)
     coordinates[:] = 0.0
@@ -48,4 +48,4 @@ def test_a_state_owns_its_coordinates(drive: Drive) -> None:
 
 def test_crossing_time_is_length_over_wave_speed(drive: Drive) -> None:
     speed = np.sqrt(drive.belt.youngs_modulus * drive.belt.axial_factor / drive.belt.density)
-    assert crossing_time(drive_system(drive)) == pytest.approx(drive.belt_length / speed)
+    assert crossing_time(drive_system(prepare(drive))) == pytest.approx(drive.belt_length / speed)

@@ -7,7 +7,7 @@ import pytest
 
 from beltdyn.arrays import FloatArray
 from beltdyn.kernel import interpreted
-from beltdyn.model import Drive, Path
+from beltdyn.model import Drive, Path, prepare
 from beltdyn.model.resolution import Laid
 from beltdyn.state.newton import SteadyWork, steady_work
 from beltdyn.state.staying import anchor_at, laid_state
@@ -49,7 +49,7 @@ def test_tangent(with_machines: Callable[[str], Drive], tensioner: str, law: str
         contact = drive.contact.model_dump(exclude_none=True) | {"friction_law": law} | own
         contact.pop("creep_rate_factor")
         drive = drive.replace(contact=contact)
-    base = staying_system(drive, np.full(16, drive.belt_length / 16))
+    base = staying_system(prepare(drive), np.full(16, drive.belt_length / 16))
     system = with_speeds_unknown(constant_drive(base, 0.3))
     random = np.random.default_rng(5)
     drawn_in = Path(drive.path.centers, drive.path.radii - 1e-3 * np.sign(drive.path.radii))

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from beltdyn.errors import ModelError
-from beltdyn.model import Drive
+from beltdyn.model import Drive, prepare
 from beltdyn.solvers.generalized_alpha import GeneralizedAlpha
 from beltdyn.transient.beginning import begin_on, mesh_of
 from beltdyn.transient.simulate import choose_integrator, simulate
@@ -34,9 +34,9 @@ def test_a_run_and_a_simulator_begin_alike(drive: Drive, frame: str, start: str,
 def test_the_mesh_that_travels_needs_no_search_where_the_belt_is_laid(drive: Drive) -> None:
     integrator = choose_integrator(drive)
     laid = drive.with_({"simulation.start": "laid"})
-    mesh = mesh_of(laid, integrator)
+    mesh = mesh_of(prepare(laid), integrator)
     assert begin_on(mesh, integrator) is mesh
-    rest = begin_on(mesh_of(drive.with_({"simulation.start": "equilibrium"}), integrator), integrator)
+    rest = begin_on(mesh_of(prepare(drive.with_({"simulation.start": "equilibrium"})), integrator), integrator)
     assert not np.array_equal(rest.state.position, mesh.state.position)
 
 
@@ -45,4 +45,4 @@ def test_other_integrators_know_no_flow(drive: Drive) -> None:
     method = choose_integrator(drive.with_({"simulation.integrator": "bdf"}))
     assert not isinstance(method, GeneralizedAlpha)
     with pytest.raises(ModelError, match=r'does not support simulation\.frame = "staying"'):
-        mesh_of(staying, method)
+        mesh_of(prepare(staying), method)

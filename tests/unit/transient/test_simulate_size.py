@@ -12,7 +12,7 @@ import pytest
 
 from beltdyn import open_run, simulate
 from beltdyn.errors import ModelError
-from beltdyn.model import Drive
+from beltdyn.model import Drive, prepare
 from beltdyn.observation.recording import result_layout
 from beltdyn.results import expected_bytes
 from beltdyn.system.build import drive_system
@@ -31,7 +31,7 @@ KINDS: dict[str, Any] = {
 def test_every_array_is_counted(change: Change, kind: str) -> None:
     """The bytes of a run without gaps between chunks are those of its arrays."""
     drive = change(**KINDS[kind])
-    layout, instants = result_layout(drive, drive_system(drive)), drive.simulation.instants
+    layout, instants = result_layout(prepare(drive), drive_system(prepare(drive))), drive.simulation.instants
     counts = {"time": instants.count, "field_time": instants.fields, "filtered_time": instants.count}
     arrays = sum(
         int(np.prod(layout.shape(variable, counts[variable.dims[0]]))) * np.dtype(variable.dtype).itemsize

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from beltdyn.errors import ModelError
-from beltdyn.model import Drive
+from beltdyn.model import Drive, prepare
 from beltdyn.vibration.small_motions import SmallMotions, about_rest, dry_tensioners
 
 RADIUS = 0.06
@@ -56,7 +56,7 @@ def test_a_pulley_that_sticks_to_the_belt_is_held(rest: SmallMotions) -> None:
 
 
 def test_a_stuck_tensioner_is_no_unknown(rest: SmallMotions) -> None:
-    held = rest.with_stuck(dry_tensioners(rest.drive))
+    held = rest.with_stuck(dry_tensioners(prepare(rest.drive)))
     assert held.stiffness.shape[0] == rest.stiffness.shape[0] - 1
     assert held.bodies[-1] == -1
     np.testing.assert_array_equal(held.bodies[:-1], rest.bodies[:-1] - (rest.bodies[:-1] > rest.bodies[-1]))
@@ -73,8 +73,8 @@ def test_hysteresis_is_left_out_at_rest() -> None:
 
 
 def test_dry_tensioners() -> None:
-    assert dry_tensioners(loose()).size == 0
-    np.testing.assert_array_equal(dry_tensioners(loose(yielding_friction=1.0)), [0])
+    assert dry_tensioners(prepare(loose())).size == 0
+    np.testing.assert_array_equal(dry_tensioners(prepare(loose(yielding_friction=1.0))), [0])
 
 
 def test_an_open_belt_has_none(drive: Drive) -> None:

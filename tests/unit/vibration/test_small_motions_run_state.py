@@ -8,7 +8,7 @@ import pytest
 import beltdyn as bd
 from beltdyn.cli.app import main
 from beltdyn.errors import ModelError
-from beltdyn.model import Drive
+from beltdyn.model import Drive, prepare
 from beltdyn.system.build_staying import staying_system
 from beltdyn.transient.earlier_run import instant_of
 from beltdyn.vibration.modes import modes
@@ -60,7 +60,7 @@ def test_bending_has_the_hysteresis_of_the_drive(settled: bd.Run) -> None:
     drive = settled.drive.replace(belt=belt, simulation=settled.drive.simulation.replace(duration=1e-3))
     system, _, _ = state_of(bd.simulate(drive), 0.0)
     law = system.element.section
-    assert law == staying_system(drive, system.length).element.section
+    assert law == staying_system(prepare(drive), system.length).element.section
     assert law.bending_hysteresis > 0.0
 
 

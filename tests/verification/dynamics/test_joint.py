@@ -7,7 +7,7 @@ import pytest
 
 from beltdyn import simulate
 from beltdyn.arrays import FloatArray
-from beltdyn.model import Drive
+from beltdyn.model import Drive, prepare
 from beltdyn.solvers.engine import accelerate
 from beltdyn.state.static import find_equilibrium
 from beltdyn.system.arrays import NO_TANGENT, Motion, System
@@ -30,7 +30,7 @@ def tied(small: Drive, change: Change) -> Drive:
 @pytest.fixture(scope="module")
 def nodes(small: Drive) -> FloatArray:
     """Positions and velocities of the nodes in contact and motion, shape (2, N, 6)."""
-    system = drive_system(small)
+    system = drive_system(prepare(small))
     rest = find_equilibrium(system, laid(system, small.path)).state.nodes(system)
     noise = np.random.default_rng(0).normal(size=(2, *rest.shape)) * np.array([1, 1, 8, 8, 8, 8])
     return np.stack([rest + 1e-4 * noise[0], 0.1 * noise[1]])
@@ -46,7 +46,7 @@ def accelerations(system: System, position: FloatArray, velocity: FloatArray) ->
 
 
 def test_accelerations(small: Drive, tied: Drive, nodes: FloatArray, measured: Measured) -> None:
-    shared, joined = drive_system(small), drive_system(tied)
+    shared, joined = drive_system(prepare(small)), drive_system(prepare(tied))
     doubled = np.concatenate([nodes, nodes[:, :1]], axis=1)
     by_node, by_multipliers = accelerations(shared, *nodes), accelerations(joined, *doubled)
     equations, zero = new_equations(joined), np.zeros(doubled[0].size + 2)
@@ -85,7 +85,7 @@ def test_trajectories_with_equal_steps(
     small: Drive, tied: Drive, fixed_steps: Callable[..., tuple[FloatArray, FloatArray]], measured: Measured
 ) -> None:
     times = np.linspace(0.0, 0.02, 21)[1:]
-    systems = [drive_system(small), drive_system(tied)]
+    systems = [drive_system(prepare(small)), drive_system(prepare(tied))]
     rest = find_equilibrium(systems[0], laid(systems[0], small.path)).state.position
     node, belt = len(systems[0].scale), systems[0].first_body
     starts = [rest, np.concatenate([rest[:belt], rest[:node], rest[belt:]])]  # a belt may lie anywhere along itself

@@ -8,7 +8,7 @@ import pytest
 import xarray as xr
 
 from beltdyn.arrays import ComplexArray, FloatArray
-from beltdyn.model import Drive
+from beltdyn.model import Drive, prepare
 from beltdyn.state.static import find_equilibrium
 from beltdyn.system.arrays import System
 from beltdyn.system.build import drive_system
@@ -75,7 +75,7 @@ def at_rest() -> Callable[[Drive], tuple[System, State]]:
     """The system of a drive, and its equilibrium."""
 
     def find(drive: Drive) -> tuple[System, State]:
-        system = drive_system(drive)
+        system = drive_system(prepare(drive))
         return system, find_equilibrium(system, laid(system, drive.path)).state
 
     return find

@@ -21,7 +21,7 @@ from scipy.sparse import csc_matrix
 from scipy.sparse.linalg import splu
 
 import beltdyn as bd
-from beltdyn.model import Constant, Drive
+from beltdyn.model import Constant, Drive, prepare
 from beltdyn.model.hysteresis import bending_at_points, rolling_resistances
 from beltdyn.results import Run, summarize
 
@@ -89,7 +89,7 @@ class Rod:
 
 
 def rod_of(drive: Drive) -> Rod:
-    contact, belt, hysteresis = drive.completed.contact, drive.belt, bending_at_points(drive)
+    contact, belt, hysteresis = drive.completed.contact, drive.belt, bending_at_points(prepare(drive))
     speed, torque = drive.pulleys[0].speed, drive.pulleys[1].torque
     assert isinstance(speed, Constant)
     assert isinstance(torque, Constant)
@@ -98,7 +98,7 @@ def rod_of(drive: Drive) -> Rod:
     assert contact.creep_ratio is not None
     assert contact.standstill_creep is not None
     assert belt.stretch_law == "linear"
-    rolling = rolling_resistances(drive)
+    rolling = rolling_resistances(prepare(drive))
     return Rod(
         distance=float(np.hypot(*(drive.centers[1] - drive.centers[0]))),
         radii=(float(drive.radii[0]), float(drive.radii[1])),

@@ -9,7 +9,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from beltdyn.model import Drive, install
+from beltdyn.model import Drive, prepare
 from beltdyn.state.installation import drawn_in
 from beltdyn.state.static import find_equilibrium
 from beltdyn.system.build import drive_system
@@ -28,8 +28,8 @@ def simulated(drive: Drive) -> tuple[float, float]:
 
     The search begins with the belt as deep in its pulleys as it will be: on the rims rounding decides what touches.
     """
-    system = drive_system(drive)
-    state = find_equilibrium(system, laid(system, drawn_in(drive, install(drive), 1.0))).state
+    system = drive_system(prepare(drive))
+    state = find_equilibrium(system, laid(system, drawn_in(prepare(drive), 1.0))).state
     seen = observe(system, np.zeros(1), state.position[None], state.velocity[None])
     x = state.nodes(system)[:, 0]
     return float(seen.span_tension.mean()), float(seen.belt_tension[0, np.argmax(x + np.roll(x, -1))])

@@ -6,7 +6,7 @@ from itertools import combinations
 import numpy as np
 from matplotlib.figure import Figure
 
-from beltdyn.model import Drive
+from beltdyn.model import Drive, prepare
 from beltdyn.show.plot.style import INK, color, dash, new_figure
 from beltdyn.system.build import drive_system
 from validation.paper.measures import DRIVER, RAMP_END, RAMP_START, largest, rms, settled, speed, times
@@ -152,7 +152,7 @@ def _tension(runs: Runs) -> Statement:
 
 def _unknowns() -> Statement:
     expected = {20: 120, 25: 150, 30: 180}
-    counted = {count: 6 * drive_system(two_pulley(count)).nodes for count in MESHES}
+    counted = {count: 6 * drive_system(prepare(two_pulley(count))).nodes for count in MESHES}
     return Statement(
         name="unknowns",
         title="20, 25 and 30 elements have 120, 150 and 180 degrees of freedom",

@@ -7,7 +7,7 @@ from typing import Self
 import numpy as np
 
 from beltdyn.arrays import FloatArray
-from beltdyn.model import Drive
+from beltdyn.model import Drive, prepare
 from beltdyn.results import Run
 from beltdyn.system.build import drive_system
 from validation.paper.averages import mean_forces
@@ -121,7 +121,7 @@ def errors_of(run: Run, exact: Values, case: Case) -> Errors:
 
 def unknowns(drive: Drive) -> int:
     """Nodal coordinates of a belt; the driven pulley's angle is counted apart."""
-    system = drive_system(drive)
+    system = drive_system(prepare(drive))
     return int(system.supports.fixed.size)
 
 

@@ -1,0 +1,331 @@
+"""A drive prepared for analyses: all that it leaves open, found once."""
+
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+from functools import cached_property
+from typing import Any
+
+import numpy as np
+
+from beltdyn.arrays import FloatArray
+from beltdyn.contact.friction import FrictionParameters
+from beltdyn.elements import ElementKind
+from beltdyn.machines import Tensioner
+from beltdyn.model.belt import Belt
+from beltdyn.model.carrier import Carrier, carriers_of, moved
+from beltdyn.model.completion import take_up
+from beltdyn.model.contact import Contact
+from beltdyn.model.defaults import Choice, critical_damping
+from beltdyn.model.drive import Drive
+from beltdyn.model.end import AnyEnd, PathEnd
+from beltdyn.model.installation import Installation, span_frequencies
+from beltdyn.model.layout import loaded
+from beltdyn.model.path import Path
+from beltdyn.model.pulley import Pulley
+from beltdyn.model.resolution import Laid, graded_mesh, layer_length, layer_lengths
+from beltdyn.model.simulation import Frame, Simulation
+from beltdyn.model.static_estimate import StaticEstimate
+from beltdyn.model.tensioner_balance import TensionerBalance, all_balances, balance_tensioners
+
+
+@dataclass(frozen=True, eq=False)
+class Prepared:
+    """A drive with all that it leaves open: what solvers, arrays of kernels and results are made of.
+
+    Attributes
+    ----------
+    drive : Drive
+        The drive as given: names, settings, and the text that results keep.
+    frame : Frame
+        Mesh of runs over time, with the reason.
+    belt : Belt
+        The belt with its length, and with the number and kind of elements of that mesh.
+    pulleys : tuple of Pulley
+        The pulleys where fixed tensioners hold them, with spring-loaded tensioners at zero.
+    contact : Contact
+        Contact with stiffness, damping and the parameters of friction.
+    tensioners : tuple of Tensioner
+        The tensioners with their take-up.
+    path : Path
+        The path around these pulleys.
+    carriers : tuple of Carrier
+        The spring-loaded tensioners with their pulleys.
+    choices : tuple of Choice
+        Numerical parameters that the drive leaves open, with the reasons of their values.
+    radii, rolling_radii : ndarray, shape (n,), m
+        Effective radii, and rolling radii of the bent belt without tension.
+    frictions : ndarray, shape (n,)
+        Friction coefficients, with the wedge factor on pulleys on the inside.
+
+    Examples
+    --------
+    >>> prepared = bd.prepare(drive)
+    >>> prepared.belt_length, prepared.elements
+    (1.2727, 100)
+    >>> print(f"{prepared.installation.tension:.1f} N")
+    26.6 N
+    """
+
+    drive: Drive
+    frame: Frame
+    belt: Belt
+    pulleys: tuple[Pulley, ...]
+    contact: Contact
+    tensioners: tuple[Tensioner, ...]
+    path: Path
+    carriers: tuple[Carrier, ...]
+    choices: tuple[Choice, ...]
+    radii: FloatArray
+    rolling_radii: FloatArray
+    frictions: FloatArray
+
+    def __reduce__(self) -> tuple[Callable[[Drive], "Prepared"], tuple[Drive]]:
+        """Travel between processes as the drive, which is prepared there."""
+        return prepare, (self.drive,)
+
+    @property
+    def simulation(self) -> Simulation:
+        """Settings of runs over time."""
+        return self.drive.simulation
+
+    @property
+    def gravity(self) -> tuple[float, float]:
+        """Acceleration of gravity, m/s^2."""
+        return self.drive.gravity
+
+    @property
+    def ends(self) -> tuple[AnyEnd, ...]:
+        """Ends of an open belt."""
+        return self.drive.ends
+
+    @property
+    def path_ends(self) -> tuple[PathEnd, ...]:
+        """Ends of an open belt as its path sees them."""
+        return self.drive.path_ends
+
+    @property
+    def spans(self) -> tuple[tuple[str, str], ...]:
+        """Names of the pulleys or ends at both ends of each span."""
+        return self.drive.spans
+
+    @property
+    def breakpoints(self) -> tuple[float, ...]:
+        """Instants of kinks and jumps in prescribed functions of time, s, ascending."""
+        return self.drive.breakpoints
+
+    @property
+    def installed_tension(self) -> float | None:
+        """Tension at rest that the drive asks for, N; None where the length gives it."""
+        return self.drive.belt.installed_tension
+
+    @property
+    def belt_length(self) -> float:
+        """Unstretched length of the belt, m."""
+        return self.belt.given_length
+
+    @property
+    def elements(self) -> int:
+        """Number of elements."""
+        return self.belt.given_elements
+
+    @property
+    def element_kind(self) -> ElementKind:
+        """Kind of the elements."""
+        return self.belt.element_kind
+
+    @property
+    def contact_stiffness(self) -> float:
+        """Contact stiffness, N/m^2."""
+        return self.contact.given("stiffness")
+
+    @property
+    def contact_damping(self) -> float:
+        """Contact damping, N s/m^2."""
+        return self.contact.given("damping")
+
+    @property
+    def critical_damping(self) -> float:
+        """Critical contact damping of the belt pressed on a pulley, N s/m^2."""
+        return critical_damping(self.contact_stiffness, self.belt.mass_per_length)
+
+    @property
+    def friction_parameters(self) -> FrictionParameters:
+        """Parameters of the friction law."""
+        return self.contact.friction_parameters
+
+    @property
+    def loaded_belt(self) -> Belt:
+        """The belt, with its tension at rest if a pulled end sets it."""
+        return loaded(self.belt, self.path_ends)
+
+    @cached_property
+    def _balance(self) -> tuple[StaticEstimate, FloatArray]:
+        """Estimate of the belt and the tensioners at rest; see `balance_tensioners`."""
+        return balance_tensioners(self.path, self.loaded_belt, self.contact, self.carriers)
+
+    @property
+    def tension_at_rest(self) -> float:
+        """Estimate of the tension at rest, without weight and bending, N."""
+        return self._balance[0].tension
+
+    @cached_property
+    def installation(self) -> Installation:
+        """Estimate of the belt at rest, without weight and bending; see `install`."""
+        estimate, positions = self._balance
+        path = estimate.path
+        turned = path.span_directions[: path.count] - np.roll(path.span_directions, 1, axis=0)[: path.count]
+        tensions = np.full(path.spans, estimate.tension)
+        return self.installed(tensions, estimate.penetrations.copy(), estimate.tension * turned, positions.copy())
+
+    def installed(
+        self, span_tensions: FloatArray, penetrations: FloatArray, hub_loads: FloatArray, positions: FloatArray
+    ) -> Installation:
+        """Describe the belt at rest in some state: arrays as those of an `Installation`."""
+        belt, path = self.belt, moved(self.path, self.carriers, positions)
+        laid = path.length / self.belt_length
+        return Installation(
+            strain=laid - 1,
+            laid_tension=float(belt.stretch_parameters.tension(laid)),
+            tension=float(span_tensions.mean()),
+            span_tensions=span_tensions,
+            penetrations=penetrations,
+            tensioner_positions=positions,
+            path=path,
+            hub_loads=hub_loads,
+            span_frequencies=span_frequencies(belt, path, span_tensions, self.gravity),
+        )
+
+    @cached_property
+    def layer(self) -> float:
+        """Length over which the belt at rest takes on the curvature of a pulley, m."""
+        return layer_length(*layer_lengths(self, self.installation.tension))
+
+    @cached_property
+    def laid(self) -> Laid:
+        """The belt on its path, with the tensioners as they are at rest."""
+        return self.laid_on(self.installation.path)
+
+    def laid_on(self, path: Path) -> Laid:
+        """The belt on a path like its own, from the middle of its longest span at rest."""
+        return Laid.on(path, self.belt_length, self.installation.path.longest_span)
+
+    def equal_lengths(self, elements: int) -> FloatArray:
+        """Lengths of equal elements, m."""
+        return np.full(elements, self.belt_length / elements)
+
+    def graded_lengths(self, fineness: float) -> FloatArray:
+        """Lengths of elements graded towards the ends of arcs of the belt at rest, m; see `graded_mesh`."""
+        return graded_mesh(self.belt_length, self.laid.arcs(), self.layer, fineness)
+
+    def over(self, simulation: Simulation) -> "Prepared":
+        """The same drive with other instants of output: nothing else follows from these."""
+        return replace(self, drive=self.drive.model_copy(update={"simulation": simulation}))
+
+    def replace(self, **changes: Any) -> "Prepared":
+        """Prepare the drive with other arguments."""
+        return prepare(self.drive.replace(**changes))
+
+    def tightened(self, distance: float) -> "Prepared":
+        """Prepare the drive with a length in place of an installed tension, or a take-up if the length is given.
+
+        Parameters
+        ----------
+        distance : float
+            By how much to shorten the belt that is estimated, or to lengthen its path, m; negative to loosen it.
+
+        Raises
+        ------
+        ModelError
+            If no such belt can run around the pulleys.
+        """
+        belt, tensioners, given = self.belt, self.drive.tensioners, self.drive.belt
+        if given.length is None:
+            belt = belt.replace(length=self.belt_length - distance)
+        else:
+            tensioners = self.taken_up(distance)
+        belt = belt.replace(discretization=given.discretization)
+        return self.replace(belt=belt, contact=self.contact, tensioner=tensioners)
+
+    def taken_up(self, distance: float) -> tuple[Tensioner, ...]:
+        """The tensioners, with the take-up of the fixed one increased so that the path is longer by a distance, m."""
+        return take_up(self.drive.completed, distance)
+
+
+def prepare(drive: Drive) -> Prepared:
+    """Find all that a drive leaves open, once: analyses work on what this gives.
+
+    Parameters
+    ----------
+    drive : Drive
+
+    Returns
+    -------
+    Prepared
+        The belt with its length and elements, contact with its numbers, the path, and an estimate of the belt at rest.
+
+    Examples
+    --------
+    >>> open_drive = drive.replace(contact=bd.Contact(friction=0.3))
+    >>> [choice.key for choice in bd.prepare(open_drive).choices][:2]
+    ['contact.stiffness', 'contact.damping']
+    """
+    completed = drive.completed
+    return Prepared(
+        drive=drive,
+        frame=drive.frame,
+        belt=completed.belt,
+        pulleys=completed.pulleys,
+        contact=completed.contact,
+        tensioners=completed.tensioners,
+        path=completed.path,
+        carriers=tuple(carriers_of(completed.tensioners, [one.name for one in drive.pulleys], completed.path)),
+        choices=completed.choices,
+        radii=drive.radii,
+        rolling_radii=drive.rolling_radii,
+        frictions=drive.frictions,
+    )
+
+
+def install(drive: Drive) -> Installation:
+    """Estimate tension, penetration and tensioner positions for the belt at rest.
+
+    `beltdyn.model.static_estimate` and `beltdyn.model.tensioner_balance` have the equations, which leave out bending
+    stiffness and weight; `beltdyn.bring_to_rest` finds static equilibrium.
+
+    Parameters
+    ----------
+    drive : Drive
+
+    Returns
+    -------
+    Installation
+
+    Examples
+    --------
+    >>> round(bd.install(drive).tension, 1)  # N
+    26.6
+    """
+    return prepare(drive).installation
+
+
+def tensioner_balances(drive: Drive, installation: Installation) -> tuple[tuple[TensionerBalance, ...], ...]:
+    """Find all equilibrium positions of each spring-loaded tensioner, with the others held.
+
+    Parameters
+    ----------
+    drive : Drive
+    installation : Installation
+        The belt at rest.
+
+    Returns
+    -------
+    tuple of tuples of TensionerBalance
+        For each tensioner, in ascending order of the positions; without bending stiffness and weight.
+
+    Examples
+    --------
+    >>> bd.tensioner_balances(drive, bd.install(drive))  # it has no tensioners
+    ()
+    """
+    one = prepare(drive)
+    return all_balances(one.path, one.loaded_belt, one.contact, one.carriers, installation.tensioner_positions)
