@@ -3,6 +3,7 @@ from .cosimulation import fmu
 from .designs.batch import simulate_all
 from .designs.calibrate import calibrate
 from .designs.optimize import optimize
+from .designs.selection import Proposal, select
 from .designs.sensitivity import sensitivity
 from .designs.study import study
 from .designs.worker import Ending
@@ -49,6 +50,7 @@ from .model import (
     Pulley,
     Pump,
     Ramp,
+    Rating,
     Resistance,
     RibFatigue,
     RotaryTensioner,
@@ -77,6 +79,7 @@ from .model import (
 from .points.duty import duty
 from .points.life import life
 from .points.operating_map import operating_map
+from .points.rating import rating
 from .points.tensioner_sheet import tensioner_sheet
 from .points.traction import traction
 from .results import (
@@ -170,11 +173,13 @@ __all__ = [
     "Prepared",
     "Profile",
     "Progress",
+    "Proposal",
     "PulledEnd",
     "Pulley",
     "PulleySummary",
     "Pump",
     "Ramp",
+    "Rating",
     "Resistance",
     "Resolution",
     "Rest",
@@ -231,9 +236,11 @@ __all__ = [
     "plot",
     "power_balance",
     "prepare",
+    "rating",
     "read_catalogue",
     "response",
     "results",
+    "select",
     "sensitivity",
     "simulate",
     "simulate_all",

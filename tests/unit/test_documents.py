@@ -21,7 +21,7 @@ from beltdyn.cli import main
 from beltdyn.designs.designs import free_number
 from beltdyn.designs.residuals import read_measured
 from beltdyn.machines import profiles
-from beltdyn.model import Belt, Contact, Limits, Pulley, Simulation, Steady, dumps, loads
+from beltdyn.model import Belt, Contact, Limits, Pulley, Rating, Simulation, Steady, dumps, loads
 from beltdyn.model.belt_form import Nominal, Sold
 from beltdyn.model.catalogue import Entry, read_catalogue
 from beltdyn.model.pulley import Diameter
@@ -139,13 +139,15 @@ def test_every_key_of_a_profile_is_documented(profile: type[Part]) -> None:
 
 
 def test_the_catalogue_of_the_document_has_every_key(new_drive: str, tmp_path: Path) -> None:
-    machine, own, catalogue, curve = blocks(CATALOGUE, "toml")
+    machine, own, catalogue, rating, curve = blocks(CATALOGUE, "toml")
     (entry,) = tomllib.loads(catalogue).values()
-    assert entry.keys() | tomllib.loads(curve)["my-belt"].keys() == Entry.model_fields.keys()
+    others = [tomllib.loads(one)["my-belt"] for one in (rating, curve)]
+    assert entry.keys() | {key for one in others for key in one} == Entry.model_fields.keys()
+    assert others[0]["rating"].keys() == Rating.model_fields.keys()
     without = "".join(line for line in catalogue.splitlines(keepends=True) if not line.startswith("axial_stiffness"))
     (tmp_path / "measured.toml").write_text(without + curve, encoding="utf-8")
     assert read_catalogue("measured.toml", tmp_path)["my-belt"].axial_stiffness == pytest.approx(1700.0)
-    (tmp_path / "belts.toml").write_text(catalogue, encoding="utf-8")
+    (tmp_path / "belts.toml").write_text(catalogue + rating, encoding="utf-8")
     data = tomllib.loads(new_drive)
     for form in (*blocks(DRIVE_FILE, "toml")[:2], machine, own):
         belt = {

@@ -17,6 +17,7 @@ from beltdyn.cli.console import show_error, take_any_terminal
 from beltdyn.cli.fmu import fmu
 from beltdyn.cli.new import new, schema
 from beltdyn.cli.page import app as page
+from beltdyn.cli.select import select
 from beltdyn.cli.show import demo, export, plot, report
 from beltdyn.cli.study import study
 from beltdyn.errors import BeltdynError
@@ -33,7 +34,7 @@ app = App(
     suppress_keyboard_interrupt=False,
 )
 _COMMANDS: tuple[Callable[..., object] | Analysis, ...] = (
-    *(new, check),
+    *(new, select, check),
     *ANALYSES.values(),
     *(study, plot, report, export, fmu, page, demo, catalogue, schema),
 )

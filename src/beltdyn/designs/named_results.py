@@ -7,7 +7,7 @@ import numpy as np
 from beltdyn.errors import ModelError
 from beltdyn.model import Drive, prepare
 from beltdyn.parts.messages import suggest
-from beltdyn.points.operating_points import VARIABLES, labels_of, values_by_name
+from beltdyn.points.operating_points import VARIABLES, labels_of, values_by_name, variables_of
 from beltdyn.results import Run, Variable
 from beltdyn.results.run import OWN
 from beltdyn.results.summary import means_of
@@ -66,7 +66,7 @@ def values_of(run: Run) -> dict[str, float]:
 def names_of(drive: Drive, *, at_rest: bool = False) -> list[str]:
     """Names of the scalar results of a drive, and of its modes; of some there may be no value."""
     labels, found = labels_of(drive) | {"mode": _numbers_of_modes(drive)}, list[str]()
-    for name, variable in ((AT_REST if at_rest else VARIABLES) | OF_MODES).items():
+    for name, variable in ((AT_REST if at_rest else variables_of(drive)) | OF_MODES).items():
         if variable.dtype != "str" and len(variable.dims) < 2:
             found += [name_of(name, label) for label in (labels[variable.dims[0]] if variable.dims else [""])]
     return found

@@ -41,6 +41,7 @@ from beltdyn.model.installation import Installation
 from beltdyn.model.path import Path
 from beltdyn.model.prepared import Prepared, install, prepare, tensioner_balances
 from beltdyn.model.pulley import Pulley
+from beltdyn.model.rating import Rating
 from beltdyn.model.resolution import ERROR_LIMITS, Running, elements_needed, layer_lengths, mesh_errors, unresolved
 from beltdyn.model.simulation import Limits, Simulation, Steady
 from beltdyn.model.study import CalibrationStudy, OptimizationStudy, ParameterStudy
@@ -87,6 +88,7 @@ __all__ = [
     "Pulley",
     "Pump",
     "Ramp",
+    "Rating",
     "Resistance",
     "RibFatigue",
     "RotaryTensioner",

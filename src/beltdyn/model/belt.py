@@ -37,7 +37,9 @@ from beltdyn.model.belt_form import (
     to_material,
     without_section,
 )
+from beltdyn.model.catalogue import Entry, read_catalogue
 from beltdyn.model.fatigue import CordFatigue, RibFatigue
+from beltdyn.model.rating import RatedBelt
 from beltdyn.model.stretch_curve import StretchCurve
 from beltdyn.parts.part import Part
 from beltdyn.parts.quantity import (
@@ -370,6 +372,22 @@ class Belt(Part):
     def nominal_length(self) -> float | None:
         """The nominal length, m, if the belt is given by it."""
         return self._nominal_length
+
+    @cached_property
+    def entry(self) -> Entry | None:
+        """The profile in the catalogue, if the belt is given by one that still exists."""
+        section = self._section
+        if section is None or not changes_as_sold(section, {}):
+            return None
+        return read_catalogue(section.get("catalogue")).get(section["profile"])
+
+    def rated(self, length: float) -> RatedBelt | None:
+        """The belt as its profile is rated, with an unstretched length in m; None without a rating."""
+        entry = self.entry
+        if entry is None or entry.rating is None or self._section is None:
+            return None
+        in_set = entry.pulley_diameter == "datum"
+        return RatedBelt(entry.rating, self._section["ribs"], in_set, self.nominal_length_of(length))
 
     @property
     def measured_stretch(self) -> float:

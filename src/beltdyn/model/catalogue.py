@@ -11,6 +11,7 @@ from typing import Any, Literal
 from pydantic import Field, ValidationError, ValidationInfo, model_validator
 
 from beltdyn.model.fatigue import CordFatigue, RibFatigue
+from beltdyn.model.rating import Rating
 from beltdyn.model.stretch_curve import StretchCurve, with_initial_slope
 from beltdyn.parts.messages import explain, reason
 from beltdyn.parts.part import Part
@@ -90,6 +91,10 @@ class Entry(Part):
     )
     cord_fatigue: CordFatigue | None = Field(None, description="the S-N line of the cords")
     rib_fatigue: RibFatigue | None = Field(None, description="the law of rib fatigue")
+    lengths: tuple[Length, ...] = Field((), description="the standard nominal lengths, in m")
+    rating: Rating | None = Field(
+        None, description="the power rating of a rib or V-belt, by the small pulley and speed"
+    )
     generic: bool = Field(False, description="whether the values are typical of a profile, not of a product")
     source: str = Field(min_length=1, description="the source of the values, as text")
 

@@ -24,6 +24,7 @@ from beltdyn.model.end import AnyEnd, PathEnd, ends_on_path
 from beltdyn.model.layout import Given, Layout, lay_out, loaded
 from beltdyn.model.path import Path
 from beltdyn.model.pulley import Pulley, friction_on
+from beltdyn.model.rating import RatedBelt
 from beltdyn.model.routing import radii, span_names
 from beltdyn.model.simulation import Frame, Limits, Simulation, Steady, choose_frame, element_of
 from beltdyn.model.static_estimate import StaticEstimate
@@ -224,6 +225,11 @@ class Drive(Part):
         The latter is an estimate without bending, weight and mesh, until `bring_to_rest` has found the length itself.
         """
         return self.completed.belt.given_length
+
+    @cached_property
+    def rated_belt(self) -> RatedBelt | None:
+        """The belt as its profile is rated; None without a rating."""
+        return None if self.ends else self.belt.rated(self.belt_length)
 
     @property
     def contact_stiffness(self) -> float:

@@ -171,6 +171,12 @@ class Limits(Part):
     least_slip_safety: Ratio | None = Field(
         None, gt=0, description="the least slip safety: the factor on all loads at which gross slip begins"
     )
+    largest_utilisation: Ratio | None = Field(
+        None, gt=0, description="the largest utilisation of a pulley: design power over the rated power of the belt"
+    )
+    service_factor: Ratio | None = Field(
+        None, gt=0, le=5, description="the service factor, design power over power, in the utilisation; by default 1"
+    )
 
     @model_validator(mode="after")
     def _leave_room(self) -> Self:

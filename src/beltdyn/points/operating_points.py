@@ -56,6 +56,8 @@ VARIABLES = {
     "wrap_angle": Variable(PULLEY, "rad", "Wrap angle"),
     "hub_load": Variable(PULLEY, "N", "Hub load"),
     "hub_force": Variable((*PULLEY, "axis"), "N", "Force of the belt on the pulley"),
+    "rated_power": Variable(PULLEY, "W", "Rated power of the belt"),
+    "utilisation": Variable(PULLEY, "1", "Utilisation: design power over rated power"),
     "span_tension": Variable(_SPAN, "N", "Span tension"),
     "tensioner_position": Variable(_TENSIONER, "m or rad", "Tensioner position"),
     "tensioner_position_after_tensioning": Variable(
@@ -86,8 +88,13 @@ _OF_PULLEYS = {
     "sliding_arc": "sliding_arc",
     "wrap_angle": "wrap_angle",
     "hub_load": "hub_load",
+    "rated_power": "rated_power",
+    "utilisation": "utilisation",
 }
 """Variable -> attribute of a `PulleySummary`."""
+
+
+_OF_RATING = ("rated_power", "utilisation")
 
 
 def labels_of(drive: Drive) -> dict[str, list[str]]:
@@ -101,11 +108,21 @@ def labels_of(drive: Drive) -> dict[str, list[str]]:
     }
 
 
+def variables_of(drive: Drive) -> dict[str, Variable]:
+    """Those of `VARIABLES` for which a drive has data: of rating and fatigue not without those of the belt."""
+    unknown = OF_FATIGUE.keys() - known_variables(drive)
+    unknown |= {*(_OF_RATING if drive.rated_belt is None else ())}
+    return {name: one for name, one in VARIABLES.items() if name not in unknown}
+
+
 def values_by_name(run: Run, means: Means) -> dict[str, Any]:
     """The values of an operating point by the names of `VARIABLES`."""
     balance, dataset, tensions = means.balance, run.dataset, [one.tension for one in means.spans]
+    known = variables_of(run.drive)
     values: dict[str, Any] = {
-        name: [getattr(one, attribute) for one in means.pulleys] for name, attribute in _OF_PULLEYS.items()
+        name: [getattr(one, attribute) for one in means.pulleys]
+        for name, attribute in _OF_PULLEYS.items()
+        if name in known
     }
     values |= {
         "hub_force": dataset["hub_force"].values[-1],
@@ -185,9 +202,7 @@ class OperatingPoints:
         self._progress = progress
         self._sizes = labels_of(drive)
         self.shape = tuple(len(np.atleast_1d(labels)) for _, labels in axes.values())
-        unknown = OF_FATIGUE.keys() - known_variables(drive)
-        kept = {name: VARIABLES[name] for name in VARIABLES if name in names and name not in unknown}
-        kept = {name: one for name, one in kept.items() if self._holds(one)}
+        kept = {name: one for name, one in variables_of(drive).items() if name in names and self._holds(one)}
         self.arrays = {name: self._blank(variable) for name, variable in kept.items()}
         self._held = ExitStack()
         self._warned: dict[str, list[tuple[float, str, str]]] = {}

@@ -10,6 +10,7 @@ from beltdyn.results.mechanics import rim_speeds
 from beltdyn.results.schema import Recorded, names
 from beltdyn.results.slip_safety import slip_safety_of_states
 from beltdyn.results.slipping import slip_parts
+from beltdyn.results.utilisation import rate, utilisation
 
 
 @dataclass(frozen=True, slots=True)
@@ -50,6 +51,10 @@ class PulleySummary:
         Wrap angle, rad.
     hub_load : float
         Magnitude of the mean force of the belt on the pulley, N.
+    rated_power : float
+        Rated power of the belt on the pulley, W; NaN without a rating of its profile, and on the back of the belt.
+    utilisation : float
+        Design power over rated power; NaN as above.
 
     Examples
     --------
@@ -73,6 +78,8 @@ class PulleySummary:
     slip_safety: float
     wrap_angle: float
     hub_load: float
+    rated_power: float
+    utilisation: float
 
 
 @dataclass(frozen=True, slots=True)
@@ -146,17 +153,22 @@ def pulley_means(recorded: Recorded, drive: Drive, window: Window | None = None)
     speed = window.mean(recorded, "pulley_speed") if single else window.rate(recorded, "pulley_angle")
     gross, share = (window.mean(recorded, name) for name in ("sliding_speed", "sliding_share"))
     parts = slip_parts(rim_speeds(speed, drive), tension, gross, window.end - window.start, drive)
+    power = window.product(recorded, "shaft_torque", "shaft_speed")
+    rating = rate(drive, speed, power, centers)
+    rated = np.full(speed.size, np.nan) if rating is None else rating.power
     columns = (
         speed,
         belt_torque,
         shaft_torque,
-        window.product(recorded, "shaft_torque", "shaft_speed"),
+        power,
         *parts,
         gross,
         share * wrap_angle,
         slip_safety_of_states(tension, belt_speed, centers, drive),
         wrap_angle,
         np.hypot(hub_force[:, 0], hub_force[:, 1]),
+        rated,
+        utilisation(drive, rated, power),
     )
     return tuple(
         PulleySummary(name, *map(float, row)) for name, *row in zip(names(recorded, "pulley"), *columns, strict=True)

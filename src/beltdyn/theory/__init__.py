@@ -5,6 +5,7 @@ import lazy_loader
 __getattr__, __dir__, __all__ = lazy_loader.attach(
     __name__,
     submodules=[
+        "belt_rating",
         "capstan",
         "creep",
         "elastic_creep",
@@ -15,6 +16,7 @@ __getattr__, __dir__, __all__ = lazy_loader.attach(
         "sagging_span",
         "sliding_flutter",
         "static_tension",
+        "stiff_span",
         "stretch",
     ],
 )

@@ -35,6 +35,7 @@ OPTIONS: dict[str, dict[str, Any]] = {
     "duty": {"table": "duty.csv"},
     "life": {"table": "duty.csv"},
     "tensioner": {"tolerance": "1 mm", "wear": "2 mm"},
+    "rating": {"service_factor": 1.2},
     "sensitivity": {"of": "efficiency", "numbers": "belt.length"},
     "modes": {"count": 2},
     "optimize": {"study": OptimizationStudy(number=[LENGTH], goal={"result": "hub_load"}), "most": 2},
@@ -64,6 +65,8 @@ def fitting(name: str, drive: Drive) -> Drive:
     if name == "life":
         line = {"cycles": [1e7, 1e9], "forces": [100.0, 50.0], "bending_force": 0.1, "source": "test"}
         return drive.replace(belt=drive.belt.replace(cord_fatigue=line))
+    if name == "rating":
+        return drive.with_({"belt.profile": "PJ", "belt.ribs": 3, "belt.installed_tension": "60 N"})
     if name == "response":
         waves = [{"order": 2, "amplitude": 0.02}]
         return drive.replace(pulley=[drive.pulleys[0].replace(harmonics=waves), drive.pulleys[1]])
