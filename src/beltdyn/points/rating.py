@@ -1,6 +1,7 @@
 """Power rating of the belt of a drive: rated power, utilisation and number of belts needed at each pulley."""
 
 from collections.abc import Iterator
+from typing import Any
 
 import numpy as np
 
@@ -95,7 +96,7 @@ def rating(
     used = utilisation(held, found.power, powers)
     pulleys = len(held.pulleys)
     needed = [belt.belts_needed(one, pulleys) if np.isfinite(one) else np.nan for one in used.tolist()]
-    columns = (
+    columns: tuple[Any, ...] = (
         found.diameter,
         found.wrap,
         powers,
@@ -107,7 +108,7 @@ def rating(
         needed,
     )
     speed = float(abs(speeds[held.reference] * held.radii[held.reference]))
-    scalars = (
+    scalars: tuple[Any, ...] = (
         *(belt.belts, np.nanmax(used), np.nanmax(needed), speed, held.limits.service_factor or 1.0),
         *(belt.rating.length_factor(belt.nominal_length), belts_factor(belt.belts) if belt.in_set else 1.0),
         pulleys_factor(pulleys),

@@ -1,6 +1,7 @@
 """Selected drives: standard parts within the space, that carry the power, in order of their width."""
 
 from math import pi
+from typing import Any
 
 import numpy as np
 import pytest
@@ -12,7 +13,7 @@ from beltdyn.results.utilisation import rate
 from beltdyn.theory.path import open_belt
 
 RPM = 30.0 / pi
-TASK = {"power": "7.5 kW", "speed": "1450 rpm", "driven_speed": "700 rpm", "service_factor": 1.2}
+TASK: dict[str, Any] = {"power": "7.5 kW", "speed": "1450 rpm", "driven_speed": "700 rpm", "service_factor": 1.2}
 
 
 @pytest.fixture(scope="module")
@@ -85,7 +86,7 @@ def test_a_drive_that_speeds_up_has_its_small_pulley_driven() -> None:
 
 
 def test_more_power_needs_more_belts() -> None:
-    limits = {"largest_driven": "315 mm", "profiles": "SPA", "most_belts": 20}
+    limits: dict[str, Any] = {"largest_driven": "315 mm", "profiles": "SPA", "most_belts": 20}
     few, many = (
         select(power=power, speed="1450 rpm", driven_speed="700 rpm", **limits)[0] for power in ("5 kW", "40 kW")
     )
@@ -104,6 +105,6 @@ def test_more_power_needs_more_belts() -> None:
         ({"power": "9 MW"}, r"no drive of .* carries 1.08e\+04 kW"),
     ],
 )
-def test_what_is_not_possible_is_refused(changes: dict[str, object], said: str) -> None:
+def test_what_is_not_possible_is_refused(changes: dict[str, Any], said: str) -> None:
     with pytest.raises(ModelError, match=said):
         select(**TASK | changes)
