@@ -170,7 +170,7 @@ def _require_known(what: str, names: Sequence[str], known: Iterable[str]) -> Non
     every = list(known)
     for name in names:
         if name not in every:
-            remedy = "Name the file by -o" if name.endswith(".fmu") else suggest(name, every)
+            remedy = "Give the file with -o" if name.endswith(".fmu") else suggest(name, every)
             raise ModelError(f"{name!r} is not {what} of this drive. {remedy.removesuffix('.')}.".replace("?.", "?"))
 
 

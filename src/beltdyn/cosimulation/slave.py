@@ -230,7 +230,7 @@ class DriveSlave:
 
     def _wrong_type(self, reference: int) -> str:
         one = self.vars.get(reference)
-        return f"{one.name} is a real number, not of another type." if one else self._unknown(reference)
+        return f"{one.name} is a real number (double), not of the requested type." if one else self._unknown(reference)
 
     @staticmethod
     def _unknown(reference: int) -> str:

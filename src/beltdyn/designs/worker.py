@@ -386,7 +386,7 @@ def workers_of(jobs: int | None, scheduler: str | None) -> Workers:
         return ThisProcess() if jobs == 1 else LocalProcesses(jobs)
     if jobs is not None:
         raise ModelError(
-            f"jobs = {jobs} is for processes on this machine, but scheduler = {scheduler!r} is is for others. Give "
-            "one of them. Give one of them."
+            f"jobs = {jobs} applies to processes on this machine, but scheduler = {scheduler!r} uses a cluster. Omit "
+            "one of them."
         )
     return DaskWorkers(scheduler)

@@ -89,17 +89,16 @@ class Belt(Part):
     """A belt of rectangular cross-section; closed, unless the drive has ends.
 
     The width points out of the plane of the drive, the thickness lies in it. Arguments are in SI units,
-    or text such as ``"25 mm"``. With `installed_tension` in place of `length` the latter is open, None: the drive that
-    the belt is part of finds it (`Drive.belt_length`), and so it is with `elements` (`Drive.elements`).
+    or text such as ``"25 mm"``. With `installed_tension` instead of `length`, the length is None and computed by the
+    drive (`Drive.belt_length`); likewise `elements` (`Drive.elements`).
 
-    In place of `density`, `youngs_modulus` and their factors a belt takes `axial_stiffness` (N),
-    `bending_stiffness` (N m^2) and `mass_per_length` (kg/m), or the name of a `profile` of the catalogue and its
-    number of `ribs`; they are turned into density, modulus and factors when the belt is made. In place of `length`,
-    that of the line that carries the tension, it takes the `nominal_length` by which it is sold, which two pulleys
-    measure that `measuring_force` pulls apart.
+    `density`, `youngs_modulus` and their factors may be replaced by `axial_stiffness` (N), `bending_stiffness` (N m^2)
+    and `mass_per_length` (kg/m), or by a `profile` of the catalogue and its number of `ribs`; density, modulus and
+    factors are computed from these. `length`, the length of the tension line, may be replaced by the `nominal_length`
+    as sold, measured on two pulleys pulled apart by `measuring_force`.
 
-    `stretch_law` is ``"linear"`` for belts given so, ``"measured"`` for belts with a `stretch_curve`, and ``"green"``,
-    as published, for belts given by their material, unless it is given.
+    The default of `stretch_law` is ``"linear"`` for belts specified by stiffnesses or profile, ``"measured"`` with a
+    `stretch_curve`, and ``"green"``, as published, for belts specified by their material.
 
     Examples
     --------
@@ -346,7 +345,7 @@ class Belt(Part):
         Raises
         ------
         ModelError
-            If it is left open: the drive computes it, `Drive.belt_length`.
+            If it is not given; the drive computes it, see `Drive.belt_length`.
         """
         if self.length is None:
             raise ModelError(
@@ -362,7 +361,7 @@ class Belt(Part):
         Raises
         ------
         ModelError
-            If it is left open: the drive chooses it, `Drive.elements`.
+            If it is not given; the drive chooses it, see `Drive.elements`.
         """
         if self.elements is None:
             raise ModelError("belt.elements is open; the drive chooses it. Use drive.elements, or give elements.")

@@ -70,13 +70,13 @@ _Laws: Any = create_model(
 class Contact(_Laws, Penalty):
     """Penalty contact with friction, the same on every pulley.
 
-    Stiffness, damping and the creep ratio of friction are means of computation. Those that are not given are open,
-    None: the drive that the contact is part of finds them (`Drive.completed`), see `beltdyn.model.defaults`.
+    Stiffness, damping and the creep ratio of friction are numerical parameters. If omitted they are None, and chosen by
+    the drive (`Drive.completed`); see `beltdyn.model.defaults`.
 
-    The laws of normal force and friction have parameters of their own. The friction law ``"relative_creep"`` takes
-    `creep_ratio`, the slip velocity over the speed of the rim at which friction is fully used. ``"coefficient_slope"``
-    takes this velocity itself, `creep_velocity`, and ``"force_slope"`` (as published) `creep_rate_factor`, the slope of
-    the friction force over the slip velocity.
+    Each law of normal force and friction has its own parameters: the friction law ``"relative_creep"`` has
+    `creep_ratio`, the slip velocity at saturation over the rim speed; ``"coefficient_slope"`` has `creep_velocity`, the
+    slip velocity at saturation; ``"force_slope"`` (as published) has `creep_rate_factor`, the slope of the friction
+    force over the slip velocity.
 
     Examples
     --------
@@ -144,7 +144,7 @@ class Contact(_Laws, Penalty):
         Raises
         ------
         ModelError
-            If it is left open: the drive chooses it.
+            If it is not given; the drive chooses it.
         """
         number: float | None = getattr(self, key)
         if number is None:

@@ -42,10 +42,10 @@ class Drive(Part):
     `end` (lists), `simulation`, `steady` and `limits`, each a part or a mapping of its arguments, `gravity`, and `name`
     and `description`.
 
-    The parts hold what is given, and only that; copies (`replace`) and files are made of it. What follows belongs to
-    the drive: `belt_length`, also of a belt of given tension; `path` and `centers`, where fixed tensioners hold their
-    pulleys; `elements`, `contact_stiffness`, `contact_damping` and `friction_parameters`, also where the numbers of
-    computation are left open. `completed.choices` has their values and the reasons.
+    The parts hold only the given values, from which copies (`replace`) and files are made. Derived values are
+    attributes of the drive: `belt_length`, also if the tension is given instead; `path` and `centers`, with pulleys of
+    fixed tensioners in place; `elements`, `contact_stiffness`, `contact_damping` and `friction_parameters`, also if the
+    file omits these numerical parameters. `completed.choices` lists the chosen values and the reasons.
 
     Examples
     --------
@@ -222,7 +222,7 @@ class Drive(Part):
     def belt_length(self) -> float:
         """Unstretched length of the belt, m: as given, or for its installed tension.
 
-        The latter is an estimate without bending, weight and mesh, until `bring_to_rest` has found the length itself.
+        The latter is an estimate without bending, weight and mesh; `bring_to_rest` computes the exact length.
         """
         return self.completed.belt.given_length
 
@@ -325,10 +325,10 @@ class Drive(Part):
         Parameters
         ----------
         changes : mapping
-            Path -> new value, a number in SI units or text with a unit, or whatever a drive file takes there; None
-            leaves an argument open. Paths are those of error messages: keys with dots between, and in brackets the
-            name of a pulley, the pulley of a tensioner, or the number of an entry, counted from 1. Where one value is
-            given in place of another, as a tension of the belt in place of its length, it takes the other's place.
+            Path -> new value: a number in SI units, text with a unit, or any other value that a drive file accepts
+            there; None restores the default. Paths are those of error messages: keys separated by dots, and in brackets
+            the name of a pulley, the pulley of a tensioner, or the number of an entry, counted from 1. A value that
+            excludes another one, such as the installed tension and the length of the belt, replaces it.
 
         Returns
         -------
@@ -354,17 +354,17 @@ class Drive(Part):
         Parameters
         ----------
         distance : float
-            By how much to shorten the belt that is estimated, or to lengthen its path, m; negative to loosen it.
+            Shortening of the estimated belt, or lengthening of its path, m; negative to loosen it.
 
         Returns
         -------
         Drive
-            With that length or take-up in place of the tension, and with its stiffness of contact.
+            With this length or take-up instead of the tension, and with its contact stiffness.
 
         Raises
         ------
         ModelError
-            If no such belt can run around the pulleys.
+            If no such belt fits around the pulleys.
         """
         completed = self.completed
         belt, tensioners = completed.belt, self.tensioners

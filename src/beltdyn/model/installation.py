@@ -27,13 +27,13 @@ class Installation:
     penetrations : ndarray, shape (n,), m
         Penetration into each pulley, in the middle of the arc.
     tensioner_positions : ndarray, shape (K,), m or rad
-        Where springs hold the sliding and the rotary tensioners.
+        Equilibrium positions of the sliding and rotary tensioners.
     path : Path
         The path with the tensioners there, without penetration.
     hub_loads : ndarray, shape (n, 2), N
         Force of the belt on each pulley; without weight T (u_out - u_in), of size 2 T sin(wrap angle / 2).
     span_frequencies : ndarray, shape (s,), Hz
-        Lowest frequency at which each span swings across, with the bending stiffness of the belt and its sag.
+        Lowest natural frequency of transverse vibration of each span, including bending stiffness and sag.
 
     Examples
     --------

@@ -34,7 +34,7 @@ class Path:
     Raises
     ------
     ValueError
-        If no straight line touches two successive pulleys, because one holds or meets the other.
+        If two successive pulleys have no common tangent because one contains or intersects the other.
 
     Examples
     --------

@@ -246,7 +246,7 @@ def mesh_errors(drive: OnPulleys, running: Running, elements: int) -> dict[str, 
     drive : Drive
         The drive.
     running : Running
-        Its tension, which must be above what its speed takes from the pulleys.
+        Its tension, which must exceed the centrifugal tension at its speed.
     elements : int
         Number of elements.
 
@@ -277,12 +277,12 @@ def mesh_errors(drive: OnPulleys, running: Running, elements: int) -> dict[str, 
 def elements_needed(drive: OnPulleys, running: Running) -> dict[str, int]:
     """Number of elements for which twice the estimated error of each quantity is within its limit.
 
-    Twice, since hardly any error is more.
+    Twice, because errors hardly ever exceed that.
 
     Parameters
     ----------
     drive : Drive
-        The drive; its own number of elements does not matter.
+        The drive, with any number of elements.
     running : Running
         As for `mesh_errors`.
 

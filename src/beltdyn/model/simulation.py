@@ -212,8 +212,8 @@ class Simulation(Part):
         None,
         alias="output_interval",
         gt=0,
-        description="the time between two outputs, in s; by default 1 ms, or as much longer or shorter as it takes for "
-        "100 to 100,000 outputs",
+        description="the time between two outputs, in s; by default 1 ms, adjusted if needed to give between 100 and "
+        "100,000 outputs",
     )
     field_interval: Time | None = Field(
         None,

@@ -187,7 +187,7 @@ class Obstacle(Part):
 
 
 class OptimizationStudy(Part):
-    """An optimisation of a drive: free numbers, goal and requirements.
+    """An optimization of a drive: parameters, goal and requirements.
 
     The constructor's arguments are the groups of a study file, each a part or a mapping of its arguments.
 
@@ -240,7 +240,7 @@ class Measurement(Part):
 
 
 class CalibrationStudy(Part):
-    """A calibration: the fitted numbers of a drive, and measurements.
+    """A calibration: parameters of a drive to fit, and measurements.
 
     The constructor's arguments are the groups of a study file, each a part or a mapping of its arguments.
 

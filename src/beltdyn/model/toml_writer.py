@@ -60,7 +60,7 @@ def dumps(drive: Drive) -> str:
     Parameters
     ----------
     drive : Drive
-        The drive: what is given is written. That of a run has the length, or the take-up, that was found for it.
+        The drive; only given values are written. The drive of a run has its computed length or take-up.
 
     Returns
     -------

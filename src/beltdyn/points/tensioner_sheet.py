@@ -100,7 +100,7 @@ def tensioner_sheet(
     Raises
     ------
     ModelError
-        If the drive has no moving tensioner, or several and pulley is not given, or if tolerance or wear is not a
+        If the drive has no moving tensioner, or several without a choice by pulley, or if tolerance or wear is not a
         length.
     ConvergenceError
         If no static equilibrium of the nominal belt is found.

@@ -68,7 +68,7 @@ _PULLEY_SUMMARY = (
     "hub load [N]",
 )
 _SPAN_SUMMARY = ("span", "tension [N]", "least tension [N]", "largest tension [N]", "belt speed [m/s]")
-_LOSS_SUMMARY = ("cause", "power [W]", "share of the power put in [1]", "energy since the start [J]")
+_LOSS_SUMMARY = ("cause", "power [W]", "share of the power input [1]", "energy since the start [J]")
 
 _FIRST_HEADINGS = {
     **dict.fromkeys(("pulleys", "spans", "energy", "tensioners"), "time [s]"),
@@ -94,20 +94,20 @@ Table = Sequence[Column]
 def write_csv(run: Result, folder: Path | str, overwrite: bool = False) -> list[Path]:
     """Write tables of a result.
 
-    Of a run they are pulleys, spans, energy and tensioners over time, contact at the last output, and the summary; of
-    operating points a row for each; of other results a row for each pulley, span, and whatever else has names.
+    A run gives tables of pulleys, spans, energy and tensioners over time, contact at the last output, and the summary;
+    operating points give one row each; other results one row for each pulley, span or other named item.
 
     Every file has one line of headings, such as ``pulley_speed driver [rad/s]``, and numbers with
-    ten significant digits. What is derived stands beside what was recorded.
+    ten significant digits. Derived quantities follow the recorded ones.
 
     Parameters
     ----------
     run : Result
         The run, or another result.
     folder : Path or str
-        Where to write; made if need be.
+        Destination folder; created if necessary.
     overwrite : bool
-        Replace any regular files, and not only tables of ours.
+        Replace any regular files, not only tables of beltdyn.
 
     Returns
     -------

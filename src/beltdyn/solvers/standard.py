@@ -272,8 +272,8 @@ class StandardIntegrator:
     name : str
         "cvode", "ida", "bdf" or "radau".
     rtol : float
-        Allowed error of velocities over the velocity scale of the task; positions may err by what that makes in a
-        millisecond.  A single step may make a fiftieth of it.
+        Error tolerance of velocities, relative to the velocity scale of the drive; that of positions is this velocity
+        times one millisecond. A single step may use a fiftieth of it.
     max_step : float or None
         s.
 

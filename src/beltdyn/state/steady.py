@@ -147,7 +147,7 @@ def steady_state(
     Raises
     ------
     ModelError
-        If the drive cannot run steadily: its belt is open, nothing drives it, or a pulley is not a smooth circle.
+        If steady running is not defined: the belt is open, nothing drives it, or a pulley is not a smooth circle.
     ConvergenceError
         If there is no steady running; the message names the slipping pulley and the largest torque it transmits.
 

@@ -58,24 +58,24 @@ class SimulatorState:
 
 
 class Simulator:
-    """A drive that is simulated step by step, by the same integrator and from the same beginning as by `simulate`.
+    """Step-by-step simulation of a drive, with the same integrator and initial state as `simulate`.
 
-    Speeds and torques are those of the drive file until they are set. Means of installation, as the length that gives
-    the installed tension, are found when it is made.
+    Speeds and torques follow the drive file until they are set. The constructor computes the initial state, including
+    the belt length for the installed tension.
 
     Parameters
     ----------
     drive : Drive
         The drive; its `simulation.duration` is no limit here.
     progress : callable, optional
-        Called with a `Progress` while the beginning is found.
+        Called with a `Progress` while the initial state is computed.
 
     Raises
     ------
     ModelError
-        If the drive asks for another integrator than "generalized_alpha".
+        If the drive has another integrator than "generalized_alpha".
     ConvergenceError
-        If there is no state to begin with.
+        If no initial state is found.
 
     Examples
     --------
@@ -177,7 +177,7 @@ class Simulator:
         self._centers[number] = x, y
 
     def center(self, pulley: str) -> tuple[float, float]:
-        """Where the center of a pulley is, m.
+        """Current center of a pulley, m.
 
         Parameters
         ----------
@@ -266,7 +266,7 @@ class Simulator:
             ``pulley_speed[NAME]``, ``pulley_angle[NAME]``, ``shaft_speed[NAME]``, ``shaft_angle[NAME]`` (behind a hub
             chain), ``shaft_torque[NAME]`` (from outside), ``pulley_torque[NAME]`` (of the belt), ``hub_load[NAME]``,
             ``wrap_angle[NAME]``, ``span_tension[NAME-NAME]``, of tensioners ``tensioner_position[NAME]``, and the
-            stored energies, the works and the losses since the beginning, by their names in results.
+            stored energies, works and losses since the start, under their names in results.
         """
         system, state = self._integration.system, self._integration.state
         position, velocity = state.position[None].copy(), state.velocity[None].copy()

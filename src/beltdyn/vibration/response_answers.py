@@ -341,13 +341,13 @@ class Answers:
         )
         slides = [name for name, used in zip(self._labels["pulley"], there.friction_used, strict=True) if used >= 1.0]
         if slides:
-            found.append(f"the whole arc of {' and '.join(slides)} slides in a part of each period")
+            found.append(f"the whole arc of {' and '.join(slides)} slides during part of each period")
         stops = [name for name, used in zip(self._labels["tensioner"], there.stop_used, strict=True) if used >= 1.0]
         if stops:
             found.append(f"the tensioner of {' and '.join(stops)} reaches a stop")
         if there.friction_change > SMALL_ERROR:
             found.append(
-                f"dry friction of tensioners, which this response {'takes to hold' if self._stuck else 'leaves out'}, "
+                f"dry friction of tensioners, which this response {'assumes to hold' if self._stuck else 'neglects'}, "
                 f"changes tension amplitudes by {100.0 * there.friction_change:.2g}%"
             )
         return found

@@ -31,7 +31,7 @@ def test_variables_and_the_version_are_chosen(run_main: RunMain, drive_file: Pat
     ("words", "sentence"),
     [
         (["--input", "pulley[driver].sped"], 'is not an input of this drive. Did you mean "pulley[driver].speed"?'),
-        (["--output", "out.fmu"], "'out.fmu' is not an output of this drive. Name the file by -o."),
+        (["--output", "out.fmu"], "'out.fmu' is not an output of this drive. Give the file with -o."),
         (["--output", "slip"], "'slip' is not an output of this drive."),
         (["-o", "drive.toml"], "drive.toml must end in .fmu"),
         (["-o", "theirs.fmu"], "theirs.fmu already exists"),

@@ -53,7 +53,7 @@ def test_an_arm_turns_by_an_angle() -> None:
         (["pulley[driver].sped"], None, 'is not an input of this drive. Did you mean "pulley[driver].speed"?'),
         (["pulley[driver].torque"], None, "'pulley[driver].torque' is not an input of this drive."),
         (None, ["shaft_torqe"], 'is not an output of this drive. Did you mean "shaft_torque"?'),
-        (None, ["drive.fmu"], "'drive.fmu' is not an output of this drive. Name the file by -o."),
+        (None, ["drive.fmu"], "'drive.fmu' is not an output of this drive. Give the file with -o."),
         (["zzz"], None, "Choose one of pulley[driver].speed, pulley[driven].torque, pulley[driver].center[1], "),
     ],
 )

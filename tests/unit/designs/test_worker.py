@@ -22,7 +22,7 @@ def test_processes_are_as_many_as_asked_for() -> None:
 
 
 def test_jobs_are_none_of_a_cluster() -> None:
-    with pytest.raises(ModelError, match="jobs = 2 is for processes on this machine"):
+    with pytest.raises(ModelError, match="jobs = 2 applies to processes on this machine"):
         workers_of(2, "tcp://host:1")
 
 

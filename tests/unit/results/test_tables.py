@@ -62,7 +62,7 @@ def test_summary_as_tables(tmp_path: Path, run: Run) -> None:
     friction = dict(zip(heading, rows[0], strict=True))
     assert friction["cause"] == "friction"
     assert float(friction["power [W]"]) == pytest.approx(0.09 * 12.0)
-    assert float(friction["share of the power put in [1]"]) == pytest.approx(0.09 / (30.0 * 0.08125))
+    assert float(friction["share of the power input [1]"]) == pytest.approx(0.09 / (30.0 * 0.08125))
     assert float(friction["energy since the start [J]"]) == pytest.approx(float(run.dataset["friction_loss"][-1]))
 
 

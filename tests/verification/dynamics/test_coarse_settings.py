@@ -80,7 +80,7 @@ def errors(found: Summary, right: Summary) -> dict[str, float]:
 
 def said(found: Summary) -> dict[str, float]:
     """The errors that a run tells of itself."""
-    words = " ".join(one for one in found.warnings if one.startswith("against steady running"))
+    words = " ".join(one for one in found.warnings if one.startswith("compared with steady running"))
     patterns = {"losses": r"losses are off by (\S+)%", "slip": r"by (\S+)% of the largest"}
     numbers = {name: re.search(pattern, words) for name, pattern in patterns.items()}
     parts = re.search(r"\((.*) of the losses\)", words)

@@ -55,7 +55,7 @@ def torque_of_function(constants: np.record, _numbers: FloatArray, shaft: ShaftS
 class FunctionLoad(Load):
     """A torque as a Python function of time (s), angle (rad) and speed (rad/s) of the shaft; not for drive files.
 
-    Numba compiles functions of numbers and `math`. Others are run by Python, and a warning says what that costs.
+    Numba compiles functions that use only numbers and `math`. Others are run by Python, with a warning about the cost.
 
     Examples
     --------

@@ -107,8 +107,8 @@ def limit_reached(constants: np.record, _numbers: FloatArray, shaft: ShaftState,
 class InductionMotor(Load):
     """An induction motor by catalogue data, which drives below its synchronous speed and brakes above it.
 
-    Its torque is that of steady running at each speed; electrical transients, of some periods of the supply, are left
-    out.
+    Its torque is quasi-static at each speed; electrical transients, which last some periods of the supply, are
+    neglected.
 
     Examples
     --------

@@ -80,9 +80,9 @@ def off_steady_running(evidence: Evidence) -> Iterator[Finding]:
     found, wrong = losses + slips, ["losses and efficiency"] * bool(losses) + ["slip"] * bool(slips)
     if found:
         yield Finding(
-            f"against steady running, on a mesh that resolves it, {listing(found)}.",
-            f"{listing(wrong).capitalize()} {'are' if losses else 'is'} wrong by as much.",
-            f"Leave out {attributes[COARSE_SETTINGS]}, or take them from `beltdyn steady-state`.",
+            f"compared with steady running on a resolved mesh, {listing(found)}.",
+            f"{listing(wrong).capitalize()} {'are' if losses else 'is'} wrong by this amount.",
+            f"Omit {attributes[COARSE_SETTINGS]}, or take these values from `beltdyn steady-state`.",
         )
 
 

@@ -16,28 +16,28 @@ from beltdyn.results.run import Run, StaticResult
 def wear_by_arc(run: Run, start: float | None = None, end: float | None = None) -> xr.DataArray:
     """Friction work ``|f_t v_t|`` over the arc of each pulley.
 
-    In each of equal parts of the arc, the work done on the belt in it is summed and divided by its length, so that
-    the sum over a pulley is all of its work. The parts reach a quarter of the arc between the tangent points further at
-    both of its ends, since a belt that sinks in or bends touches before them.
+    The arc is divided into equal segments; the work in each is divided by its length, so that the integral over a
+    pulley is its total friction work. The segments extend beyond the tangent points by a quarter of the arc at both
+    ends, because penetration and bending make the belt touch earlier.
 
     Parameters
     ----------
     run : Run
         The run.
     start, end : float, optional
-        From when to when, s: from the first to the last output of fields between them.
+        Time range, s, from its first to its last output along the belt.
 
     Returns
     -------
     DataArray
-        J per metre of arc, pulley and ``share``: the middle of the part, 0 at the tangent point where the belt enters
-        when it runs in the direction of ascending belt coordinate, 1 at the other; ``angle`` (rad) and ``part_length``
-        (m) belong to it.
+        J per metre of arc, by pulley and ``share``, the position of the middle of the segment: 0 at the inlet tangent
+        point of a belt running in the direction of ascending belt coordinate, 1 at the outlet. Coordinates ``angle``
+        (rad) and ``part_length`` (m).
 
     Raises
     ------
     ModelError
-        If there are no two outputs of fields between them, or the work was not recorded.
+        If the range has fewer than two outputs along the belt, or the work was not recorded.
 
     Examples
     --------
@@ -70,18 +70,18 @@ def wear_by_belt(run: Run, start: float | None = None, end: float | None = None)
     run : Run
         The run.
     start, end : float, optional
-        From when to when, s: from the first to the last output of fields between them.
+        Time range, s, from its first to its last output along the belt.
 
     Returns
     -------
     DataArray
-        J per metre of belt, pulley and element. On a staying mesh an element stands for the belt that was in it at the
-        beginning. Pulleys on the back of the belt wear its other surface.
+        J per metre of belt, by pulley and element. On a staying mesh an element represents the belt that it contained
+        at the start. Pulleys on the back of the belt wear its other surface.
 
     Raises
     ------
     ModelError
-        If there are no two outputs of fields between them, or the work was not recorded.
+        If the range has fewer than two outputs along the belt, or the work was not recorded.
 
     Examples
     --------
@@ -117,7 +117,7 @@ def contact_arc(run: Run | StaticResult, pulley: str | int, time: float | None =
     pulley : str or int
         Name or number of the pulley.
     time : float, optional
-        The instant, s; the output of fields nearest to it is taken. The last one by default.
+        Time, s; the nearest output along the belt is used. By default the last one.
 
     Returns
     -------

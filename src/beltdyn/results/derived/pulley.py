@@ -17,16 +17,16 @@ from beltdyn.results.slipping import slip_parts
 def pulley_powers(run: Run, start: float | None = None, end: float | None = None) -> xr.Dataset:
     """Power in, power out and loss at every pulley.
 
-    What comes in at the shaft either goes to the belt or is lost in contact, but for what the rim, the bodies of its
-    hub and the contact store at the moment: in the mean of steady running ``power_in`` = ``power_out`` +
-    ``power_lost``. At a driven pulley power in and out are negative: the belt gives more than the load takes.
+    Shaft power is transmitted to the belt, lost in contact, or stored in the rim, the bodies of its hub chain and the
+    contact; on average in steady running ``power_in`` = ``power_out`` + ``power_lost``. At a driven pulley, power in
+    and out are negative.
 
     Parameters
     ----------
     run : Run
         The run.
     start, end : float, optional
-        From when to when, s.
+        Time range, s.
 
     Returns
     -------
@@ -59,7 +59,7 @@ def balance(run: Run, start: float | None = None, end: float | None = None) -> B
     run : Run
         The run.
     start, end : float, optional
-        From when to when, s.
+        Time range, s.
 
     Returns
     -------
@@ -87,7 +87,7 @@ def span_tensions(run: Run, start: float | None = None, end: float | None = None
     run : Run
         The run.
     start, end : float, optional
-        From when to when, s.
+        Time range, s.
 
     Returns
     -------
@@ -122,7 +122,7 @@ def mid_span_displacements(run: Run, start: float | None = None, end: float | No
     run : Run
         The run.
     start, end : float, optional
-        From when to when, s.
+        Time range, s.
 
     Returns
     -------
@@ -281,7 +281,7 @@ def hub_loads(run: Run, start: float | None = None, end: float | None = None) ->
     run : Run
         The run.
     start, end : float, optional
-        From when to when, s.
+        Time range, s.
 
     Returns
     -------
@@ -315,7 +315,7 @@ def slip_safety(run: Run, start: float | None = None, end: float | None = None) 
     run : Run
         The run.
     start, end : float, optional
-        From when to when, s.
+        Time range, s.
 
     Returns
     -------
@@ -342,7 +342,7 @@ def tension_ratios(run: Run, start: float | None = None, end: float | None = Non
     run : Run
         The run.
     start, end : float, optional
-        From when to when, s.
+        Time range, s.
 
     Returns
     -------

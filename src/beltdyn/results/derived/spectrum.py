@@ -29,8 +29,8 @@ _STANDING = 0.1
 def amplitude_spectrum(values: xr.DataArray, window: str = "hann") -> xr.DataArray:
     """Amplitude spectrum of a variable.
 
-    The mean is taken away, and a window applied whose sum the amplitudes are divided by: a sinusoid of amplitude A at
-    a frequency of the spectrum gives A, one between two of them down to 0.85 A with "hann" and 0.999 A with "flattop",
+    The mean is removed, and the amplitudes are normalized by the sum of the window: a sinusoid of amplitude A gives A
+    at a frequency of the spectrum, and between two frequencies at least 0.85 A with "hann" or 0.999 A with "flattop",
     whose lines are wider.
 
     Parameters
@@ -49,7 +49,7 @@ def amplitude_spectrum(values: xr.DataArray, window: str = "hann") -> xr.DataArr
     Raises
     ------
     ModelError
-        If there are too few outputs, or the variable is unknown for a time.
+        If there are too few outputs, or values are missing.
 
     Examples
     --------
@@ -91,19 +91,18 @@ def waterfall(values: xr.DataArray, speed: xr.DataArray, pieces: int = 60) -> xr
     speed : DataArray
         Speed of the pulley over the same time, rad/s.
     pieces : int
-        About how many spectra; each is of four times the time that lies between two, and has its trend taken away.
+        Approximate number of spectra; each covers four times the interval between two spectra and is detrended.
 
     Returns
     -------
     DataArray
         Amplitudes in the unit of the variable over ``speed`` (rad/s, its magnitude at the middle of each spectrum) and
-        ``frequency`` (Hz). NaN where the variable is unknown at some time of the spectrum, as where a belt has left a
-        pulley.
+        ``frequency`` (Hz). NaN where values are missing, for example because the belt has left a pulley.
 
     Raises
     ------
     ModelError
-        If there are too few outputs, or the speed stays the same.
+        If there are too few outputs, or the speed is constant.
 
     Examples
     --------
@@ -158,10 +157,10 @@ def overall_level(amplitude: xr.DataArray) -> xr.DataArray:
 def orders(values: xr.DataArray, angle: xr.DataArray, largest: float = 20.0, revolutions: int = 8) -> xr.DataArray:
     """Amplitudes of the orders of a pulley's rotation over its speed.
 
-    The variable is laid out by cubic splines over the pulley's angle, in even steps no larger than the smallest that
-    was recorded (computed order tracking, Fyfe and Munck 1997), and spectra are taken over a number of revolutions: a
-    variable that repeats k times in a revolution has the order k at any speed. The longest part of the run is taken
-    in which the speed stays above a tenth of the largest.
+    The variable is resampled by cubic splines at equal steps of the pulley angle, no larger than the smallest recorded
+    step (computed order tracking, Fyfe and Munck 1997), and spectra are computed over a number of revolutions: k cycles
+    per revolution are order k at any speed. Only the longest part of the run with a speed above a tenth of the maximum
+    is used.
 
     Parameters
     ----------
@@ -172,19 +171,19 @@ def orders(values: xr.DataArray, angle: xr.DataArray, largest: float = 20.0, rev
     largest : float
         Largest order.
     revolutions : int
-        Revolutions in each spectrum; orders are told apart by about two over this number.
+        Revolutions in each spectrum; the resolution is about two orders over this number.
 
     Returns
     -------
     DataArray
         Amplitudes in the unit of the variable over ``speed`` (rad/s, magnitude, mean of the revolution
-        in the middle of each spectrum) and ``order``. NaN where the variable is unknown, as in a waterfall, and where
-        its filter takes amplitudes away.
+        in the middle of each spectrum) and ``order``. NaN where values are missing, as in a waterfall, and above the
+        pass band of the recording filter.
 
     Raises
     ------
     ModelError
-        If the pulley turns too little, its speed stays the same, or there are too few outputs.
+        If the pulley makes too few turns, its speed is constant, or there are too few outputs.
 
     Examples
     --------
@@ -228,7 +227,7 @@ def orders(values: xr.DataArray, angle: xr.DataArray, largest: float = 20.0, rev
 def element_order(drive: Drive, pulley: int) -> float:
     """Order of a pulley's rotation at which elements pass: the elements per turn of the pulley.
 
-    What stands out there and at its multiples belongs to the mesh, not to the drive. On a staying mesh no element
+    Peaks there and at its multiples belong to the mesh, not to the drive. On a staying mesh no element
     passes: then it is infinite.
 
     Parameters

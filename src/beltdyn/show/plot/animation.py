@@ -54,7 +54,7 @@ def animate(
     overwrite : bool
         Replace any regular file, and not only animations of beltdyn.
     start, end : float or str, optional
-        From when to when, such as "0.5 s", or in s; all of the run by default.
+        Time range, such as "0.5 s", or in s; by default the whole run.
     per_turn : int, optional
         Pictures for each turn of the first pulley, in place of `frames`: slow motion in which the eye can follow it.
 

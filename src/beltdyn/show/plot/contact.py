@@ -111,10 +111,10 @@ def _by_pulleys(draw: Callable[..., Axes], run: Result, choice: Choice) -> Figur
 def contact_forces(
     run: Run | StaticResult, pulley: str | int, time: float | None = None, kind: Kind = "normal", ax: Axes | None = None
 ) -> Axes:
-    """Draw the contact forces on the belt from where it enters a pulley to where it leaves.
+    """Draw the contact forces on the belt from the inlet to the outlet of a pulley.
 
-    Dashed lines beside the friction force are what Coulomb friction allows: the belt slides where the
-    force reaches them. Forces that the mesh does not resolve are marked.
+    Dashed lines are the Coulomb limit of the friction force: the belt slides where the force reaches them. Forces that
+    the mesh does not resolve are marked.
 
     Parameters
     ----------
@@ -123,7 +123,7 @@ def contact_forces(
     pulley : str or int
         Name or number of the pulley.
     time : float, optional
-        The instant, s; the output of fields nearest to it is drawn. The last one by default.
+        Time, s; the nearest output along the belt is used. By default the last one.
     kind : {"normal", "friction"}
         Which force. Friction is positive along the counter-clockwise tangent.
     ax : Axes, optional
@@ -173,9 +173,9 @@ def contact_forces(
 def contact_pressure(
     run: Run | StaticResult, pulley: str | int, time: float | None = None, ax: Axes | None = None
 ) -> Axes:
-    """Draw pressure and shear over the angle on a pulley from where the belt enters.
+    """Draw contact pressure and shear over the angle from the inlet of a pulley.
 
-    The shaded part of the arc slides: there friction is fully used. What the mesh does not resolve is marked.
+    The sliding arc, where friction is saturated, is shaded. Stresses that the mesh does not resolve are marked.
 
     Parameters
     ----------
@@ -184,7 +184,7 @@ def contact_pressure(
     pulley : str or int
         Name or number of the pulley.
     time : float, optional
-        The instant, s; the output of fields nearest to it is drawn. The last one by default.
+        Time, s; the nearest output along the belt is used. By default the last one.
     ax : Axes, optional
         Where to draw; a new figure by default.
 

@@ -145,8 +145,8 @@ def _goal_and_numbers(draw: Callable[..., Axes], result: Result, choice: Choice)
 def optimization(result: Result, *, ax: Axes | None = None) -> Axes:
     """Draw the goal of the designs in the order in which they were tried.
 
-    Full circles are designs that keep to all limits, hollow ones violate some, and crosses do not run. The line is the
-    best until then.
+    Filled circles are designs within all limits, hollow circles violate some, and crosses have no steady running. The
+    line is the best design so far.
 
     Parameters
     ----------
@@ -175,14 +175,14 @@ def optimization(result: Result, *, ax: Axes | None = None) -> Axes:
     kept = runs & (beyond <= _KEPT)
     most = str(dataset.attrs["title"]).rpartition(": ")[2].startswith("maximize")
     best = (np.fmax if most else np.fmin).accumulate(np.where(kept, goal, np.nan))
-    ax.step(number, best, where="post", color=INK, linewidth=1.0, label="best until then")
-    ax.plot(number[kept], goal[kept], "o", color=color(0), label="keeps to all limits")
+    ax.step(number, best, where="post", color=INK, linewidth=1.0, label="best so far")
+    ax.plot(number[kept], goal[kept], "o", color=color(0), label="within all limits")
     beside = runs & ~kept
     if beside.any():
         ax.plot(number[beside], goal[beside], "o", mfc="none", color=color(1), label="violates limits")
     if not runs.all():
         level = float(np.nanmax(goal)) if runs.any() else 0.0
-        ax.plot(number[~runs], np.full((~runs).sum(), level), "x", color=color(2), label="does not run")
+        ax.plot(number[~runs], np.full((~runs).sum(), level), "x", color=color(2), label="no steady running")
     unit = str(dataset["requirement_unit"].values[0])
     name = str(dataset["requirement"].values[0]).partition(" ")[2]
     ax.set(xlabel="Design", ylabel=f"{name} [{unit or '1'}]")
@@ -192,14 +192,14 @@ def optimization(result: Result, *, ax: Axes | None = None) -> Axes:
 
 
 def _numbers(result: Result, *, ax: Axes) -> Axes:
-    """Draw where the numbers of the designs are between their bounds."""
+    """Draw the parameters of the designs between their bounds."""
     dataset = result.dataset
     least, largest = dataset["least"].values, dataset["largest"].values
     parts = 100.0 * (dataset["design_number"].values - least) / (largest - least)
     number = np.arange(1, len(parts) + 1)
     for line, name in enumerate(dataset["number"].values):
         ax.plot(number, parts[:, line], "o-", markersize=3, color=color(line), label=str(name))
-    ax.set(xlabel="Design", ylabel="From least to largest [%]", ylim=(-5.0, 105.0))
+    ax.set(xlabel="Design", ylabel="Position between the bounds [%]", ylim=(-5.0, 105.0))
     ax.xaxis.set_major_locator(MaxNLocator(integer=True))
     name_lines(ax)
     return ax

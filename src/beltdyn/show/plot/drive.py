@@ -310,7 +310,7 @@ def configuration(run: Run | StaticResult, time: float | None = None, ax: Axes |
     run : Run or StaticResult
         The run, or the drive at rest.
     time : float, optional
-        The instant, s; the output of fields nearest to it is drawn. The last one by default.
+        Time, s; the nearest output along the belt is used. By default the last one.
     ax : Axes, optional
         Where to draw; a new figure by default.
 

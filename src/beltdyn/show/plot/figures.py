@@ -72,10 +72,10 @@ def save_all(
     run : Result or sequence of Result
         The run or other result; or several, to compare them.
     folder : Path or str
-        Where to write; made if need be.
+        Destination folder; created if necessary.
     figures : iterable of str, optional
-        Names out of `FIGURES`; by default the essential ones, those over time only if there is more than one output,
-        and of several results those that compare them.
+        Names from `FIGURES`; by default the essential ones (over time only if there is more than one output), or for
+        several results those that compare them.
     pulley : str or int, optional
         Name or number of the pulley of hub loads and contact, all by default, and of the speed in a sweep, by default
         the one that was swept, or else the first.

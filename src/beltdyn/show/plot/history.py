@@ -40,7 +40,7 @@ _WAVES = 5.0
 def speeds(run: Run, ax: Axes | None = None) -> Axes:
     """Draw the speeds of the pulleys over time, in rad/s and rpm, and those of the shafts behind hub chains.
 
-    Shaded where the belt slides through on a pulley.
+    Gross slip is shaded.
 
     Parameters
     ----------
@@ -100,7 +100,7 @@ def torques(run: Run, ax: Axes | None = None) -> Axes:
 def span_tensions(run: Run, ax: Axes | None = None) -> Axes:
     """Draw the tensions of the spans over time, marked where the mesh does not resolve them.
 
-    Shaded where the belt slides through on a pulley or goes slack, and where a tensioner lies on a stop.
+    Gross slip, a slack span and a tensioner on a stop are shaded.
 
     Parameters
     ----------
@@ -131,7 +131,7 @@ def span_tensions(run: Run, ax: Axes | None = None) -> Axes:
 def energy(run: Run, ax: Axes | None = None) -> Axes:
     """Draw the energy balance over time: work done on the drive, energy stored, and the sum of all losses.
 
-    What stays below a hundredth of the largest energy is left out.
+    Energies below a hundredth of the largest are omitted.
 
     Parameters
     ----------
@@ -166,7 +166,7 @@ def energy(run: Run, ax: Axes | None = None) -> Axes:
             _line(ax, values, name, number, style)
     ax.set(xlabel=label(run.dataset["time"]), ylabel=f"Energy [{unit(run.dataset[_ENERGIES[0]])}]")
     closure = abs(largest_closure(run.dataset).error)
-    note(ax, f"energy balance closes within {closure:.1e} of the energy put in")
+    note(ax, f"energy balance closes within {closure:.1e} of the energy input")
     name_lines(ax)
     return ax
 
@@ -322,7 +322,7 @@ def tension_spectrum(run: Run, start: float | None = None, end: float | None = N
     run : Run
         The run.
     start, end : float, optional
-        From when to when, s; by default the second half of the run, when it is more likely to be steady.
+        Time range, s; by default the second half of the run, when it is more likely to be steady.
     ax : Axes, optional
         Where to draw; a new figure by default.
 
@@ -334,7 +334,7 @@ def tension_spectrum(run: Run, start: float | None = None, end: float | None = N
     Raises
     ------
     ModelError
-        If the run holds too few outputs, or nothing for spectra.
+        If the run holds too few outputs, or none recorded for spectra.
 
     Examples
     --------

@@ -43,8 +43,8 @@ _ARROW = "-|>,head_length=5,head_width=2.4"
 def layout(drive: Drive, installation: Installation | None = None, ax: Axes | None = None) -> Axes:
     """Draw belt and pulleys at rest: spans and their lengths, wrap angles, directions of rotation, tensioners.
 
-    A tensioner is drawn with its arm and pivot, or its line, an arrow the way in which it tensions the belt, and its
-    pulley at both stops, dashed.
+    A tensioner is drawn with its arm and pivot, or its line, an arrow in its tensioning direction, and its pulley at
+    both stops (dashed).
 
     Parameters
     ----------

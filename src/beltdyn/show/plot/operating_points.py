@@ -68,7 +68,9 @@ def tensioner_sheet(result: Result, variable: str = "tension", *, ax: Axes | Non
     on = np.isfinite(size) & np.isfinite(dataset["belt_length"].values)
     if on.any():
         line = np.linspace(place[on].min(), place[on].max(), _POINTS)
-        ax.plot(scale * line, [_by_hand(result, number, one, variable) for one in line], color=INK, label="by hand")
+        ax.plot(
+            scale * line, [_by_hand(result, number, one, variable) for one in line], color=INK, label="virtual work"
+        )
     for kind, (state, at, value) in enumerate(zip(dataset["state"].values, place, size, strict=True)):
         if np.isfinite(value):
             ax.plot(scale * at, value, "o", color=color(kind), label=str(state))

@@ -44,7 +44,7 @@ def _losses_of_several(runs: Sequence[Run], ax: Axes | None) -> Axes:
         for place, power in zip(places, powers, strict=True):
             _write(ax, balance, power, (max(power, 0.0), place), _SMALL)
     _frame(ax, causes)
-    ax.set_xlabel("Power lost [W] and its share of the power put in, means at the end of each run")
+    ax.set_xlabel("Power lost [W] and its share of the power input, means at the end of each run")
     name_lines(ax)
     return ax
 
@@ -92,7 +92,7 @@ def losses(run: Run, ax: Axes | None = None) -> Axes:
             ax.barh(row, power, color="0.55", height=0.6)
         _write(ax, balance, power, (max(ends), row))
     _frame(ax, list(drawn))
-    ax.set_xlabel(f"Power lost [W] and its share of the power put in, mean from {over.start:.4g} to {over.end:.4g} s")
+    ax.set_xlabel(f"Power lost [W] and its share of the power input, mean from {over.start:.4g} to {over.end:.4g} s")
     name_lines(ax)
     return ax
 
@@ -118,7 +118,7 @@ def _frame(ax: Axes, causes: Sequence[str]) -> None:
 
 
 def _write(ax: Axes, balance: Balance, power: float, place: tuple[float, float], size: float | None = None) -> None:
-    """Write a power, W, and its share of what is put in, behind a bar."""
+    """Write a power, W, and its share of the power input, behind a bar."""
     share = f" ({power / balance.power_in:z.2%})" if balance.power_in > 0.0 else ""
     ax.annotate(f"{power:.4g} W{share}", place, xytext=(4, 0), textcoords="offset points", va="center", fontsize=size)
 
@@ -143,11 +143,11 @@ _TOP: dict[str, Any] = {"ha": "right", "va": "top", "fontsize": 8}
 
 @figure(over_turns, compares=True)
 def slip(run: Run, ax: Axes | None = None) -> Axes:
-    """Draw the slip of the pulleys against the driver over time, and dotted the part of it that is elastic creep.
+    """Draw the slip of the pulleys against the driver over time, with its elastic creep dotted.
 
-    Means over a turn of the belt and a period of what repeats besides; the numbers are those of the summary. Where
-    whole arcs slide, all creep is dotted, and the time is shaded. The scale is that of the running drive: at the start
-    slip may go beyond it.
+    Values are means over a turn of the belt and a period of other excitation; the numbers are those of the summary.
+    During gross slip all creep is dotted, and the time is shaded. The axis is scaled to the running drive and may cut
+    off slip at the start.
 
     Parameters
     ----------
@@ -199,10 +199,10 @@ def _after_start(run: Run, latest: float) -> float:
 
 @figure(over_time, compares=True)
 def slip_safety(run: Run, ax: Axes | None = None) -> Axes:
-    """Draw the factor on all loads at which the belt slides through on each pulley, over time; below 1 it slides.
+    """Draw the factor on all loads at which each pulley reaches gross slip, over time; below 1 the belt slides.
 
-    Pulleys that carry little load, with a slip safety mostly above ten, are named and not drawn. A vibrating slip
-    safety is drawn as a band from its least to its largest value within a hundredth of the time, and its median.
+    Lightly loaded pulleys, with a slip safety mostly above ten, are named but not drawn. An oscillating slip safety is drawn as a
+    band between its minimum and maximum within a hundredth of the time, with its median.
 
     Parameters
     ----------
@@ -244,7 +244,7 @@ def slip_safety(run: Run, ax: Axes | None = None) -> Axes:
 
 @figure(over_turns, compares=True)
 def powers(run: Run, ax: Axes | None = None) -> Axes:
-    """Draw the power that comes in at each shaft over time; negative where a load takes it out.
+    """Draw the power into the drive at each shaft over time; negative at a load.
 
     Parameters
     ----------
@@ -280,9 +280,9 @@ def _one_polar_panel(draw: Callable[..., Axes], run: Run, choice: Choice) -> Fig
 
 @figure(over_time, _one_polar_panel)
 def hub_loads(run: Run, pulley: str | int | None = None, ax: Axes | None = None) -> Axes:
-    """Draw the forces of the belt on pulleys over their direction, as they wander in the plane.
+    """Draw the forces of the belt on pulleys over their direction (polar diagram).
 
-    A dot marks the last output. What happened before the last half of the run is drawn pale.
+    A dot marks the last output. The first half of the run is drawn pale.
 
     Parameters
     ----------
@@ -332,7 +332,7 @@ def hub_loads(run: Run, pulley: str | int | None = None, ax: Axes | None = None)
 
 @figure(over_time, compares=True)
 def hub_load_sizes(run: Run, ax: Axes | None = None) -> Axes:
-    """Draw the sizes of the hub loads over time; the numbers are their means at the end of the run.
+    """Draw the magnitudes of the hub loads over time; the numbers are their means at the end of the run.
 
     Parameters
     ----------

@@ -20,7 +20,7 @@ _LARGEST = 0.01
 def stretch(entry: Entry, name: str = "", ax: Axes | None = None) -> Axes:
     """Draw the tension of a catalogue belt over its strain, with the measured points.
 
-    Dashed is the straight line with which the curve begins.
+    The dashed line is the initial slope.
 
     Parameters
     ----------

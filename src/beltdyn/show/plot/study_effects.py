@@ -81,7 +81,7 @@ _TICKS = 5
 
 @figure(suits("tornado"), panel_for_each_result, of=(STUDY,))
 def tornado(result: Result, of: str | None = None, *, ax: Axes | None = None) -> Axes:
-    """Draw between which values a result lies while one number varies and the others are as in the drive file.
+    """Draw the range of a result as each parameter varies while the others keep their values of the drive file.
 
     Parameters
     ----------
@@ -100,7 +100,7 @@ def tornado(result: Result, of: str | None = None, *, ax: Axes | None = None) ->
     Raises
     ------
     ModelError
-        If there is no such result, or several numbers vary at a time.
+        If there is no such result, or several parameters vary at a time.
 
     Examples
     --------
@@ -142,7 +142,7 @@ def tornado(result: Result, of: str | None = None, *, ax: Axes | None = None) ->
 
 @figure(suits("indices"), panel_for_each_result, of=(STUDY,))
 def sobol_indices(result: Result, of: str | None = None, *, ax: Axes | None = None) -> Axes:
-    """Draw what part of the variance of a result is due to each number: by itself, and with all others.
+    """Draw the share of each parameter in the variance of a result, alone and with interactions.
 
     Bars are first-order and total Sobol indices, with 95 % confidence intervals.
 
@@ -163,7 +163,7 @@ def sobol_indices(result: Result, of: str | None = None, *, ax: Axes | None = No
     Raises
     ------
     ModelError
-        If there is no such result, or the points are no such design.
+        If there is no such result, or the study has another sampling.
 
     Examples
     --------
@@ -184,12 +184,12 @@ def sobol_indices(result: Result, of: str | None = None, *, ax: Axes | None = No
     first, total, first_error, total_error = indices_of(result.dataset[name].values[:, None], len(names))
     places = np.arange(len(names))
     for side, values, errors, told in (
-        (0.2, first[0], first_error[0], "by itself"),
-        (-0.2, total[0], total_error[0], "with others"),
+        (0.2, first[0], first_error[0], "alone"),
+        (-0.2, total[0], total_error[0], "with interactions"),
     ):
         ax.barh(places + side, values, 0.38, xerr=errors, capsize=2, color=color(int(side < 0.0)), label=told)
     ax.set_yticks(places, [labelled(result.dataset[one], _NARROW) for one in names], fontsize=8)
     ax.set_xlim(left=min(0.0, float(np.nan_to_num(first[0]).min()) - 0.05))
-    ax.set_xlabel(f"Part of the variance of\n{name}", fontsize=9)
+    ax.set_xlabel(f"Share of the variance of\n{name}", fontsize=9)
     name_lines(ax)
     return ax

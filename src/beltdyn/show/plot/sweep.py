@@ -135,8 +135,8 @@ def waterfall(
     """Draw short-time spectra of a variable over the speed of a pulley.
 
     Amplitudes are those of sinusoids (peak, not RMS). Thin lines are orders of the pulley's rotation. Dashed lines are
-    where elements of the mesh pass, and twice and three times as often: what lies on them belongs to the mesh.
-    Variables that are recorded for spectra are drawn up to where their filter keeps amplitudes.
+    the frequency at which elements of the mesh pass and its double and triple: peaks on them belong to the mesh.
+    Variables recorded for spectra are drawn within the pass band of their filter.
 
     Parameters
     ----------
@@ -208,9 +208,8 @@ def orders(
     """Draw the amplitudes of the strongest orders of a pulley's rotation over its speed, and the overall level.
 
     Amplitudes are those of sinusoids (peak, not RMS); the overall level is the root mean square of all frequencies
-    times the square root of 2, so that a single order lies on it. Orders at which elements of the mesh pass are named,
-    and drawn thin and grey. Variables that are recorded for spectra are drawn up to the speed at which their filter
-    keeps the order.
+    times the square root of 2, so that a single order lies on it. Orders at which elements of the mesh pass are
+    labeled, thin and gray. Variables recorded for spectra are drawn within the pass band of their filter.
 
     Parameters
     ----------
@@ -221,7 +220,7 @@ def orders(
     of : str or int
         Name or number of the one to draw.
     pulley : str or int
-        Name or number of the pulley whose rotation counts.
+        Name or number of the pulley that defines the orders.
     which : sequence of float, optional
         Orders to draw; the strongest by default.
     ax : Axes, optional

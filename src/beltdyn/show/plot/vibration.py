@@ -278,7 +278,7 @@ def campbell(result: Result, ax: Axes | None = None) -> Axes:
     """Draw a Campbell diagram: frequencies of modes over speed, lines of excitations, and where they meet.
 
     Modes have the color of their kind, and their number at the right end. Circles are critical speeds, filled where the
-    damping ratio is below 0.1. Crosses mark what grows by itself.
+    damping ratio is below 0.1. Crosses mark unstable modes.
 
     Parameters
     ----------
@@ -314,7 +314,7 @@ def campbell(result: Result, ax: Axes | None = None) -> Axes:
 
 @figure(of=("campbell",))
 def mode_damping(result: Result, ax: Axes | None = None) -> Axes:
-    """Draw the damping ratios of modes over speed; crosses mark what grows by itself.
+    """Draw the damping ratios of modes over speed; crosses mark unstable modes.
 
     Parameters
     ----------
@@ -368,7 +368,7 @@ def _legend(ax: Axes, result: Result, others: list[Line2D]) -> None:
     there = [kind for kind in KINDS if kind in result.dataset["kind"].values]
     lines = [Line2D([], [], color=color(KINDS.index(kind)), label=kind) for kind in there]
     if np.any(result.dataset["growth_rate"].values > 0.0):
-        others = [*others, Line2D([], [], color=INK, marker="x", linestyle="", markersize=5, label="grows by itself")]
+        others = [*others, Line2D([], [], color=INK, marker="x", linestyle="", markersize=5, label="unstable (grows)")]
     name_lines(ax, [*lines, *others])
 
 
@@ -405,8 +405,8 @@ def _shade_beyond_range(ax: Axes, result: Result, speed: FloatArray) -> None:
 def response(result: Result, variable: str = "span_tension", of: str | int = 0, *, ax: Axes | None = None) -> Axes:
     """Draw the amplitudes of a result over speed, a line for each excitation, and their sum.
 
-    The sum is that of all amplitudes, as if they met. Dashed lines are the same orders of a run-up, and circles those
-    that were measured, where they were put beside. Shaded speeds are beyond the range of a linear response.
+    The sum of all amplitudes is an upper bound. Dashed lines are the same orders in a run-up, circles are measured
+    amplitudes, if given to `response`. Shaded speeds are beyond the range of a linear response.
 
     Parameters
     ----------
@@ -427,7 +427,7 @@ def response(result: Result, variable: str = "span_tension", of: str | int = 0, 
     Raises
     ------
     ModelError
-        If there is no such variable, or nothing of that name.
+        If there is no such variable, span, pulley or tensioner.
 
     Examples
     --------

@@ -124,16 +124,16 @@ _SAYS_WHO_MADE_IT = f'<meta name="generator" content="{MARK} report">'
 def write_report(results: Result | Sequence[Result], path: Path | str, overwrite: bool = False) -> Path:
     """Write a report of one or several results as a self-contained HTML page.
 
-    It shows the numbers that decide about the drive beside the limits that its file states, warnings with their
-    remedies, the drive moving, figures that zoom and read out, tables, where the result comes from, and the drive file.
-    It prints, and reads without JavaScript; nothing is fetched from a network.
+    It shows the key numbers beside the limits of the drive file, warnings with remedies, the moving drive, interactive
+    figures, tables, the provenance, and the drive file. It can be printed and read without JavaScript; nothing is
+    loaded from a network.
 
     Parameters
     ----------
     results : Result or sequence of Result
         A run, or the result of another analysis; or several, to compare them.
     path : Path or str
-        The HTML file; a report of beltdyn that is there is replaced.
+        The HTML file; an existing report of beltdyn is replaced.
     overwrite : bool
         Replace any regular file.
 

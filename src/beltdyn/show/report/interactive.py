@@ -21,7 +21,7 @@ class InteractiveFigures:
     Parameters
     ----------
     page : str
-        A page that needs nothing but a browser.
+        A self-contained HTML page.
     names : tuple of str
         Names of the figures, in words.
     height : int
@@ -53,8 +53,8 @@ def interactive(results: Result | Sequence[Result], *names: str) -> InteractiveF
     Returns
     -------
     InteractiveFigures
-        What Jupyter shows as charts, without a network. It holds the charting library, 1.3 MB, so show what you
-        need in one cell.
+        An object that Jupyter displays as charts, offline. It contains the charting library (1.3 MB), so show all
+        figures in one cell.
 
     Raises
     ------

@@ -107,7 +107,7 @@ class Motion extends Picture {
     const fastest = Math.max(...this.data.speed.map(Math.abs)) / (2 * Math.PI);
     const wanted = RATES.find((rate) => rate * fastest <= 0.7) ?? RATES[RATES.length - 1];
     for (const rate of RATES) {
-      const words = rate === 1 ? "as it is" : `1/${Math.round(1 / rate)}`;
+      const words = rate === 1 ? "real time" : `1/${Math.round(1 / rate)}`;
       this.rates.add(new Option(words, rate, rate === wanted, rate === wanted));
     }
     this.kinds.onchange = () => { this.colour = this.kinds.value; this.label(); this.draw(); };

@@ -1,4 +1,4 @@
-// Modes of a drive, swinging.
+// Vibration modes of a drive, animated.
 
 const PERIOD = 1.5; // s, of any mode
 

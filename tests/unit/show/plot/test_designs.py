@@ -34,10 +34,10 @@ def result(drive: Drive) -> Result:
 def test_the_best_until_then_keeps_to_limits(result: Result) -> None:
     ax = plot.optimization(result)
     lines = {str(line.get_label()): np.asarray(line.get_ydata(), dtype=float) for line in ax.get_lines()}
-    np.testing.assert_array_equal(lines["best until then"], [900.0, 900.0, 900.0, 700.0])
-    np.testing.assert_array_equal(lines["keeps to all limits"], [900.0, 700.0])
+    np.testing.assert_array_equal(lines["best so far"], [900.0, 900.0, 900.0, 700.0])
+    np.testing.assert_array_equal(lines["within all limits"], [900.0, 700.0])
     np.testing.assert_array_equal(lines["violates limits"], [600.0])
-    assert len(lines["does not run"]) == 1
+    assert len(lines["no steady running"]) == 1
     assert ax.get_ylabel() == "largest hub_load [N]"
 
 

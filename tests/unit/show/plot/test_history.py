@@ -32,7 +32,7 @@ def test_histories(run: Run, ax: Axes, draw: Callable[..., Axes], variable: str,
 def test_energy(run: Run, ax: Axes) -> None:
     plot.energy(run, ax)
     assert ax.get_ylabel() == "Energy [J]"
-    assert [text.get_text() for text in ax.texts] == ["energy balance closes within 1.0e-04 of the energy put in"]
+    assert [text.get_text() for text in ax.texts] == ["energy balance closes within 1.0e-04 of the energy input"]
     assert {str(line.get_label()) for line in ax.lines} >= {"Kinetic energy", "Work of the drivers", "Losses"}
 
 

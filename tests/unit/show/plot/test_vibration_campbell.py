@@ -37,7 +37,7 @@ def test_damping_and_what_grows(found: bd.Result, ax: Axes) -> None:
     assert len(np.asarray(crosses[0].get_xdata())) == 2
     legend = ax.get_legend()
     assert legend is not None
-    assert "grows by itself" in [one.get_text() for one in legend.get_texts()]
+    assert "unstable (grows)" in [one.get_text() for one in legend.get_texts()]
 
 
 def test_both_on_a_page(found: bd.Result, tmp_path: Path) -> None:

@@ -101,7 +101,7 @@ MEANINGS = {
     "Kinds of modes": {"modes", "campbell"},
     "Critical speed": {"campbell"},
     "<dt>Amplitude": {"response"},
-    "Tension that an arm holds": {"tensioner"},
+    "Tension set by a tensioner": {"tensioner"},
 }
 """What is explained, and in reports of which kinds."""
 
