@@ -213,7 +213,7 @@ def test_an_optimisation_finds_a_drive_file(shoot: Shoot, open_page: Open, folde
     best = tomllib.loads(Path(kept.value.path()).read_text(encoding="utf-8"))
     assert 150.0 < float(best["belt"]["installed_tension"].removesuffix(" N")) < 300.0
     page.get_by_role("button", name="Show report").first.click()
-    page.frame_locator("iframe.bd-report").get_by_role("heading", name="Where it comes from").wait_for()
+    page.frame_locator("iframe.bd-report").get_by_role("heading", name="Provenance").wait_for()
 
 
 def test_wrong_values_and_layouts_are_told_and_undone(shoot: Shoot, open_page: Open) -> None:

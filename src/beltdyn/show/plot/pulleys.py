@@ -201,8 +201,8 @@ def _after_start(run: Run, latest: float) -> float:
 def slip_safety(run: Run, ax: Axes | None = None) -> Axes:
     """Draw the factor on all loads at which each pulley reaches gross slip, over time; below 1 the belt slides.
 
-    Lightly loaded pulleys, with a slip safety mostly above ten, are named but not drawn. An oscillating slip safety is drawn as a
-    band between its minimum and maximum within a hundredth of the time, with its median.
+    Lightly loaded pulleys, with a slip safety mostly above ten, are named but not drawn. An oscillating slip safety is
+    drawn as a band between its minimum and maximum within a hundredth of the time, with its median.
 
     Parameters
     ----------
