@@ -17,7 +17,7 @@ import pytest
 
 playwright = pytest.importorskip("playwright.sync_api", reason="pip install playwright")
 
-PATIENCE = 90_000
+PATIENCE = 300_000
 """Time within which the page answers, on a machine that has much else to do too, ms."""
 _NAMES = ("chromium", "chromium-browser", "google-chrome", "google-chrome-stable", "chrome")
 

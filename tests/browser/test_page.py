@@ -134,7 +134,7 @@ def test_a_newcomer_goes_from_an_empty_canvas_to_a_report(shoot: Shoot, open_pag
     page.reload()
     page.locator(".bd-live").wait_for()  # the run goes on
     page.get_by_role("button", name="Cancel").click()
-    page.get_by_text("run: interrupted").wait_for()
+    page.get_by_text("simulate: interrupted").wait_for()
     expect(page.locator(".bd-live")).to_have_count(0)
     page.get_by_role("tab", name="simulation").click()
     enter(page, "duration [s]", "30 ms")

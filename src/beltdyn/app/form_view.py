@@ -25,7 +25,7 @@ class Row(NamedTuple):
     depth : int
         How deep it stands.
     location : tuple
-        Where it stands in the drive file: of "add" the list, of "more" the group.
+        Its location in the drive file: for "add" the list, for "more" the group.
     field : Field or None
         The key; none of "more" and "entry".
     kinds : tuple of str

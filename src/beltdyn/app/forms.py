@@ -33,7 +33,7 @@ class Field(NamedTuple):
     Attributes
     ----------
     location : tuple
-        Where it stands in the drive file.
+        Its location in the drive file.
     form : str
         What is given: a text, a number with or without unit, one of some choices, yes or no, a point, several numbers,
         a group of keys, or a list of groups.
@@ -156,12 +156,12 @@ def _tagged(locations: ErrorLocation, data: Mapping[str, Any], location: Locatio
 
 
 def _parts(schema: Mapping[str, Any]) -> tuple[str, ...]:
-    """The part that may stand in place of a choice; none where there is none."""
+    """The part that may replace a choice; None if there is none."""
     return tuple(name for name, option in option_names(schema).items() if "$ref" in option)
 
 
 def _group_name(location: Location) -> str:
-    """The name of a group that stands in the drive itself."""
+    """The name of a group at the top level of the drive."""
     return str(location[0]) if 1 <= len(location) <= 2 and all(isinstance(one, int) for one in location[1:]) else ""
 
 

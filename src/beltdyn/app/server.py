@@ -98,7 +98,7 @@ class Guard:
 
 
 def _bounded(receive: Receive) -> Receive:
-    """Cut off a request that does not say how long it is, and goes on too long."""
+    """Cut off a request of unstated length that exceeds the limit."""
     taken = 0
 
     async def bounded() -> Message:

@@ -181,7 +181,7 @@ def _numbers(end: "Ending") -> tuple[str, str, str, str]:
 
 
 def _write_all_extras(ends: Mapping[Path, "Ending"], results: Mapping[Path, Path], extras: Extras, force: bool) -> None:
-    """Write tables and reports of all drives of which something was computed."""
+    """Write tables and reports of all drives with results."""
     from beltdyn.results import open_result
 
     for file, end in ends.items():

@@ -100,7 +100,7 @@ def require_output(path: Path, files: Iterable[Path], extras: Extras, force: boo
 
 
 def write_extras(result: "Result", path: Path, extras: Extras, force: bool) -> None:
-    """Write tables and a report beside a result file if asked for, and show their names."""
+    """Write the requested tables and report beside a result file, and show their names."""
     from beltdyn.results import open_result
     from beltdyn.results.tables import tables_folder, write_csv
 
@@ -125,7 +125,7 @@ def analyse_to(
     Raises
     ------
     SimulationError
-        If the analysis cannot go on.
+        If the analysis fails.
     """
     from beltdyn.results.atomic import locked_output, stamp
 

@@ -278,7 +278,7 @@ class DriveSlave:
 
     @staticmethod
     def _fmu_state_from_bytes(state: bytes) -> ComponentState | ModelError:
-        """The state of some bytes; what is wrong with them is told where it is set."""
+        """The state from bytes; errors are reported when it is set."""
         try:
             return ComponentState.from_bytes(state)
         except ModelError as error:

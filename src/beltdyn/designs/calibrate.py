@@ -28,9 +28,9 @@ from beltdyn.solvers.progress import Report
 _TOLERANCE = 1e-8
 """Of numbers, goal and gradient, at which the search ends."""
 _LEAST_SINGULAR = 1e-5
-"""Singular value over the largest one, below which numbers cannot be told apart: derivatives are no more exact."""
+"""Relative singular value below which parameters cannot be separated: the accuracy of derivatives."""
 _INVOLVED = 0.1
-"""Part of a number in a change of all that measurements do not notice, from which it is one of those not told."""
+"""Component of a parameter in a singular direction above which it counts as unidentified."""
 
 
 class Fit(NamedTuple):
@@ -38,7 +38,7 @@ class Fit(NamedTuple):
 
     numbers: FloatArray
     errors: FloatArray
-    """Their standard errors, shape (n,); infinite where measurements do not tell."""
+    """Their standard errors, shape (n,); infinite for unidentified parameters."""
     correlation: FloatArray
     """Shape (n, n)."""
     reach: float
@@ -47,7 +47,7 @@ class Fit(NamedTuple):
     spread: float
     """Root mean square of residuals with the degrees of freedom that are left; NaN where none is left."""
     untold: tuple[int, ...]
-    """Which numbers measurements do not tell, alone or from each other."""
+    """Parameters that the measurements cannot identify, alone or separately."""
     interrupted: bool = False
     """Whether the search was ended before the numbers fitted best."""
 

@@ -25,7 +25,7 @@ CHANGE = 1e-5
 
 
 class SmallChanges:
-    """Makes neighbours of a drive; where a tension at rest is asked for, the belt's length, or the take-up, follows.
+    """Makes neighbours of a drive; with an installed tension the belt's length, or the take-up, follows.
 
     Parameters
     ----------
@@ -69,7 +69,7 @@ class SmallChanges:
 _DIGITS = 6
 """Of numbers, over the distance of their bounds."""
 _BEHIND = 1e-2
-"""Part of the way to another design, as far as which before its start the tangent stands for solutions."""
+"""Share of the way to another design over which the tangent extrapolates solutions backwards."""
 
 
 @dataclass(frozen=True)

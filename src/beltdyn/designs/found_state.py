@@ -278,7 +278,7 @@ class FoundState(ABC):
             count *= 2
 
     def _mode_of(self, variable: str, label: str) -> Mode | None:
-        """The mode of which a variable of `OF_MODES` is; that of a neighbour is chosen where it is followed from."""
+        """The mode of a variable of `OF_MODES`; if followed from a neighbour, the mode of the neighbour."""
         near = self._near if isinstance(self._modes, FollowedModes) else None
         chosen = (near or self)._chosen_mode(variable, label)
         return None if chosen is None else self._modes.like(chosen)

@@ -49,7 +49,7 @@ class Aims:
         return int(self.watched[limit.result].at.sum())
 
     def goal_values(self, values: FloatArray) -> FloatArray:
-        """The numbers of which the goal is the largest: results of the goal with their sign, or their mean.
+        """The values whose maximum is the goal: results of the goal with their sign, or their mean.
 
         Parameters
         ----------

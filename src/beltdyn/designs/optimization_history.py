@@ -31,7 +31,7 @@ _MARK = "# Found by `beltdyn "
 
 
 def headed(text: str, analysis: str) -> str:
-    """The text of a drive with a first line that tells where it comes from."""
+    """The text of a drive with its origin in the first line."""
     return f"{_MARK}{analysis}`.\n{text.removeprefix(_first_line(text))}"
 
 
@@ -70,7 +70,7 @@ def _is_found(path: Path) -> bool:
 
 
 _KEPT = 1e-4
-"""Part of a limit by which it may be violated."""
+"""Permitted violation of a limit, relative."""
 
 _NUMBER, _REQUIREMENT, _DESIGN = ("number",), ("requirement",), ("design",)
 _BOTH = ("point", "result")
@@ -222,7 +222,7 @@ class History:
         }
 
     def _within_tolerance(self, best: Design) -> str:
-        """How far the best design is beyond a limit by which it counts as kept."""
+        """Violation of a limit by the best design, within the tolerance."""
         beyond = self._aims.violation(best.values)
         if not 0.0 < beyond <= _KEPT:
             return ""

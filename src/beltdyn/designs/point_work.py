@@ -47,7 +47,7 @@ class Columns(NamedTuple):
     values: dict[str, float]
     units: dict[str, str]
     missing: str
-    """Which results that are asked for there are not, as a sentence; empty where all are there."""
+    """The requested results that do not exist, as a sentence; empty if all exist."""
 
 
 def columns_of(result: Result, wanted: Sequence[str]) -> Columns:
@@ -113,7 +113,7 @@ def _label(label: object) -> str:
 
 
 def require_reductions(wanted: Sequence[str]) -> None:
-    """Make sure that results that are asked for are names, or known reductions of one."""
+    """Check that the requested results are names, or known reductions of one."""
     for text in wanted:
         call = _CALL.fullmatch(text.strip())
         if "(" in text and (call is None or call["reduction"] not in _REDUCTIONS):

@@ -39,9 +39,9 @@ from beltdyn.vibration.modes import REST, STEADY
 # The numbers of a drive file that can be changed a little
 
 PART = 0.01
-"""Of a number, for which effects are told."""
+"""Relative change of a parameter to which effects refer."""
 _MOVE = 1e-3
-"""Of a coordinate, whose zero is a matter of convention, for which effects are told, m."""
+"""Change of a coordinate, whose zero is arbitrary, to which effects refer, m."""
 _COORDINATES = ("center", "pivot", "point")
 _KEPT = ("simulation", "steady", "limits", "contact.stiffness", "contact.damping")
 """Where numbers stand that have no effect on a state that stays, or are those of the method."""
@@ -56,7 +56,7 @@ class Number(NamedTuple):
     """As `Drive.with_` takes it."""
     value: float
     step: float
-    """Change for which effects are told."""
+    """Change to which effects refer."""
 
 
 def numbers_of(part: Part, path: str = "") -> Iterator[Number]:
@@ -83,7 +83,7 @@ def _numbers_in(value: object, path: str) -> Iterator[Number]:
 
 
 def chosen_numbers(drive: Drive, numbers: str | None, tolerances: Mapping[str, float]) -> list[Number]:
-    """The numbers that are asked for; those with tolerances are numbers of the drive whatever they stand for.
+    """The requested parameters; those with tolerances always count as parameters of the drive.
 
     Beside numbers that are given there are those that follow from them and may be given in their place, such as the
     axial stiffness of a belt.

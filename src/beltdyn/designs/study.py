@@ -140,7 +140,7 @@ class Dispatch:
             self._take(found.outcomes, found.units)
 
     def _lose(self, chunk: Chunk) -> None:
-        """Have points computed again whose process was killed; one of which that happens too often has failed."""
+        """Recompute points whose process was killed; a point that kills too many processes has failed."""
         for point in chunk:
             self._attempts[point] = attempts = self._attempts.get(point, 0) + 1
             if attempts < _ATTEMPTS:

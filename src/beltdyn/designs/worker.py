@@ -164,7 +164,7 @@ def wait_for_the_end() -> None:
 
 
 def heeding(tell: Callable[[Progress], None] | None = None) -> Callable[[Progress], None]:
-    """What an analysis tells of its progress, which is ended when the parent says so."""
+    """Progress of an analysis, which ends it on request of the parent."""
 
     def heed(progress: Progress) -> None:
         if tell is not None:
@@ -205,7 +205,7 @@ def analyse(place: int, file: Path, drive: Drive | Run, work: Work) -> Ending:
 
 
 def _kept(file: Path, error: str) -> Ending:
-    """How an analysis ended that could not go on, with what it left."""
+    """How a failed analysis ended, with its partial results."""
     try:
         found = open_result(file)
         with closing(found.dataset):

@@ -91,7 +91,7 @@ class CurveMotion(NamedTuple):
 
 
 class PointDamping(NamedTuple):
-    """Factors of a point, dampings times the length of belt that it stands for, and those of the tangent."""
+    """Factors of a point, dampings times the length of belt that it represents, and those of the tangent."""
 
     axial: float
     """A, N s m."""
@@ -242,7 +242,7 @@ _LANES = 16
 
 
 class Density(NamedTuple):
-    """First and second derivatives of an energy density, each times the length of belt that a point stands for."""
+    """First and second derivatives of an energy density, each times the length of belt that a point represents."""
 
     g: float
     c: float

@@ -58,7 +58,7 @@ class _Sealing:
 
 
 def _register(choice: ByType) -> None:
-    """Tell Numba which kernel a choice by type stands for."""
+    """Tell Numba which kernel a choice by type selects."""
     overload(choice, jit_options=OPTIONS, strict=False)(
         lambda subject, *rest: choice.kernel_for(subject, *rest).py_func
     )

@@ -120,7 +120,7 @@ def _alone(entry: Path | None) -> Iterator[None]:
 
 
 def choice_type(kernel_for: Callable[..., Any]) -> Any:
-    """Type of a function that stands for several kernels."""
+    """Type of a function with several kernels."""
     return _ChoiceType(_Choice(kernel_for))
 
 

@@ -126,7 +126,7 @@ def balance_tensioners(
     Raises
     ------
     ValueError
-        If a tensioner finds no balance, or no stable one at a tension that is asked for.
+        If a tensioner has no equilibrium, or no stable one at the installed tension.
     """
     return _balanced(_Layout(path, belt, contact, tuple(carriers)))
 

@@ -168,7 +168,7 @@ def example(name: str) -> Drive:
     Parameters
     ----------
     name
-        Such as "accessory_drive"; a hyphen may stand for each underscore.
+        Such as "accessory_drive"; hyphens may replace underscores.
 
     Returns
     -------

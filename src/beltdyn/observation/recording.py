@@ -1,4 +1,4 @@
-"""From states to results: observe what the integrator hands out, record it, and tell of progress."""
+"""From states to results: observe the states of the integrator, record outputs, and report progress."""
 
 import time
 from collections.abc import Callable, Mapping
@@ -32,9 +32,9 @@ from beltdyn.system.state import laid
 # What makes the steps of a simulation as short as they are
 
 _MANY = 0.1
-"""Share of steps tried in vain from which on they are what makes a run long."""
+"""Share of rejected steps above which they dominate the computing time."""
 _GENTLER = 10.0
-"""Factor on the slip with which friction takes hold, by which a run is to be quicker."""
+"""Factor on the slip velocity at saturation in the advice for a faster run."""
 _NEAR = 0.4
 """Mean step over a bound from which on the bound is felt."""
 
@@ -112,7 +112,7 @@ _GROUP = 64
 _GIVEN = ("_prepared", "_system", "_title", "_about", "_instants", "statistics", "watch", "integrator")
 _GROWING = ("_filter", "_filtered", "_observer", "_findings", "_before", "_done", "_written", "_step", "_channels")
 _KEPT = _GIVEN + _GROWING
-"""What a recording that is gone on with takes over."""
+"""The state of a recording for its continuation."""
 
 
 class Recording:
@@ -182,13 +182,13 @@ class Recording:
         self._cpu_started, self._cpu_ended = time.process_time(), 0.0
 
     def _mesh(self) -> dict[str, Any]:
-        """Attributes that tell of the mesh."""
+        """Attributes of the mesh."""
         name: FrameName = "travelling" if isinstance(self._system.frame, Travelling) else "staying"
         frame = self._prepared.frame if self._prepared.frame.name == name else Frame(name, "as the analysis needs it")
         return mesh_used(self._prepared.drive, frame, len(self._system.length))
 
     def keep(self) -> dict[str, Any]:
-        """Write what waits, and give all that is needed to go on from there in another process."""
+        """Write pending outputs, and return the state for a continuation in another process."""
         self._write()
         now, cpu = time.perf_counter(), time.process_time()
         spent = {
@@ -368,7 +368,7 @@ class Recording:
     def _for_spectra(self) -> Arrays:
         """What is recorded for spectra: the next outputs for which all states that they need have come.
 
-        They are filtered in the same groups whenever they come, so that a run that is gone on with is the same.
+        They are always filtered in the same groups, so that a resumed run is identical.
         """
         end, first = self._filterable(), self._filtered
         if not self._ending:

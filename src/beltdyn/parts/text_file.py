@@ -108,7 +108,7 @@ def _schema_of(model: type[BaseModel]) -> dict[str, Any]:
 
 
 def _item(data: Any, step: int | str) -> Any:
-    """What stands in a mapping, a list or a part."""
+    """The entries of a mapping, a list or a part."""
     if isinstance(data, BaseModel):
         return getattr(data, str(step), None)
     try:

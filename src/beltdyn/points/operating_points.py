@@ -151,7 +151,7 @@ Axes = Mapping[str, tuple[Variable, ArrayLike]]
 _OFTEN = 1.0
 """Time between two writings of the file, s."""
 _SHORTEST_PART = 1.0 / 16.0
-"""Least part of the way between two points by which the second is looked for."""
+"""Smallest step between two points in the search for the second."""
 
 
 class OperatingPoints:

@@ -62,7 +62,7 @@ COLUMNS = {
     "hub_direction": _of_both("rad", "Direction, of the hub load"),
     "slack": _of_both("m", "Slack, at the lower stop"),
 }
-"""What a tensioner sheet tells of each state."""
+"""Columns of a tensioner sheet for each state."""
 
 
 def tensioner_sheet(
@@ -170,7 +170,7 @@ class _Sheet:
             self._rows[state] = {"belt_length": length}
 
     def add_stop(self, state: str) -> None:
-        """The belt with which the tensioner just stands at a stop; nothing without one."""
+        """The belt with which the tensioner just reaches a stop; None without a stop."""
         stop = self._stops[state]
         if np.isfinite(stop):
             free = self._tensioner.replace(stops=None, stop_stiffness=None, stop_damping=0.0)
@@ -198,7 +198,7 @@ class _Sheet:
         return row
 
     def _row(self, prepared: Prepared, length: float) -> dict[str, float]:
-        """What is told of a belt of a length, m."""
+        """The row of a belt of a length, m."""
         prepared = prepared.replace(belt=prepared.drive.belt.replace(length=length))
         there, tensioner = _balanced(prepared), prepared.carriers[self._number].tensioner
         carrier, position = prepared.carriers[self._number], float(there.tensioner_positions[self._number])

@@ -62,7 +62,7 @@ __all__ = [
 
 
 def __getattr__(name: str) -> Any:
-    """Load what needs xarray when it is asked for."""
+    """Import modules that need xarray on first use."""
     if name == "derived":
         return import_module("beltdyn.results.derived")
     raise AttributeError(f"module {__name__!r} has no attribute {name!r}")

@@ -24,7 +24,7 @@ LOSSES: Mapping[str, str] = {
 """Recorded works of the losses, and their causes in words."""
 
 _BEFORE = {"material_loss": "belt material"}
-"""What stands in place of the losses of stretch and bending in files that do not tell them apart."""
+"""The combined loss of stretch and bending in files of earlier formats."""
 
 STORED = ("kinetic_energy", "strain_energy", "penalty_energy", "spring_energy", "potential_energy")
 """Recorded energies that the drive holds."""

@@ -104,7 +104,7 @@ def _last(recorded: Recorded, name: str, clock: str) -> FloatArray:
 
 _PACKAGES = ("beltdyn", "numba", "numpy", "scipy")
 MESH = ("mesh_frame", "mesh_frame_reason", "mesh_element", "mesh_elements", "mesh_unused")
-"""Attributes of results that tell of the mesh."""
+"""Attributes of the mesh in results."""
 STAYING = Frame("staying", "as in all analyses at rest or in steady running")
 """The mesh of these, whatever the drive asks for in runs."""
 

@@ -1,4 +1,4 @@
-"""Values in a result file, read where they are used; what keeps them from being read is told of the file."""
+"""Values in a result file, read on use; errors name the file."""
 
 from pathlib import Path
 from typing import Any

@@ -226,7 +226,7 @@ def steady_comparison(run: Run) -> tuple[Compared, ...]:
     Returns
     -------
     tuple of Compared
-        Empty if no comparison was asked for, or no steady running was found.
+        Empty without a comparison, or if no steady running was found.
 
     Examples
     --------

@@ -312,7 +312,7 @@ def _mesh(resolution: Resolution) -> str:
 
 
 def _steady_running(run: Run) -> tuple[Table | Facts, ...]:
-    """What a sheet says of steady running: the comparison, or why there is none; nothing where none was asked for."""
+    """The comparison with steady running, or why there is none; empty if not requested."""
     with run.recorded() as recorded:
         failure = str(recorded.attrs.get(FAILURE, ""))
     if failure:

@@ -275,7 +275,7 @@ _OVERSHOOT: Final = 0.1
 """Imbalance along a change, over that before it and against it, from which on a part of the change is taken back."""
 _CUTS: Final = 6
 _SHORTEST: Final = 0.1
-"""Least part of where the balance may be by which it is looked for."""
+"""Smallest step of the search for the balance, over its interval."""
 _GROWING: Final = 4
 """So many changes with no less imbalance along them than the one before, and the step is given up."""
 _QUICK: Final = 0.3

@@ -104,7 +104,7 @@ _RATE = 1000.0
 """w, rad/s."""
 _MOST_SHIFTS = 400
 MOST_SWINGING = 99
-"""Eigenvalues that swing, counted or not, with which a search ends, unless more are asked for."""
+"""Number of oscillating eigenvalues at which a search ends, unless more are requested."""
 _INFINITE = 1e10
 """Magnitude from which on an eigenvalue is that of a constraint or of a coordinate without mass, 1/s."""
 
@@ -294,7 +294,7 @@ def swinging(
 
 
 class _Disk(NamedTuple):
-    """A part of the complex plane of which all eigenvalues are known."""
+    """A region of the complex plane whose eigenvalues are all known."""
 
     center: complex
     radius: float

@@ -41,7 +41,7 @@ _NO_SETTINGS = Settings(0.0, 1.0, 1.0, 1.0)
 
 
 class Request(NamedTuple):
-    """What is asked for, and numbers that some of it needs."""
+    """A request to the engine, with its parameters."""
 
     kind: int
     time: float = 0.0
@@ -55,7 +55,7 @@ class Request(NamedTuple):
 def dispatch(
     system: System, request: Request, settings: Settings, state: IntegratorState, equations: Equations, steps: Steps
 ) -> tuple[int, int]:
-    """Do what is asked for.
+    """Execute the request.
 
     Parameters
     ----------
@@ -144,7 +144,7 @@ def accelerate(system: System, motion: Motion, multipliers: FloatArray, equation
 def _dispatch_at(
     system: System, request: Request, motion: Motion, multipliers: FloatArray, equations: Equations
 ) -> bool:
-    """Do at a state, which is changed in place, what is asked for; False if the tangent is singular."""
+    """Execute the request at a state, changed in place; False if the tangent is singular."""
     size, vectors = motion.position.size, (motion.position, motion.velocity, motion.acceleration)
     state = new_state(system, request.time, 0.0, np.zeros(size), np.zeros(size))._replace(multipliers=multipliers)
     for own, given in zip(state.trial, vectors, strict=False):

@@ -134,7 +134,7 @@ class Vibrations:
 _ELEMENTS = 1
 """Length of belt that must slide in one piece, in elements; a mesh cannot represent shorter waves."""
 _PERIODS = 10.0
-"""How long a vibration goes on where sliding pauses."""
+"""Longest pause of sliding that a vibration survives, in periods."""
 _SAMPLES = 16
 """States kept, at most."""
 _SHIFT = 0.02 + 1j

@@ -61,7 +61,7 @@ class GeneralizedAlpha:
         return self.begin(task).chunks()
 
     def begin(self, task: Task) -> "AlphaIntegration":
-        """Begin an integration, which can be kept and gone on with."""
+        """Start an integration that can be saved and continued."""
         begin = task.instants.begin
         period = _CROSSINGS * crossing_time(task.system)
         settings = Settings(
@@ -82,7 +82,7 @@ class GeneralizedAlpha:
 
 @dataclass
 class AlphaIntegration:
-    """An integration on its way: all that its next step depends on, so that a copy goes on with the same steps.
+    """The state of an integration: all that its next step depends on, so that a copy continues with the same steps.
 
     Attributes
     ----------

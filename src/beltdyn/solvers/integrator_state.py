@@ -1,4 +1,4 @@
-"""The moving state of generalised-alpha and what it is told, as records for its kernels."""
+"""State and settings of generalised-alpha, as records for its kernels."""
 
 from typing import Final, NamedTuple
 

@@ -88,7 +88,7 @@ class Pace:
 
 
 Report = Callable[[Progress], None]
-"""What a caller gives to be told of progress."""
+"""Callback for progress."""
 
 
 @dataclass(frozen=True, slots=True)

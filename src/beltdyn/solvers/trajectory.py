@@ -18,7 +18,7 @@ from beltdyn.system.state_forces import body_forces_at
 
 @dataclass(frozen=True, eq=False)
 class Chunk:
-    """Successive states of a solver, at the ends of its steps; none in a chunk that only tells of progress.
+    """Successive states of a solver, at the ends of its steps; none in a chunk that only reports progress.
 
     Attributes
     ----------
@@ -165,7 +165,7 @@ class Statistics:
     steps : int
         Accepted steps.
     rejected_steps : int
-        Steps tried in vain; zero for standard integrators, which do not tell.
+        Rejected steps; zero for standard integrators, which do not report them.
     newton_iterations : int
         Iterations of generalised-alpha.
     evaluations : int

@@ -1,4 +1,4 @@
-"""The belt at rest in its drive, and the length with which it has the tension that is asked for.
+"""The belt at rest in its drive, and its length for the installed tension.
 
 The tension at rest is the mean of the span tensions in static equilibrium, on a mesh of equal elements: with contact,
 bending, weight and spring-loaded tensioners, without friction.
@@ -36,9 +36,9 @@ _DEEPEST = 0.5
 _SOUND = 0.1
 """Depth over radius up to which contact may be soft."""
 _ACCURACY = 1e-6
-"""Of the tension that is asked for, relative."""
+"""Tolerance of the installed tension, relative."""
 _JUMP = 0.005
-"""Largest miss of the tension that is asked for, relative, where it jumps over the length of the belt."""
+"""Largest relative error of the installed tension if it jumps over the length of the belt."""
 _MOST_TRIALS = 60
 _LONGEST_CHANGE = 0.02
 """Change of a belt's length from one trial to the next, over its length, at most."""

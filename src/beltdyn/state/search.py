@@ -152,7 +152,7 @@ class SteadySearch:
         self.constant.frame.speed[:] = unknowns[2 * size :]
 
     def resume(self, tangent: SteadyWork | None = None) -> bool:
-        """Find steady running under the loads that are asked for from that under others; False if that fails."""
+        """Find steady running under the required loads from that under others; False if that fails."""
         if tangent is None:
             return self._try(Setting())
         self._work = tangent
@@ -167,7 +167,7 @@ class SteadySearch:
         return self._work
 
     def run(self, rest: Standing) -> None:
-        """Find steady running under the loads that are asked for."""
+        """Find steady running under the required loads."""
         speed, driver = operating_point(self.constant, self.prepared.path.radii, self._prescribed)
         if driver is not None:
             self._held_speed = speed / float(self.prepared.path.radii[driver])
@@ -179,7 +179,7 @@ class SteadySearch:
             self._release(driver)
 
     def _run_up(self, place: FloatArray, speed: float, gentle: Setting) -> bool:
-        """Go from rest to the speeds and loads that are asked for; where that fails, without bending losses at first.
+        """Continue from rest to the required speeds and loads; if that fails, first without bending losses.
 
         Where the belt bends over an idler of small wrap, its curvature nowhere settles, and hysteresis that turns its
         sign there leaves Newton's method no way from a belt at rest.

@@ -23,13 +23,13 @@ _FULL = 0.9
 _ALIKE = 0.98
 """Of pulleys that use so much of the friction that the worst one does, the one that takes most power is named."""
 _MOST = 0.99
-"""Slip from which the speed without slip is told, at most."""
+"""Largest slip from which the speed without slip is extrapolated."""
 GROSS = 0.05
 """Slip that is gross: creep is a few strains of the belt."""
 
 
 class Setting(NamedTuple):
-    """How far a drive is from the one that is asked for."""
+    """Distance of a drive from the required one."""
 
     speed: float = 1.0
     """Factor on prescribed speeds."""
@@ -46,7 +46,7 @@ class Setting(NamedTuple):
 
 
 class Passed(NamedTuple):
-    """Steady running on the way to the loads that are asked for."""
+    """Steady running during the increase of the loads."""
 
     setting: Setting
     state: State

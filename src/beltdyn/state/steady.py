@@ -29,7 +29,7 @@ from beltdyn.system.state_forces import body_forces_at
 
 
 def instant_given(drive: Drive, at: float | str | None) -> float:
-    """The instant that is asked for, such as "0.5 s", or in s; by default the end of the simulation; in s."""
+    """The requested instant, s; by default the end of the simulation."""
     return drive.simulation.end if at is None else number_in("at", at, "s")
 
 
@@ -98,7 +98,7 @@ def _faster(system: System, bodies: FloatArray) -> float:
 
 
 _TOLERANCE = 0.01
-"""Error of contact forces unless another one is asked for."""
+"""Default tolerance of contact forces."""
 _TURNS = 2.2
 """Turns of the belt in the results; means are taken over the last one."""
 
@@ -232,7 +232,7 @@ def require_found(found: Beside | None) -> Beside:
 
 
 def _tolerance(drive: Drive, force_tolerance: float | None) -> float:
-    """Error of contact forces that is asked for, or that of the drive, or the usual one."""
+    """The given tolerance of contact forces, or that of the drive, or the default."""
     return next(one for one in (force_tolerance, drive.steady.force_tolerance, _TOLERANCE) if one is not None)
 
 
@@ -347,7 +347,7 @@ def require_steady_start(drive: Drive) -> None:
 
 
 def require_tolerance(force_tolerance: float) -> None:
-    """Make sure that an error of contact forces that is asked for makes sense."""
+    """Check the tolerance of contact forces."""
     if not 0.0 < force_tolerance < 1.0:
         raise ModelError(f"force_tolerance = {force_tolerance:g} must be between 0 and 1, such as 0.01 for 1 %.")
 

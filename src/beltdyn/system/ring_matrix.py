@@ -147,7 +147,7 @@ def ring_matrix(dof: int, nodes: int, border: int) -> RingMatrix:
 
 @kernel
 def clear(matrix: RingMatrix, whole: bool) -> None:
-    """Set the right-hand side to zero, and the whole matrix if asked for."""
+    """Set the right-hand side to zero, and on request the whole matrix."""
     matrix.node_side[:] = 0.0
     matrix.border_side[:] = 0.0
     if whole:

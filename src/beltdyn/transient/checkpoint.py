@@ -394,7 +394,7 @@ def is_checkpoint(path: Path) -> bool:
 
 
 def _made_by() -> str:
-    """What tells apart versions whose runs go on differently."""
+    """Identity of the version, within which runs resume identically."""
     return f"{version('beltdyn')} {source_hash(PACKAGE)}"
 
 

@@ -26,12 +26,12 @@ from beltdyn.transient.checkpoint import is_checkpoint
 _SAME = 1e-6
 """Distance of instants that count as one, over the time between them."""
 _FREE = frozenset({"name", "description", "limits", "simulation", "steady"})
-"""Groups of a drive file in which drives may differ of which one begins in a state of the other."""
+"""Groups of a drive file that may differ between a run and the earlier run it starts from."""
 _FREE_OF_PULLEYS = frozenset({"speed", "harmonics", "torque", "load", "inertia", "mass", "friction"})
 
 
 def instant_of(run: Run, at: float | str | None, name: str = "at") -> float:
-    """The instant at which the belt was recorded that is asked for, s."""
+    """The requested instant of an output along the belt, s."""
     run.require_output()
     run.require("nodal_velocities")
     run.require("body_velocity")
@@ -102,7 +102,7 @@ def begin_from(drive: Drive) -> Beginning:
 
 @contextmanager
 def _opened(start: EarlierRun) -> Iterator[Run]:
-    """The earlier run; what is wrong with it is told of the key."""
+    """The earlier run; errors name the key."""
     if is_checkpoint(Path(start.file)):
         results = Path(start.file).with_suffix(".nc")
         raise ModelError(

@@ -182,7 +182,7 @@ def _resume(drive: Drive, output: Path | str | None, progress: Report | None, ch
 
 
 def _steady_running(drive: Drive) -> dict[str, object]:
-    """Attributes that tell of the steady running under the speeds and loads at the end, or why there is none."""
+    """Attributes with the steady running at the speeds and loads of the end, or why there is none."""
     try:
         return {VALUES: steady_values(steady_state(with_instant(drive)))}
     except (ConvergenceError, ModelError) as error:
@@ -190,7 +190,7 @@ def _steady_running(drive: Drive) -> dict[str, object]:
 
 
 def _steady_losses(drive: Drive) -> dict[str, object]:
-    """Attributes that tell of losses and slip in steady running at the end; none where there is no steady running."""
+    """Attributes with losses and slip in steady running at the end; empty if there is no steady running."""
     try:
         return dict(steady_losses(steady_state(with_instant(drive))))
     except (ConvergenceError, ModelError):
@@ -214,4 +214,4 @@ INTEGRATORS: Mapping[str, Callable[[Simulation], Integrator]] = {
     "generalized_alpha": _generalized_alpha,
     **{name: _standard(name) for name in get_args(Name)},
 }
-"""What each name of an integrator in a drive file stands for."""
+"""The integrators by their names in a drive file."""

@@ -28,11 +28,11 @@ from beltdyn.vibration.small_motions import SmallMotions, about_steady, dry_tens
 _RESONATES = 0.5**0.5
 """Damping ratio below which a vibration becomes larger near the frequency of its mode."""
 _SPARE = 4
-"""Modes above those that are asked for, so that a mode that comes among these is known before."""
+"""Additional modes above the requested ones, to track modes that move into their range."""
 _GROWS = 1e-6
-"""Growth rate of a mode that grows by itself, over its angular frequency."""
+"""Growth rate of an unstable mode, over its angular frequency."""
 _DOUBTFUL = 0.5
-"""Assurance below which it is doubtful which mode goes on as which."""
+"""Modal assurance below which the tracking of modes is uncertain."""
 _SPEED, _MODE, _EXCITATION, _CRITICAL = ("speed",), ("mode",), ("excitation",), ("critical",)
 _BOTH = (*_SPEED, *_MODE)
 
@@ -132,7 +132,7 @@ class CampbellDiagram:
 
     @property
     def warnings(self) -> list[str]:
-        """What grows by itself, and where it is doubtful which mode goes on as which."""
+        """Unstable modes, and speeds at which the tracking of modes is uncertain."""
         return [*self._growing(), *self._doubtful()]
 
     def _modes(self) -> ModeTable:
@@ -205,7 +205,7 @@ class CampbellDiagram:
         return int(np.nanargmin(np.abs(self._speeds - speed) + 0.0 * modes.frequency[:, mode]))
 
     def _growing(self) -> Iterator[str]:
-        """What grows by itself."""
+        """Unstable modes."""
         modes = self._modes()
         for number, values in enumerate(modes.values.T):
             grows = np.flatnonzero(values.real > _GROWS * values.imag)
@@ -219,7 +219,7 @@ class CampbellDiagram:
                 )
 
     def _doubtful(self) -> Iterator[str]:
-        """Where modes change so much that it is doubtful which goes on as which."""
+        """Speeds at which modes change so much that their tracking is uncertain."""
         agreed = self._modes().assurance
         unsure = np.flatnonzero(np.any(agreed < _DOUBTFUL, axis=1))
         if unsure.size:

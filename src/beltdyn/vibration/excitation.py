@@ -92,7 +92,7 @@ class Excitation(NamedTuple):
 
     name: str
     cause: str
-    """What repeats itself: `SPEED` or `LOAD` of a shaft, or a `TURN`, of which the amplitude is not known."""
+    """The periodic quantity: `SPEED` or `LOAD` of a shaft, or a `TURN`, whose amplitude is unknown."""
     order: float
     """Waves in a turn."""
     turning: str

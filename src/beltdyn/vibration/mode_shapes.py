@@ -112,7 +112,7 @@ def even_points(motions: SmallMotions) -> Points:
 
 
 def _points_at(motions: SmallMotions, along: FloatArray, length: FloatArray) -> Points:
-    """Points of the belt, each of which stands for a length of it, m."""
+    """Points of the belt, each representing a length of it, m."""
     system = motions.system
     place, slope, _ = centreline_points(system, motions.state.position, along)
     deep = depths(system, motions.state, place)

@@ -1,4 +1,4 @@
-"""Modes followed from state to state: which one goes on as which, by how much their shapes agree.
+"""Modes tracked from state to state by the agreement of their shapes.
 
 Speeds of all parts in a mode, times the roots of their masses, make a vector.  Of two such vectors a and b the modal
 assurance |a* b|^2 / (|a|^2 |b|^2) is 1 where the shapes agree, and 0 where they share no motion.
@@ -67,8 +67,8 @@ def crossings(speed: FloatArray, frequency: FloatArray, damping_ratio: FloatArra
 
 
 _LEAST, _LEAST_OF_PAUSED = 0.3, 0.6
-"""Assurance times the ratio of frequencies, the lower over the higher, with which a mode goes on as another one; and
-with which one goes on that was not found in the state before."""
+"""Least modal assurance times frequency ratio (lower over higher) for the continuation of a mode, and the same for a
+mode that was missing in the previous state."""
 
 
 class SeenModes(NamedTuple):

@@ -36,7 +36,7 @@ FIRST_STUCK = MOST_SWINGING + 2
 """Number of the first mode with stuck tensioners, however many there are with sliding ones."""
 _GROUPS = (f"lightly damped (damping ratio below {LIGHT:g})", f"heavily damped ({LIGHT:g} or above: barely resonates)")
 _GROWS = 1e-6
-"""Growth rate of a mode that grows by itself, over its angular frequency."""
+"""Growth rate of an unstable mode, over its angular frequency."""
 _MODE = ("mode",)
 
 VARIABLES = {
@@ -187,7 +187,7 @@ def _parts(shape: ComplexArray) -> ArrayLike:
 
 
 def _warnings(numbers: IntArray, values: ComplexArray) -> list[str]:
-    """What grows by itself."""
+    """Unstable modes."""
     growing = [(number, one.real) for number, one in zip(numbers, values, strict=True) if one.real > _GROWS * one.imag]
     if not growing:
         return []

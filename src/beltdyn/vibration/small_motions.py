@@ -133,7 +133,7 @@ def dry_tensioners(prepared: Prepared) -> IntArray:
 
 
 def about_rest(drive: Drive) -> SmallMotions:
-    """A drive at rest, of which nothing drives or loads a shaft, with a belt that sticks to its pulleys.
+    """A drive at rest without driven or loaded shafts, with a belt that sticks to its pulleys.
 
     Where it touches them, springs hold it along the rim, a hundred times as stiff as those of the normal force or more.
     The hysteresis of the belt is left out: its stress has no tangent there.

@@ -33,7 +33,7 @@ def generator_torque(constants: np.record, _numbers: FloatArray, shaft: ShaftSta
     constants
         A row of `GENERATOR`.
     shaft
-        Its speed counts, and its command, the electrical power that is asked for, W.
+        Its speed, and its command, the demanded electrical power, W.
     """
     speed, least = abs(shaft.speed), constants.cut_in_speed
     if speed <= least:

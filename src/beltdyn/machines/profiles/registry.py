@@ -29,7 +29,7 @@ else:
     KINDS = kinds_in(kinds)
 
     def _constant(given):
-        """A number, or text with a unit, stands for a constant."""
+        """A number, or text with a unit, is a constant."""
         return {"kind": "constant", "value": given} if _is_value(given) else given
 
     def _of(value, kinds=KINDS):

@@ -54,7 +54,7 @@ STEADY_LOSSES, STEADY_SLIPS, COARSE_SETTINGS = "steady_losses", "steady_slips", 
 """Attributes of a run: losses (W, in the order of `LOSSES`) and slips in steady running, and settings that differ."""
 
 _LEAST_SLIP = 1e-4
-"""Largest slip of a drive from which on its errors are told."""
+"""Largest slip of a drive above which errors of slip are reported."""
 
 
 def mean_torques(evidence: Evidence) -> Iterator[Finding]:

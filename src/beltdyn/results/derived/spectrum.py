@@ -254,7 +254,7 @@ def instants_of(values: xr.DataArray) -> FloatArray:
 
 
 def _highest(values: xr.DataArray, rate: float) -> float:
-    """Highest frequency that a variable tells of, Hz: up to it the filter keeps amplitudes, if it is filtered."""
+    """Highest valid frequency of a variable, Hz: the pass band of its filter, if it is filtered."""
     return PASS_BAND * rate if values.dims[0] == "filtered_time" else np.inf
 
 

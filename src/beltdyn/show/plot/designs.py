@@ -133,7 +133,7 @@ def _tornado(result: Result, of: str | None, variable: str, words: str, ax: Axes
 
 
 _KEPT = 1e-4
-"""Part of a limit by which it may be violated."""
+"""Permitted violation of a limit, relative."""
 
 
 def _goal_and_numbers(draw: Callable[..., Axes], result: Result, choice: Choice) -> Figure:

@@ -80,7 +80,7 @@ def overlay(
 
 
 def names_of_results(results: Sequence[Result]) -> list[str]:
-    """Name results so that each is told from the others."""
+    """Name results distinctly."""
     for name in (name_of, file_name):
         names = [name(result) for result in results]
         if all(names) and len(set(names)) == len(names):

@@ -33,7 +33,7 @@ _PARTS, _LINE = 100, 0.06
 _LATE = 0.6
 """Part of a run from which on periods are named to their left."""
 _WAVES = 5.0
-"""Vibrations as high as the figure above which dashes cannot be told from them."""
+"""Number of vibrations across the figure above which dashed lines are indistinct."""
 
 
 @figure(over_time, compares=True)

@@ -138,7 +138,7 @@ _RUNNING = 0.98
 """Part of its mean speed at the end from which on the driver counts as running."""
 _RINGS = 4
 _TOP: dict[str, Any] = {"ha": "right", "va": "top", "fontsize": 8}
-"""How words stand in the upper right corner."""
+"""Alignment of text in the upper right corner."""
 
 
 @figure(over_turns, compares=True)

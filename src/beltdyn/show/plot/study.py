@@ -92,7 +92,7 @@ def moved_from_base(values: xr.DataArray) -> BoolArray:
 
 
 def chosen_result(result: Result, of: str | None) -> str:
-    """The name of a result that is asked for; by default the first."""
+    """The requested result; by default the first."""
     names = results_of(result)
     name = (names or [""])[0] if of is None else of
     if name not in names:
@@ -101,7 +101,7 @@ def chosen_result(result: Result, of: str | None) -> str:
 
 
 def chosen_number(result: Result, over: str | None, varied: list[str]) -> str:
-    """The path of a number that is asked for; by default the one that has most values."""
+    """The requested parameter; by default the one with most values."""
     if over is None and varied:
         return max(varied, key=lambda path: len(np.unique(result.dataset[path].values)))
     if over not in varied:

@@ -1,4 +1,4 @@
-"""Figures of a study: what results owe to numbers, by moving one at a time, and by parts of the variance."""
+"""Figures of a study: effects of parameters, one at a time and as shares of the variance."""
 
 import numpy as np
 from matplotlib.axes import Axes

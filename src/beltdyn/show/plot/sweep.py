@@ -65,7 +65,7 @@ def series(run: Run, variable: str, of: str | int) -> xr.DataArray:
 
 
 _RANGE = 60.0
-"""Levels below the highest that are told apart, dB."""
+"""Range of levels below the highest, dB."""
 _MAP = "viridis"
 _STRONGEST = 5
 _ROWS, _ROW = 4, 0.08

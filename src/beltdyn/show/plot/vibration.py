@@ -374,7 +374,7 @@ def _legend(ax: Axes, result: Result, others: list[Line2D]) -> None:
 
 _SHOWN = {**SHOWN_UNITS, "m": ("mm", 1e3)}
 _BESIDE: dict[str, tuple[Dash, str, str]] = {"run_up": ("--", "", "in the run-up"), "measured": ("", "o", "measured")}
-"""What may stand beside -> its line style, its mark, and its name."""
+"""Compared data -> line style, marker and name."""
 _END = "_amplitude"
 
 
