@@ -48,7 +48,7 @@ def repeat_residual(system: System, motion: Motion, work: Equations, none: Float
 
 @kernel
 def repeat_factors(system: System, _motion: Motion, work: Equations, _none: FloatArray) -> None:
-    """Factorise the tangent."""
+    """Factorize the tangent."""
     for _ in range(REPEATS):
         factorise_ring(work.matrix, system.closed)
 

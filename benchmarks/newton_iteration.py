@@ -28,7 +28,7 @@ ROUNDS = 7
 
 @kernel
 def iterate(system: System, motion: Motion, equations: Equations, none: FloatArray, count: int) -> None:
-    """Linearise and solve at the same state again and again, as an integrator with steps of a millisecond does."""
+    """Linearize and solve at the same state again and again, as an integrator with steps of a millisecond does."""
     for _ in range(count):
         assemble(system, motion, none, TangentFactors(1.0, 2e3, 4e6, False), equations)
         solve_ring(equations.matrix, system.closed, equations.node_part, equations.border_part)

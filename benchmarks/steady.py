@@ -1,4 +1,4 @@
-"""Steady running from rest and from a neighbour, a map of 40 points, and the run over time that gives the same.
+"""Steady running from rest and from a neighbor, a map of 40 points, and the run over time that gives the same.
 
 Processor time of one thread, medians; compilation is apart: each analysis is done once before the clock starts.
 """
@@ -20,7 +20,7 @@ from validation.published.cases import better, loaded_two_pulley
 ROUNDS = 5
 POINTS = 40
 _LIGHTER = 0.98
-"""Loads of the drive over those of its neighbour."""
+"""Loads of the drive over those of its neighbor."""
 
 
 def accessory_drive() -> Drive:
@@ -57,7 +57,7 @@ def main() -> None:
         "elements",
         "iterations",
         "from rest ms",
-        "neighbour ms",
+        "neighbor ms",
         "over time s",
         "ratio",
         title="Steady running",

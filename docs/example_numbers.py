@@ -341,7 +341,7 @@ def moved(drive: Drive, position: float) -> Drive:
 
 
 def without_idler(drive: Drive) -> Drive:
-    """The same drive with fixed centres and without its idler, its belt as long as 600 N stretch it to the path."""
+    """The same drive with fixed centers and without its idler, its belt as long as 600 N stretch it to the path."""
     pulleys = [pulley for pulley in drive.pulleys if pulley.side == "inside"]
     path = open_belt(pulleys[1].center[0], tuple(pulley.radius + drive.belt.pitch_offset for pulley in pulleys)).length
     length = path / float(drive.belt.stretch_parameters.stretch(600.0))

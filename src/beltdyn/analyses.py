@@ -62,7 +62,7 @@ class Analysis(NamedTuple):
         return drive_file.with_name(f"{drive_file.stem}{'' if self.name == SIMULATE else f'-{self.command}'}.nc")
 
     def write(self, drive: Any, path: Path, progress: Any = None, overwrite: bool = False, **options: Any) -> Any:
-        """Analyse a drive and write the results to a file.
+        """Analyze a drive and write the results to a file.
 
         A function with a parameter ``output`` writes there while it computes, and takes ``overwrite`` too; results of
         other functions are saved at the end. A function with a parameter ``progress`` reports it.

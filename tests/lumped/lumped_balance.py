@@ -5,9 +5,9 @@ on an arc the belt sticks with the tension of its entry and then slides, up to i
 and Eytelwein for T' = T - m v^2.  Tensioners move until spring and belt balance.
 
 Bending (exact for a long span): the span is an elastica about its line of force, with EI / R = T' y where it meets the
-rim, at the angle a to that line, T' (1 - cos a) = EI / (2 R^2).  So the line passes the centre at R + EI / (2 T' R),
+rim, at the angle a to that line, T' (1 - cos a) = EI / (2 R^2).  So the line passes the center at R + EI / (2 T' R),
 and the rim presses with T' sin a on the end of the arc.  An idler of small wrap is touched at one point, with
-a = wrap / 2.  Weight, hysteresis and the regularisation of friction are left out.
+a = wrap / 2.  Weight, hysteresis and the regularization of friction are left out.
 
     balance = LumpedBalance.of(drive)          # constant torques, one pulley with a prescribed speed
     state = balance.at(1.0)                    # under the loads of the drive: tensions, positions, use of friction
@@ -266,7 +266,7 @@ class LumpedBalance:
         return Route.around(centers, self.radii + 0.5 * np.sign(self.radii) * (lifts[0] + lifts[1]))
 
     def _lift(self, pressed: FloatArray, wraps: FloatArray) -> FloatArray:
-        """How much farther than the rim the line of force of a span passes the centre, m."""
+        """How much farther than the rim the line of force of a span passes the center, m."""
         angle, layer = self._contact_angle(pressed, wraps), np.sqrt(self.bending / pressed)
         return np.asarray(2.0 * layer * np.sin(0.5 * angle) - np.abs(self.radii) * (1.0 - np.cos(angle)))
 

@@ -222,7 +222,7 @@ def test_the_tutorial_prints_what_it_says(
 
 
 COSTLY_TASKS = {"design", "python"}
-"""Tasks that optimise, calibrate and simulate over time."""
+"""Tasks that optimize, calibrate and simulate over time."""
 
 
 @pytest.mark.parametrize(
@@ -287,7 +287,7 @@ def test_python_of_the_pages_on_results_runs(new_drive: str, tmp_path: Path, mon
 def test_commands_run_one_after_another(document: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """With short runs; a run-up has too few turns for its figures then, and nothing moves at their end.
 
-    The optimisation of an edited file is that of `test_tensioner_study.py`.
+    The optimization of an edited file is that of `test_tensioner_study.py`.
     """
     monkeypatch.chdir(tmp_path)
     text = (ROOT / document).read_text(encoding="utf-8")

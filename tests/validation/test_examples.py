@@ -73,7 +73,7 @@ def test_the_overloaded_conveyor_comes_to_a_stop() -> None:
 
 @pytest.mark.slow
 def test_the_idler_carries_what_slips_without_it() -> None:
-    """The load of 160 N m is above what fixed centres transmit, and with the idler half as much again is below.
+    """The load of 160 N m is above what fixed centers transmit, and with the idler half as much again is below.
 
     While it slides the belt follows Euler and Eytelwein's formula with the angle between its spans, within 0.5 %: what
     bending takes from the arc presses on its ends.

@@ -1,7 +1,7 @@
 """The promise of the tolerance, held by a matrix of runs: each lands within it, or stops with a clear error.
 
 The error of a run is that of the driven speed, root mean square over the run, over the largest speed of the driver;
-the reference is a run on the same mesh from the same start by generalised-alpha at rtol 1e-5.  From equilibrium contact
+the reference is a run on the same mesh from the same start by generalized-alpha at rtol 1e-5.  From equilibrium contact
 is integrated over the touching zone; laid drives are as published, with fixed Gauss points.
 """
 

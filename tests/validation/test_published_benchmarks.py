@@ -37,7 +37,7 @@ RADIUS, OFFSET = 0.09995, 5e-5
 """Of the pulleys' surface, and from there to the belt's axis, m."""
 WIDTH, HEIGHT = 0.08, 0.01
 AXIAL, BENDING, MASS = 8000.0, 4e-3 / 3.0, 0.8288
-"""N, N m^2, and kg per metre of the reference length."""
+"""N, N m^2, and kg per meter of the reference length."""
 REFERENCE_STRAIN, STRAIN_DAMPING = -0.05, 1.0
 CONTACT_STIFFNESS, CONTACT_DAMPING = 4e9, 8e4
 """N/m^3 and N s/m^3, per area of the reference belt."""
@@ -165,7 +165,7 @@ def matched_belt() -> tuple[float, float]:
 def published_drive(creep_rate_factor: float, elements: int) -> Drive:
     """The drive with the element's law of tension and the friction law of this package.
 
-    What the publication gives per metre of its reference length is given here per metre of the unstretched length.
+    What the publication gives per meter of its reference length is given here per meter of the unstretched length.
     """
     axial, shorter = matched_belt()
     modulus = axial / (WIDTH * HEIGHT)

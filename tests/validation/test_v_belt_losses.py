@@ -1,7 +1,7 @@
 """Validated: what V-belt drives lose, as published, in steady running with the loss factors of the catalogue.
 
 Published: 95 to 98 % (Gates, "Belt Drive Efficiencies"), 93 to 95 % of single V-belts with their bearings, which
-are not modelled; torque losses in proportion to 1/R (Childs and Cowburn 1987).
+are not modeled; torque losses in proportion to 1/R (Childs and Cowburn 1987).
 """
 
 from collections.abc import Callable

@@ -109,7 +109,7 @@ class TestRoundBelt:
         return belt_system(belt_of(self.LENGTH, self.ELEMENTS), [turning(0.0)], contact, "shared_node")
 
     def forces(self, system: System, speed: float, sinking: float = 0.0, around: float = 0.0) -> BodyForces:
-        """Loads for a pulley's speed and velocities of the belt towards and around the centre."""
+        """Loads for a pulley's speed and velocities of the belt towards and around the center."""
         angle = 2 * pi * np.arange(self.ELEMENTS) / self.ELEMENTS
         out = np.stack([np.cos(angle), np.sin(angle)], axis=1)
         forward = np.stack([-out[:, 1], out[:, 0]], axis=1)

@@ -1,6 +1,6 @@
 """Verified: hysteresis of a belt that runs round two pulleys.
 
-Against: pi/4 eta EI / R^2 a metre of belt and pulley, and pi/4 eta (T1 - T2)^2 / EA a metre, at speeds of 1 to 100, on
+Against: pi/4 eta EI / R^2 a meter of belt and pulley, and pi/4 eta (T1 - T2)^2 / EA a meter, at speeds of 1 to 100, on
 meshes of 1 to 2, and over the radius; and what is published of V-belts: torque losses in proportion to 1/R (Childs and
 Cowburn 1987) and efficiencies of 95 to 98 % (Gates, "Belt Drive Efficiencies").
 """

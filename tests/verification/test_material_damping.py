@@ -2,7 +2,7 @@
 
 Against: the damping ratio omega tau / 2 of a mode whose damping is tau times its stiffness, with the natural
 frequencies of the bar fixed at one end, (2k - 1) pi / 2L sqrt(EA / m), and of the pinned beam, (k pi / L)^2
-sqrt(EI / m), m the mass of a metre; and the balance of energy of an element that flies, bends and stretches freely.
+sqrt(EI / m), m the mass of a meter; and the balance of energy of an element that flies, bends and stretches freely.
 """
 
 from collections.abc import Callable

@@ -17,7 +17,7 @@ from beltdyn.system.arrays import System
 from beltdyn.system.state import State
 from validation.published.released_belt import closed, on_pulleys, release, released_belt
 
-Method = Literal["globalised", "newton"]
+Method = Literal["globalized", "newton"]
 Start = Callable[[System], State]
 
 
@@ -60,7 +60,7 @@ def assert_circle(belt: Belt, nodes: FloatArray) -> None:
     assert seen[0, 0] == pytest.approx(belt.given_length / (2.0 * pi), rel=3e-4)
 
 
-@pytest.mark.parametrize(("method", "iterations"), [("globalised", 200), ("newton", 40)])
+@pytest.mark.parametrize(("method", "iterations"), [("globalized", 200), ("newton", 40)])
 def test_the_papers_belt_becomes_a_circle(
     measured: Callable[..., None],
     curve: Callable[..., None],

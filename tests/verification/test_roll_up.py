@@ -5,7 +5,7 @@ the turning theta are uniform, and Eqs. 14 and 15 leave
 
     psi(G, theta) = EA/8 (G-1)^2 + EI/2 (G theta^2 + (G-1) theta^2 / 2) + E I4/8 theta^4.
 
-psi - M theta is stationary at G = 1 - 3 EI theta^2 / EA, a centreline that contracts by (h theta)^2 / 8.
+psi - M theta is stationary at G = 1 - 3 EI theta^2 / EA, a centerline that contracts by (h theta)^2 / 8.
 
 The order to expect is 4 = 2 (3 + 1 - 2), that of nodal values by cubics in an energy of second derivatives.
 """

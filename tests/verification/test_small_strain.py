@@ -39,7 +39,7 @@ def bend(evaluate: Callable[..., tuple[float, ...]], unloaded: FloatArray, eleme
 
 @pytest.fixture
 def shear(evaluate: Callable[..., tuple[float, ...]], unloaded: FloatArray, element_length: float) -> Stiffness:
-    """Shear stiffness, from the energy of sections that lean by SMALL against a straight centreline."""
+    """Shear stiffness, from the energy of sections that lean by SMALL against a straight centerline."""
     e = unloaded.copy()
     e[[4, 10]], e[[5, 11]] = -np.sin(SMALL), np.cos(SMALL)
     return lambda belt: evaluate(belt, e)[0] / (0.5 * SMALL**2 * element_length)

@@ -1,7 +1,7 @@
 """Verified: a cantilever under a transverse load at its tip, from small to large deflection, thick to thin.
 
 Against: the elastica, as tabulated by K. Mattiasson, "Numerical results from large deflection beam and frame problems
-analysed by means of elliptic integrals", Int. J. Numer. Methods Eng. 17 (1981) 145-153, and by elliptic integrals of
+analyzed by means of elliptic integrals", Int. J. Numer. Methods Eng. 17 (1981) 145-153, and by elliptic integrals of
 our own; and Timoshenko's tip deflection P L^3 / 3EI + P L / k_s G A at small load.
 """
 

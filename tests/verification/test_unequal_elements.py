@@ -66,7 +66,7 @@ class Shaken(NamedTuple):
     system: System
     state: State
     metre: FloatArray
-    """Changes of the coordinates that make a metre."""
+    """Changes of the coordinates that make a meter."""
 
 
 def shaken(drive: Drive) -> Shaken:
@@ -187,7 +187,7 @@ def test_observation_at_rest(cut: Cut) -> None:
     system, state = at_rest(drive, lengths_of(drive.belt))
     seen = observe(system, np.zeros(1), state.position[None], state.velocity[None])
     hubs = np.abs(seen.hub_force[0, :, 0])
-    np.testing.assert_allclose(hubs, hubs[0], rtol=1e-8)  # one force along the line of both centres
+    np.testing.assert_allclose(hubs, hubs[0], rtol=1e-8)  # one force along the line of both centers
     np.testing.assert_allclose(seen.span_tension.sum(), hubs, rtol=0.01)  # mean tensions of few elements
     along, free = result_layout(prepare(drive), system).belt_coordinate, seen.contact_pulley[0] < 0
     ways = np.linalg.norm(np.diff(seen.contact_position[0], axis=0), axis=1) / np.diff(along)
@@ -208,7 +208,7 @@ def run_of(drive: Drive, lengths: FloatArray | None) -> Run:
 
 
 def test_results_of_a_run(cut: Cut, measured: Measured) -> None:
-    """Speed and torque as on a finer mesh of equal elements; the wear of the belt is its friction work a metre."""
+    """Speed and torque as on a finer mesh of equal elements; the wear of the belt is its friction work a meter."""
     coarse, fine = (
         drive.replace(simulation=drive.simulation.replace(duration=0.1, output_interval=1e-3))
         for drive in (cut(30), cut(60))

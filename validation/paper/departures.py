@@ -15,7 +15,7 @@ class Departure:
     text : str
         What is printed, and what the code does.
     setting : str
-        How to get the published behaviour; empty where there is none, or none is needed.
+        How to get the published behavior; empty where there is none, or none is needed.
     """
 
     title: str
@@ -49,7 +49,7 @@ DEPARTURES = MappingProxyType(
         ),
         "nodal-shear": Departure(
             "Nodal shear",
-            "The paper does not print how nodal values of sin γ follow from the gradients. Here ∂r/∂y is normalised.",
+            "The paper does not print how nodal values of sin γ follow from the gradients. Here ∂r/∂y is normalized.",
         ),
         "eq-11": Departure(
             "Eq. 11",

@@ -1,7 +1,7 @@
 """A two-pulley drive in Exudyn (ANCFCable2D, ObjectContactFrictionCircleCable2D), with its settings tuned.
 
 Constants of contact are per length here and per contact segment there.  Circles are made smaller by the sagitta of a
-segment, the start is the frictionless equilibrium, and time integration is generalised-alpha with modified Newton, one
+segment, the start is the frictionless equilibrium, and time integration is generalized-alpha with modified Newton, one
 thread.
 """
 

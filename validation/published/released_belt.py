@@ -34,7 +34,7 @@ def on_pulleys(system: System) -> State:
     return laid(system, two_pulley().path)
 
 
-def release(belt: Belt, start: State, method: Literal["globalised", "newton"] = "globalised") -> Equilibrium:
+def release(belt: Belt, start: State, method: Literal["globalized", "newton"] = "globalized") -> Equilibrium:
     """Equilibrium of a belt without pulleys, its leftmost node fixed in x and y, its rightmost in y (Fig. 4).
 
     Parameters

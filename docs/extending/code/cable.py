@@ -1,4 +1,4 @@
-"""Cable element: a cubic centreline that stretches by the law of its belt and is bent by its curvature."""
+"""Cable element: a cubic centerline that stretches by the law of its belt and is bent by its curvature."""
 
 from typing import NamedTuple
 
@@ -63,14 +63,14 @@ def cable_force(element: Cable, e: FloatArray, length: float, wanted: bool, work
 
 
 def cable_mass(section: Section, length: FloatArray | float) -> FloatArray:
-    """Mass matrices of the centreline, shape (..., 8, 8): those of the paper's element without sections."""
+    """Mass matrices of the centerline, shape (..., 8, 8): those of the paper's element without sections."""
     centreline = np.array([0, 1, 2, 3, 6, 7, 8, 9])
     return ANCF.mass(section, length)[..., centreline[:, None], centreline]
 
 
 CABLE = ElementKind(
     name="cable",
-    meaning="for comparison a cubic centreline without shear",
+    meaning="for comparison a cubic centerline without shear",
     element=Cable,
     coordinates=("r_x", "r_y", "dr_x/dx", "dr_y/dx"),
     vectors=(0, 2, 4, 6),

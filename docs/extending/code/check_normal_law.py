@@ -19,7 +19,7 @@ def motion(_, state):
     return state[1], -normal_force(law, *state).force
 
 
-speed, half_period = 0.02, np.pi / np.sqrt(law.stiffness)  # of a mass of 1 kg a metre on the spring
+speed, half_period = 0.02, np.pi / np.sqrt(law.stiffness)  # of a mass of 1 kg a meter on the spring
 path = solve_ivp(motion, (0.0, 2.0 * half_period), (0.0, speed), rtol=1e-10, atol=1e-14, max_step=0.1 * half_period)
 assert np.isclose(1.0 + path.y[1, -1] / speed, 2.0 / 3.0 * law.impact_damping * speed, rtol=0.02)
 

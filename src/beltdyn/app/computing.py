@@ -121,14 +121,14 @@ _compiles: SharedEvent | None = None
 
 
 def prepare() -> None:
-    """Initialise the process: the server handles Ctrl-C, and the process ends with it."""
+    """Initialize the process: the server handles Ctrl-C, and the process ends with it."""
     signal.signal(signal.SIGINT, signal.SIG_IGN)
     warnings.simplefilter("ignore")
     threading.Thread(target=_follow_parent, daemon=True).start()
 
 
 def begin(compiles: SharedEvent) -> None:
-    """Initialise the computing process."""
+    """Initialize the computing process."""
     global _compiles
     prepare()
     _compiles = compiles

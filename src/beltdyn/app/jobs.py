@@ -67,7 +67,7 @@ class Outcome(NamedTuple):
     result, report : Path or None
         The result file and the report, where there are any.
     best : Path or None
-        The drive file that the analysis found, as an optimisation does.
+        The drive file that the analysis found, as an optimization does.
     """
 
     status: str
@@ -147,7 +147,7 @@ class Job:
 def _analyse(
     name: str, text: str, folder: Path, result: Path, options: dict[str, Any], told: Connection, stop: SharedEvent
 ) -> None:
-    """Analyse a drive into a file, write its report, and tell how it goes."""
+    """Analyze a drive into a file, write its report, and tell how it goes."""
     prepare()
     signal.signal(signal.SIGTERM, signal.SIG_DFL)
     os.environ.setdefault("OMP_NUM_THREADS", "1")

@@ -17,7 +17,7 @@ _SMALLEST_RADIUS = 0.005
 _LARGEST_SHARE = 0.45
 """Largest radius of a new pulley, over the distance of its center from other pulleys' surfaces."""
 _DISK = 0.02 * 2700.0
-"""Mass per square metre of an aluminium disk 20 mm thick, kg, assumed for a new pulley."""
+"""Mass per square meter of an aluminum disk 20 mm thick, kg, assumed for a new pulley."""
 _ARM = 2.5
 """Length of the arm of a new tensioner, over the radius of its pulley."""
 _TENSION = 300.0
@@ -144,7 +144,7 @@ def new_tensioner(draft: Draft, number: int, kind: str, place: int) -> list[Edit
 def add(draft: Draft, x: float, y: float, base: Any = None) -> list[Edit]:
     """Add a pulley at a position, m, in the nearest span and on the possible side.
 
-    The first one is given a speed; the others turn freely, with the inertia of an aluminium disk.
+    The first one is given a speed; the others turn freely, with the inertia of an aluminum disk.
     """
     found, pulleys = circles(draft.data), groups(draft.data, "pulley")
     radius = _radius_at(found, x, y)

@@ -1,4 +1,4 @@
-"""The drawing of the canvas: pulleys, belt path and tensioners, in millimetres with y down."""
+"""The drawing of the canvas: pulleys, belt path and tensioners, in millimeters with y down."""
 
 import math
 from collections.abc import Mapping, Sequence

@@ -1,4 +1,4 @@
-"""Snapshots of a run being computed: coloured belt, pulley positions and numbers."""
+"""Snapshots of a run being computed: colored belt, pulley positions and numbers."""
 
 import time
 from itertools import pairwise
@@ -21,7 +21,7 @@ _OFTEN = 0.4
 _SHARE = 20.0
 """Least interval of snapshots over the cost of one."""
 _PIECES = 60
-"""Number of separately coloured pieces of the belt."""
+"""Number of separately colored pieces of the belt."""
 
 
 class Glimpse(NamedTuple):
@@ -32,10 +32,10 @@ class Glimpse(NamedTuple):
     time : float
         s.
     drawn : dict
-        What the canvas draws, ready for JSON: pieces of the belt with their colours, and pulleys with their angles;
+        What the canvas draws, ready for JSON: pieces of the belt with their colors, and pulleys with their angles;
         lengths in mm, y down.
     tension : tuple of float
-        Least and largest belt tension, N: the ends of the colours.
+        Least and largest belt tension, N: the ends of the colors.
     pulleys : Table
         Speed, torque and hub load of each pulley.
     """
@@ -90,7 +90,7 @@ def _glimpse(run: Run) -> Glimpse:
 
 
 def _pieces(places: Any, shares: Any) -> list[dict[str, str]]:
-    """The belt in pieces, each with the colour of its tension."""
+    """The belt in pieces, each with the color of its tension."""
     drawn, colors = MILLIMETRES * places * (1.0, -1.0), tension_colors()
     bounds = np.linspace(0, len(places) - 1, _PIECES + 1).round().astype(int).tolist()
     return [

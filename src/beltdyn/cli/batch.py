@@ -71,7 +71,7 @@ def analyse_several(
     force: bool,
     **options: Any,
 ) -> int:
-    """Analyse drives in parallel, and show a table of them.
+    """Analyze drives in parallel, and show a table of them.
 
     Parameters
     ----------

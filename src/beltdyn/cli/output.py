@@ -1,4 +1,4 @@
-"""Analyse a drive into a result file: outputs, messages and exit codes."""
+"""Analyze a drive into a result file: outputs, messages and exit codes."""
 
 from collections.abc import Iterable, Sequence
 from pathlib import Path
@@ -120,7 +120,7 @@ def analyse_to(
     force: bool = False,
     **options: Any,
 ) -> "Result":
-    """Analyse a drive into a file with a progress bar, show the result, and write the extras.
+    """Analyze a drive into a file with a progress bar, show the result, and write the extras.
 
     Raises
     ------

@@ -24,7 +24,7 @@ def study(
     report: Annotated[bool, Option(negative="")] = False,
     force: Annotated[bool, Option(negative="")] = False,
 ) -> int:
-    """Analyse many variants of a drive, on all cores or on a cluster.
+    """Analyze many variants of a drive, on all cores or on a cluster.
 
     A failed point is marked with its reason, and the others continue. Rows are written to a CSV file as points finish.
     The same command resumes a study that was interrupted or killed, or that has new points.

@@ -1,4 +1,4 @@
-"""The centreline of an element as a Bezier curve, common to all belt discretisations (Eq. 24).
+"""The centerline of an element as a Bezier curve, common to all belt discretizations (Eq. 24).
 
 The degree is one less than the number of control points.  Kernels read it from the length of the arrays in which they
 keep weights.  Where these are fields of a record the compiler knows their lengths, and each degree gets code of its
@@ -23,7 +23,7 @@ BINOMIALS = np.array(
 
 
 class Curve(NamedTuple):
-    """A Bezier curve of the centreline: n control points from v vectors of nodal coordinates."""
+    """A Bezier curve of the centerline: n control points from v vectors of nodal coordinates."""
 
     control: FloatArray
     """Control points, m, shape (n, 2)."""

@@ -1,6 +1,6 @@
-"""Generalised contact forces of one element against one pulley and their exact tangent (Eq. 24).
+"""Generalized contact forces of one element against one pulley and their exact tangent (Eq. 24).
 
-The centreline is a Bezier curve given by its control points, whatever the belt discretisation; the forces belong to the
+The centerline is a Bezier curve given by its control points, whatever the belt discretization; the forces belong to the
 vectors of which the control points are combinations (the basis): Q_b = integral of S_b (f_n n + (f_t + f_r) t) dx.
 """
 
@@ -28,7 +28,7 @@ class ContactTotals(NamedTuple):
     """Force on the pulley, N."""
     hub_y: float
     penalty_energy: float
-    """Energy stored in the penalty springs over the touching length, J; k_p d^2 / 2 a metre of linear ones."""
+    """Energy stored in the penalty springs over the touching length, J; k_p d^2 / 2 a meter of linear ones."""
     damping_power: float
     """Power lost in the contact dampers: f_n without its elastic part times dd/dt, over the touching length, W."""
     friction_power: float
@@ -100,7 +100,7 @@ def contact_force(
     Parameters
     ----------
     curve
-        The centreline of the element.
+        The centerline of the element.
     pulley
         The pulley.
     law

@@ -1,7 +1,7 @@
-"""Contact zones of an element on a pulley: the intervals of its centreline with d >= 0.
+"""Contact zones of an element on a pulley: the intervals of its centerline with d >= 0.
 
-The centreline of an element is a Bezier curve of degree p given by its control points, whatever the discretisation.
-The squared distance to a pulley's centre is then a polynomial of degree 2 p, and R^2 minus it, the overlap, has the
+The centerline of an element is a Bezier curve of degree p given by its control points, whatever the discretization.
+The squared distance to a pulley's center is then a polynomial of degree 2 p, and R^2 minus it, the overlap, has the
 sign of the penetration.  In Bernstein form it changes sign at most as often as its coefficients do; where those change
 more than once, the element is halved (Lane and Riesenfeld, Bounds on a polynomial, BIT 21 (1981) 112-117).
 
@@ -83,7 +83,7 @@ def out_of_reach(control: FloatArray, pulley: PulleyState) -> bool:
 
 @kernel
 def touching_intervals(control: FloatArray, pulley: PulleyState, zone: np.record) -> int:
-    """Find the intervals of the element on which the centreline is inside the pulley.
+    """Find the intervals of the element on which the centerline is inside the pulley.
 
     Parameters
     ----------

@@ -1,4 +1,4 @@
-"""Penetration, normal and tangent of a centreline point against a pulley (Eqs. 18, 19, 21 and 22).
+"""Penetration, normal and tangent of a centerline point against a pulley (Eqs. 18, 19, 21 and 22).
 
 With p = r - O the place against the shaft, n the normal of the surface and t = (-n_y, n_x), a point of the pulley at p
 moves with omega (-p_y, p_x), that is omega (p . n) along t and -omega (p . t) along n.  On a smooth circle p . t = 0.
@@ -39,7 +39,7 @@ class Approach(NamedTuple):
 
 @kernel
 def approach(x: float, y: float, velocity_x: float, velocity_y: float, pulley: PulleyState) -> Approach:
-    """Position and motion of a centreline point relative to a pulley (Eqs. 18, 19 and 21).
+    """Position and motion of a centerline point relative to a pulley (Eqs. 18, 19 and 21).
 
     Parameters
     ----------

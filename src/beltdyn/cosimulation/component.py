@@ -138,7 +138,7 @@ class Component:
         """A step that leaves behind how far it has come if it fails."""
         if self._simulator is None:
             raise ModelError(
-                "the drive is not initialised. Initialise the unit before its first step; if that failed, its "
+                "the drive is not initialized. Initialize the unit before its first step; if that failed, its "
                 "error message gives the remedy."
             )
         slack = _ROUNDING * abs(size)
@@ -152,7 +152,7 @@ class Component:
         if self.stop is not None and time + size > self.stop + slack:
             raise ModelError(
                 f"a step would end at t = {time + size:g} s, after the stop time {self.stop:g} s. End it there, "
-                "or set a later stop time at initialisation."
+                "or set a later stop time at initialization."
             )
         self._take_inputs(self._simulator)
         self._outputs = {}

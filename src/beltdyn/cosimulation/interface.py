@@ -15,7 +15,7 @@ from beltdyn.transient.simulator import output_names
 _FILE = "interface.json"
 
 TOLERANCE = "simulation.rtol"
-"""The parameter that a host may set before it initialises a drive."""
+"""The parameter that a host may set before it initializes a drive."""
 
 _SPEED_UNIT, _TORQUE_UNIT, _CENTER_UNIT = "rad/s", "N m", "m"
 

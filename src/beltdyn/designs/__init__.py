@@ -1,1 +1,1 @@
-"""Many designs of a drive: batches, studies, sensitivity, optimisation, calibration."""
+"""Many designs of a drive: batches, studies, sensitivity, optimization, calibration."""

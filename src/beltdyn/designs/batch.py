@@ -63,7 +63,7 @@ def analyse_all(
     finish: Callable[[Run], None] | None = None,
     **options: Any,
 ) -> dict[Path, Ending]:
-    """Analyse several drives in parallel, each in its own process."""
+    """Analyze several drives in parallel, each in its own process."""
     endings: dict[Path, Ending] = {}
     files = {Path(file): drive for file, drive in drives.items()}
     for file, drive in files.items():

@@ -25,7 +25,7 @@ CHANGE = 1e-5
 
 
 class SmallChanges:
-    """Makes neighbours of a drive; with an installed tension the belt's length, or the take-up, follows.
+    """Makes neighbors of a drive; with an installed tension the belt's length, or the take-up, follows.
 
     Parameters
     ----------

@@ -222,7 +222,7 @@ class FoundState(ABC):
     Parameters
     ----------
     near
-        The state from whose neighbourhood it is, where it was found as a `neighbour`: its modes are followed from
+        The state from whose neighborhood it is, where it was found as a `neighbour`: its modes are followed from
         there.
     """
 
@@ -278,7 +278,7 @@ class FoundState(ABC):
             count *= 2
 
     def _mode_of(self, variable: str, label: str) -> Mode | None:
-        """The mode of a variable of `OF_MODES`; if followed from a neighbour, the mode of the neighbour."""
+        """The mode of a variable of `OF_MODES`; if followed from a neighbor, the mode of the neighbor."""
         near = self._near if isinstance(self._modes, FollowedModes) else None
         chosen = (near or self)._chosen_mode(variable, label)
         return None if chosen is None else self._modes.like(chosen)
@@ -320,7 +320,7 @@ class Running(FoundState):
     near
         As for `FoundState`.
     bands
-        Whether its neighbours are to have the bands in which dry friction holds tensioners, as for `steady_from`.
+        Whether its neighbors are to have the bands in which dry friction holds tensioners, as for `steady_from`.
     """
 
     def __init__(self, run: Run, near: FoundState | None = None, *, bands: bool = False) -> None:

@@ -1,4 +1,4 @@
-"""Designs that an optimisation has tried, as a result and as the best drive file, in files if one is named."""
+"""Designs that an optimization has tried, as a result and as the best drive file, in files if one is named."""
 
 from collections.abc import Sequence
 from contextlib import ExitStack
@@ -44,7 +44,7 @@ def require_free(output: Path, overwrite: bool, study: object) -> None:
     """Make sure that a result file and the drive file beside it would replace nothing but such."""
     if isinstance(study, Path | str) and target_of(found_file(output)) == target_of(Path(study)):
         raise ModelError(
-            f"the optimised drive would be written to {found_file(output)}, which is the study file. Choose "
+            f"the optimized drive would be written to {found_file(output)}, which is the study file. Choose "
             "another result file."
         )
     require_replaceable(output, is_result, overwrite)
@@ -97,7 +97,7 @@ _VARIABLES = {
     "start_result": Variable(_BOTH, VARIOUS, "Result at the start, in its unit"),
     "best_result": Variable(_BOTH, VARIOUS, "Result of the best design, in its unit"),
 }
-"""What is known of an optimisation; the unit of goals is that of the result."""
+"""What is known of an optimization; the unit of goals is that of the result."""
 
 _COORDINATES = {
     "number": Variable(_NUMBER, "1", "Number", "str"),

@@ -1,4 +1,4 @@
-"""Optimisation: parameters of a drive that minimise or maximise a result within limits."""
+"""Optimization: parameters of a drive that minimize or maximize a result within limits."""
 
 from collections.abc import Callable
 from pathlib import Path
@@ -151,7 +151,7 @@ def optimize(
     progress: Report | None = None,
     overwrite: bool = False,
 ) -> Result:
-    """Minimise or maximise a result over parameters of a drive, within limits.
+    """Minimize or maximize a result over parameters of a drive, within limits.
 
     A study names the parameters with their bounds, the operating points, the goal, and the constraints: limits of
     results, distances of modes from orders, clearances. Each design must have steady running at all operating points;

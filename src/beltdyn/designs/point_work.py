@@ -171,7 +171,7 @@ class ChunkOutcome:
 
 
 def compute_points(work: PointWork, points: Sequence[tuple[int, Mapping[str, Any]]]) -> ChunkOutcome:
-    """Analyse drives."""
+    """Analyze drives."""
     wait_for_the_end()
     outcomes, units = list[Outcome](), dict[str, str]()
     with _one_at_a_time, working():
@@ -186,7 +186,7 @@ def compute_points(work: PointWork, points: Sequence[tuple[int, Mapping[str, Any
 
 
 def _outcome(work: PointWork, point: int, changes: Mapping[str, Any], units: dict[str, str]) -> Outcome:
-    """Analyse the drive of a point; units of results are added to those that are known."""
+    """Analyze the drive of a point; units of results are added to those that are known."""
     begun = time.perf_counter()
     try:
         result = _analysed(work, point, changes)

@@ -1,7 +1,7 @@
 """Sensitivity of results in steady running or at rest to each parameter of the drive file.
 
 Each number is changed a little up and down, and the state follows on the same mesh by the tangent of the state at hand,
-which is factorised once: the first step is that of the implicit function theorem, du = -(dF/du)^-1 dF, with dF the
+which is factorized once: the first step is that of the implicit function theorem, du = -(dF/du)^-1 dF, with dF the
 residual of the changed drive, and those after it, with the same tangent, take the rest.  An adjoint solution for each
 result would save the substitution, which is a small part of making the changed drive, whose residual it needs too.
 Where a tension at rest is asked for, the length of the belt, or the take-up, follows in each changed drive: on its own,

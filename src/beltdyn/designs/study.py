@@ -174,7 +174,7 @@ def study(
     progress: Report | None = None,
     overwrite: bool = False,
 ) -> Result:
-    """Analyse many variants of a drive, on all cores or on a cluster.
+    """Analyze many variants of a drive, on all cores or on a cluster.
 
     Failed points are marked with their reason. Results are written as points finish; an interrupted or killed study, or
     one with added points, resumes when it is started again with the same file.

@@ -176,7 +176,7 @@ def heeding(tell: Callable[[Progress], None] | None = None) -> Callable[[Progres
 
 
 def analyse(place: int, file: Path, drive: Drive | Run, work: Work) -> Ending:
-    """Analyse a drive into a file, and finish what is complete."""
+    """Analyze a drive into a file, and finish what is complete."""
     if stopped():
         return Ending("not started")
     wait_for_the_end()

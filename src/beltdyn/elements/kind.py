@@ -56,12 +56,12 @@ def is_damped(section: Section) -> bool:
     return section.axial_damping > 0.0 or section.bending_damping > 0.0 or section.bending_hysteresis > 0.0
 
 
-# Tension by the stretch of the centreline, 2 g dW/dG, and by its rate
+# Tension by the stretch of the centerline, 2 g dW/dG, and by its rate
 
 
 @kernel
 def axial_force(law: StretchParameters, metric: float) -> float:
-    """Tension carried by the stretch of the centreline, 2 sqrt(G) dW/dG, N.
+    """Tension carried by the stretch of the centerline, 2 sqrt(G) dW/dG, N.
 
     Parameters
     ----------
@@ -133,7 +133,7 @@ def no_damping(
 
 
 def as_cubic(angle: FloatArray) -> FloatArray:
-    """The angle itself: the `cubic_angle` of kinds whose centreline is a cubic."""
+    """The angle itself: the `cubic_angle` of kinds whose centerline is a cubic."""
     return angle
 
 
@@ -142,7 +142,7 @@ class ElementKind:
     """A belt element between two nodes, registered in `ELEMENTS`.
 
     A node has n coordinates, those of an element are e, shape (2 n,): of its first node, then of its second.  Part of
-    them are v vectors of two components that carry the centreline, which consists of one or several Bezier curves.
+    them are v vectors of two components that carry the centerline, which consists of one or several Bezier curves.
 
     Attributes
     ----------
@@ -191,7 +191,7 @@ class ElementKind:
     cubic_angle : callable
         Angle of a pulley over which a cubic misses the circle as much as the element does over a given one (rad).
     bent_strain : float
-        Strain of the centreline on a circle of radius R, without tension, over EI / (EA R^2).
+        Strain of the centerline on a circle of radius R, without tension, over EI / (EA R^2).
     """
 
     name: str
@@ -225,7 +225,7 @@ class ElementKind:
 
     @property
     def curves(self) -> int:
-        """Number of centreline curves of an element."""
+        """Number of centerline curves of an element."""
         return len(self.control(1.0))
 
     @property

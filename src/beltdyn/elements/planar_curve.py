@@ -1,6 +1,6 @@
-"""Forces of a planar centreline whose energy density depends on G = q . q and c = q x w, with q = dr/dx, w = d2r/dx2.
+"""Forces of a planar centerline whose energy density depends on G = q . q and c = q x w, with q = dr/dx, w = d2r/dx2.
 
-The centreline is made of vectors of two components, in the order of the coordinates e: first those of node i, its place
+The centerline is made of vectors of two components, in the order of the coordinates e: first those of node i, its place
 before its derivatives, then as many of node j.
 
 A point's force belongs to z = (q, w), and so does its tangent, which may have columns for u = d3r/dx3 too. Tangents are
@@ -70,13 +70,13 @@ def hysteretic(modulus: float, strain: float, rate: float, square: float, length
     )
 
 
-# Damping of a planar centreline in the strains eps = sqrt(G) - 1 and kappa = c / sqrt(G), point by point
+# Damping of a planar centerline in the strains eps = sqrt(G) - 1 and kappa = c / sqrt(G), point by point
 
 Two = tuple[float, float]
 
 
 class CurveMotion(NamedTuple):
-    """A point of the centreline and its rates."""
+    """A point of the centerline and its rates."""
 
     q: Two
     """dr/dx."""

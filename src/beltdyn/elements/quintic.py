@@ -1,4 +1,4 @@
-"""Quintic element: r, dr/dx and d2r/dx2 at the nodes, and sections that stay normal to the centreline (Eqs. 13, 14).
+"""Quintic element: r, dr/dx and d2r/dx2 at the nodes, and sections that stay normal to the centerline (Eqs. 13, 14).
 
 With q = dr/dx, w = d2r/dx2, G = q . q, c = q x w and the rate theta' = c / G at which the belt turns, the strain energy
 is that of the paper's element without shear,
@@ -237,7 +237,7 @@ def quintic_damping(
 
 QUINTIC = ElementKind(
     name="quintic",
-    meaning="a quintic centreline without shear, for smooth contact",
+    meaning="a quintic centerline without shear, for smooth contact",
     element=Quintic,
     coordinates=("r_x", "r_y", "dr_x/dx", "dr_y/dx", "d2r_x/dx2", "d2r_y/dx2"),
     vectors=(0, 2, 4, 6, 8, 10),

@@ -1,7 +1,7 @@
 """Compilation in a third of the time, by way of Numba's internals.
 
-Numba optimises a kernel and turns it into machine code before it links it into its callers, which do so again.
-Here a kernel is linked into its callers before optimisation.  Only the kernels that Python calls are optimised, each
+Numba optimizes a kernel and turns it into machine code before it links it into its callers, which do so again.
+Here a kernel is linked into its callers before optimization.  Only the kernels that Python calls are optimized, each
 with all that it calls, and kept on disk.
 """
 
@@ -40,7 +40,7 @@ _OPTIMISATION = type(numba.config.OPT)(1)
 
 
 class QuickDispatcher(CPUDispatcher):  # type: ignore[misc]
-    """A compiled function that shows itself to other kernels as code to be optimised along with them.
+    """A compiled function that shows itself to other kernels as code to be optimized along with them.
 
     Parameters
     ----------
@@ -211,14 +211,14 @@ def _content(file: str) -> bytes:
 
 
 class _CodeCompiler(Compiler):  # type: ignore[misc]
-    """Numba's compiler, up to the code before optimisation."""
+    """Numba's compiler, up to the code before optimization."""
 
     def __init__(self, typingctx: Any, targetctx: Any, _library: Any, *choices: Any) -> None:
         super().__init__(typingctx, targetctx, _Code(targetctx.codegen(), "code"), *choices)
 
 
 class _Code(JITCodeLibrary):  # type: ignore[misc]
-    """Code of a kernel with all that it calls, neither optimised as a whole nor turned into machine code."""
+    """Code of a kernel with all that it calls, neither optimized as a whole nor turned into machine code."""
 
     def finalize(self) -> None:
         """Link what it calls, and no more."""

@@ -191,7 +191,7 @@ def unstable_balance(names: Sequence[str]) -> Finding:
     return Finding(
         f"at rest the equilibrium of the tensioner of {listing(names)} is unstable: a small disturbance moves it away.",
         "A real drive does not stay there: tensions and positions at rest, and the start of a run, are meaningless.",
-        "Turn its arm or direction away from the dead centre, increase its spring rate, or give stops.",
+        "Turn its arm or direction away from the dead center, increase its spring rate, or give stops.",
     )
 
 
@@ -224,7 +224,7 @@ def _strain(drive: Drive, installation: Installation) -> list[Finding]:
 
 
 def _lift_off(drive: Drive, installation: Installation) -> list[Finding]:
-    """Compare the largest prescribed speed with the speed of lift-off of a belt on fixed centres.
+    """Compare the largest prescribed speed with the speed of lift-off of a belt on fixed centers.
 
     Its length between them stays, and so does its tension T, of which m v^2 is taken to bend the moving belt. A spring
     follows the belt and keeps up its pressure.

@@ -167,7 +167,7 @@ class Belt(Part):
     contact_stiffness: LineStiffness | None = Field(
         None,
         gt=0,
-        description="the normal force per metre of belt and metre of compression, if known, in N/m^2",
+        description="the normal force per meter of belt and meter of compression, if known, in N/m^2",
     )
     stretch_law: StretchLawName = Field("green", description=f"the law of tension over stretch: {_LAWS}")
     stretch_curve: StretchCurve | None = Field(
@@ -205,7 +205,7 @@ class Belt(Part):
         None,
         gt=0,
         description="the shear correction factor on a travelling mesh; by default sections stay normal to the "
-        "centreline, as on a staying mesh",
+        "centerline, as on a staying mesh",
     )
     elements: Count | None = Field(None, ge=3, le=10_000, description="the number of belt elements")
     discretization: ElementName | None = Field(

@@ -1,7 +1,7 @@
 """The forms in which the section and length of a belt can be given, and their conversion.
 
 A belt is made of a material: density, Young's modulus, and the factors on axial and bending stiffness. What a user
-knows are often the stiffnesses and the mass of a metre, or the name of a profile in the catalogue. Its length is that
+knows are often the stiffnesses and the mass of a meter, or the name of a profile in the catalogue. Its length is that
 of the line that carries the tension; what a user knows is the length by which it is sold.
 """
 

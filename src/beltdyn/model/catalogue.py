@@ -69,7 +69,7 @@ class Entry(Part):
     contact_stiffness: LineStiffness | None = Field(
         None,
         gt=0,
-        description="the normal force per metre of belt and metre of compression, in N/m^2",
+        description="the normal force per meter of belt and meter of compression, in N/m^2",
     )
     stretch_damping_time: Time = Field(0.0, ge=0, description="the damping time of stretch, in s")
     bending_damping_time: Time = Field(0.0, ge=0, description="the damping time of bending, in s")

@@ -21,7 +21,7 @@ class Penalty(Part):
     either = ("stiffness", "allowed_penetration")
 
     stiffness: LineStiffness | None = Field(
-        None, gt=0, description="the normal force per metre of belt and metre of penetration, in N/m^2"
+        None, gt=0, description="the normal force per meter of belt and meter of penetration, in N/m^2"
     )
     allowed_penetration: Length | None = Field(
         None,
@@ -29,7 +29,7 @@ class Penalty(Part):
         description="the largest penetration of the belt at rest, instead of stiffness, in m",
     )
     damping: LineDamping | None = Field(
-        None, ge=0, description="the normal force per metre of belt and penetration rate in m/s, in N*s/m^2"
+        None, ge=0, description="the normal force per meter of belt and penetration rate in m/s, in N*s/m^2"
     )
 
 

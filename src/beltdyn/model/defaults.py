@@ -1,6 +1,6 @@
 """Default numerical parameters of a drive: those of contact, and the number of elements.
 
-Contact is a penalty, and the creep of friction a regularisation: both belong to the computation, unless the belt's
+Contact is a penalty, and the creep of friction a regularization: both belong to the computation, unless the belt's
 own compressibility is known.  They are chosen so that a result does not show them, and no run pays for more.
 """
 
@@ -30,7 +30,7 @@ TENSION_LOST = 0.005
 DEPTH_OF_THICKNESS, DEPTH_OF_RADIUS = 0.02, 0.001
 """Largest penetrations at rest over the belt's thickness and over the effective radius."""
 DAMPING_RATIO = 0.5
-"""Contact damping over the critical damping, which stabilises a sliding belt."""
+"""Contact damping over the critical damping, which stabilizes a sliding belt."""
 STANDSTILL = 0.05
 """Share of the largest speed below which the creep velocity is constant: steeper friction spoils the start."""
 CREEP_LENGTHS = 16.0

@@ -59,7 +59,7 @@ def bending_at_points(prepared: Prepared) -> BendingAtPoints:
 def passing_strains(prepared: Prepared) -> Passing:
     """The history of strains along the belt of a prepared.
 
-    With fixed centres the stretch of the whole belt stays as it was at rest, and tensions lie as far above as below
+    With fixed centers the stretch of the whole belt stays as it was at rest, and tensions lie as far above as below
     it; where a spring or an end holds a tension, the slack side stays at it.  The tension changes over R / mu, the
     length of an arc that slides until it has grown by a factor of e, the curvature over sqrt(EI / T) and an element.
     """
@@ -84,7 +84,7 @@ def bending_resistance(prepared: Prepared) -> float:
 def rolling_resistances(prepared: Prepared) -> FloatArray:
     """Coefficients of rolling resistance equivalent to the compression losses of the belt.
 
-    Per metre of belt, rho times the normal force along an arc of the angle phi takes rho phi T.  T is that at rest.
+    Per meter of belt, rho times the normal force along an arc of the angle phi takes rho phi T.  T is that at rest.
 
     Parameters
     ----------

@@ -56,7 +56,7 @@ class Installation:
 def span_frequencies(belt: Belt, path: Path, tensions: FloatArray, gravity: tuple[float, float]) -> FloatArray:
     """First frequencies of the spans of a belt of given length, Hz; see `theory.sagging_span`.
 
-    The mass of a metre is that of the stretched belt. A slack belt does not swing: zero.
+    The mass of a meter is that of the stretched belt. A slack belt does not swing: zero.
     """
     if not tensions.min() > 0.0:
         return np.zeros(path.spans)

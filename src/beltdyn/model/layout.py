@@ -141,7 +141,7 @@ def fixed_tensioner(tensioners: tuple[Tensioner, ...]) -> FixedTensioner:
 
 
 def leverage(path: Path, pulley: int, tensioner: FixedTensioner) -> float:
-    """Change of the path length per metre of take-up, m."""
+    """Change of the path length per meter of take-up, m."""
     return float(path.gradient(pulley) @ np.array(tensioner.direction))
 
 

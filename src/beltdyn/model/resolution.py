@@ -1,4 +1,4 @@
-"""Estimated discretisation errors of a running drive, from element length, layout, stiffnesses and tension.
+"""Estimated discretization errors of a running drive, from element length, layout, stiffnesses and tension.
 
 A belt takes on the curvature of a pulley within the length lambda = sqrt(l_s max(l_s, l_b)), where it sinks in over
 l_s = sqrt(T / k_p) and bends over l_b = sqrt(E I alpha2 / T).  An element of length l covers phi = l / R of a pulley.
@@ -46,7 +46,7 @@ _KINK = 0.1
 """Length of the elements at a kink, over the radius."""
 _SAMPLES = 400
 _MOST = 10_000
-"""Limit of elements on a piece of belt: a centre in wrong units would need more memory than there is."""
+"""Limit of elements on a piece of belt: a center in wrong units would need more memory than there is."""
 
 
 class Arc(NamedTuple):
@@ -190,7 +190,7 @@ class OnPulleys(Protocol):
 
     @property
     def contact_stiffness(self) -> float:
-        """Normal force per metre of belt and metre of penetration, N/m^2."""
+        """Normal force per meter of belt and meter of penetration, N/m^2."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -239,7 +239,7 @@ def element_angles(drive: OnPulleys, elements: int) -> FloatArray:
 
 
 def mesh_errors(drive: OnPulleys, running: Running, elements: int) -> dict[str, float]:
-    """Estimate the discretisation errors of a mesh.
+    """Estimate the discretization errors of a mesh.
 
     Parameters
     ----------

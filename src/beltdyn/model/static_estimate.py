@@ -40,7 +40,7 @@ def static_estimate(path: Path, belt: Belt, contact: Contact) -> StaticEstimate:
     """Estimate tension and penetration of a belt at rest on its pulleys.
 
     At the stretch g the tension T is that of the law of stretch. On a pulley of radius R it presses with T g / R per
-    unstretched metre, so the belt sinks by d = T g / (R k_p), which shortens the path by the wrap angle times d. Of the
+    unstretched meter, so the belt sinks by d = T g / (R k_p), which shortens the path by the wrap angle times d. Of the
     length and the tension of the belt, and of the stiffness of contact and the largest d, one is given and the other
     found.
     """

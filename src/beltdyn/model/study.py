@@ -1,4 +1,4 @@
-"""Study files of optimisation and calibration: free numbers, operating points, goals and requirements."""
+"""Study files of optimization and calibration: free numbers, operating points, goals and requirements."""
 
 from typing import Annotated, Any, ClassVar, Literal, Self
 
@@ -130,7 +130,7 @@ class Points(Part):
 
 
 class Goal(Part):
-    """The objective of an optimisation."""
+    """The objective of an optimization."""
 
     result: Words = Field(
         description='the result of steady running, such as "hub_load" of all pulleys, or "hub_load[driven]"'

@@ -33,7 +33,7 @@ def usable_cores() -> int:
 
 
 def compile_kernels(system: System, state: State) -> None:
-    """Call every kernel that static equilibrium, generalised-alpha and observation need, on no work at all."""
+    """Call every kernel that static equilibrium, generalized-alpha and observation need, on no work at all."""
     with _second_process(system, state):
         _compile_observing(system)
     compile_solving(system, state)

@@ -211,7 +211,7 @@ def _curve(arrays: Mapping[str, NDArray[Any]], number: int, sense: float) -> Axe
     found = {
         "torque": torque,
         "elastic": arrays["elastic_creep"][:, number],
-        "added": arrays["bending"][:, number] + arrays["regularisation"][:, number],
+        "added": arrays["bending"][:, number] + arrays["regularization"][:, number],
         "slid": arrays["sliding"][:, number],
         "sliding_share": arrays["sliding_arc"][:, number] / arrays["wrap_angle"][:, number],
         "capstan_torque": np.abs(torque) * arrays["slip_safety"][:, number],

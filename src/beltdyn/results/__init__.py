@@ -1,4 +1,4 @@
-"""The results of a run: one labelled dataset, its file, and what is derived from it."""
+"""The results of a run: one labeled dataset, its file, and what is derived from it."""
 
 from importlib import import_module
 from typing import TYPE_CHECKING, Any

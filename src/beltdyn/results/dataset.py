@@ -1,4 +1,4 @@
-"""The labelled dataset of a run, from arrays in memory or lazily from its file."""
+"""The labeled dataset of a run, from arrays in memory or lazily from its file."""
 
 from collections.abc import Mapping
 from pathlib import Path

@@ -36,7 +36,7 @@ class PulleySummary:
         Part of the slip due to elastic creep, as with Coulomb friction.
     bending : float
         Part of the slip due to the stretch lost in bending and its hysteresis before contact.
-    regularisation : float
+    regularization : float
         Part of the slip due to the slope of the friction law: the remainder.
     sliding : float
         Part of the slip that is gross slip: the belt slides on the whole arc of this pulley or of the driver.
@@ -71,7 +71,7 @@ class PulleySummary:
     slip: float
     elastic_creep: float
     bending: float
-    regularisation: float
+    regularization: float
     sliding: float
     sliding_speed: float
     sliding_arc: float

@@ -117,7 +117,7 @@ def across(spans: FloatArray, drive: Drive) -> tuple[FloatArray, FloatArray]:
 
 
 def cells(belt_coordinate: FloatArray, length: float) -> FloatArray:
-    """Length of belt that each contact point stands for: half of the way to its neighbours, m.
+    """Length of belt that each contact point stands for: half of the way to its neighbors, m.
 
     Parameters
     ----------
@@ -234,14 +234,14 @@ def gross_sliding(sliding: FloatArray, pressed: BoolArray, drive: Drive) -> Floa
     return np.asarray(turning * np.where(np.any(pressed, axis=-1), nearest, 0.0))
 
 
-# The belt's centreline as smooth curves, from nodal coordinates
+# The belt's centerline as smooth curves, from nodal coordinates
 
 POINTS = 17
 """Points drawn on an element, ends included."""
 
 
 def centerline(kind: ElementKind, coordinates: FloatArray, lengths: FloatArray, points: int = POINTS) -> FloatArray:
-    """Points on the centreline, by the Bezier curves of the elements.
+    """Points on the centerline, by the Bezier curves of the elements.
 
     Parameters
     ----------
@@ -268,7 +268,7 @@ def centerline(kind: ElementKind, coordinates: FloatArray, lengths: FloatArray, 
 def curve_points(
     kind: ElementKind, coordinates: FloatArray, lengths: FloatArray, curve: IntArray, xi: FloatArray
 ) -> FloatArray:
-    """Points anywhere on the centreline, at one instant or at several.
+    """Points anywhere on the centerline, at one instant or at several.
 
     Parameters
     ----------

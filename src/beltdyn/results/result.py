@@ -1,4 +1,4 @@
-"""The result of an analysis: a labelled dataset, its drive, and its file."""
+"""The result of an analysis: a labeled dataset, its drive, and its file."""
 
 from collections.abc import Mapping, Sequence
 from importlib import import_module
@@ -26,9 +26,9 @@ class Result:
     Parameters
     ----------
     dataset : xarray.Dataset
-        Labelled variables; its attributes include ``kind``, ``drive``, ``status`` and ``warnings``.
+        Labeled variables; its attributes include ``kind``, ``drive``, ``status`` and ``warnings``.
     drive : Drive
-        The drive that was analysed.
+        The drive that was analyzed.
     path : Path or None
         The result file, or None for a result in memory.
 
@@ -121,7 +121,7 @@ def build_result(
     kind : str
         Name of the analysis.
     drive : Drive
-        The drive that was analysed.
+        The drive that was analyzed.
     variables : mapping
         Name -> description and values of a variable.
     coordinates : mapping

@@ -253,7 +253,7 @@ class Recorded(Protocol):
 
 
 class InMemory:
-    """Variables of a dataset as plain arrays, which are quicker to look at than labelled ones.
+    """Variables of a dataset as plain arrays, which are quicker to look at than labeled ones.
 
     Parameters
     ----------

@@ -65,7 +65,7 @@ class SlipParts(NamedTuple):
     """By the stretch of the spans that reach the two pulleys."""
     bending: FloatArray
     """By what bending and its hysteresis take from the stretch until the belt touches, beyond the rolling radii."""
-    regularisation: FloatArray
+    regularization: FloatArray
     """What is left: by the slope of the friction law, and by errors of the mesh."""
     sliding: FloatArray
     """By arcs that slide as a whole."""

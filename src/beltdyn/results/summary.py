@@ -109,7 +109,7 @@ class Summary:
 
 
 def summarize(run: Run) -> Summary:
-    """Summarise a run.
+    """Summarize a run.
 
     Parameters
     ----------
@@ -190,7 +190,7 @@ class Compared:
     Attributes
     ----------
     quantity : str
-        "speed", "slip", "hub load", "contact force" (the largest normal force per metre of belt), "tension" or
+        "speed", "slip", "hub load", "contact force" (the largest normal force per meter of belt), "tension" or
         "position" of a tensioner.
     name : str
         Name of the pulley, of the span, or of the tensioner's pulley.
@@ -297,7 +297,7 @@ def _ending(run: Run) -> Iterator[Compared]:
 
 
 def _largest_contact_forces(recorded: Recorded, summary: Summary) -> list[float]:
-    """Largest normal force per metre of belt on each pulley, averaged over time, N/m."""
+    """Largest normal force per meter of belt on each pulley, averaged over time, N/m."""
     times = np.asarray(recorded["field_time"])
     rows = slice(int(np.searchsorted(times, min(summary.start, times[-1]))), None)
     force, touched = np.asarray(recorded["normal_force"])[rows], np.asarray(recorded["contact_pulley"])[rows]

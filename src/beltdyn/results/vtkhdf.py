@@ -74,7 +74,7 @@ class Frames(NamedTuple):
 
 
 class Ribbon:
-    """The centreline of the belt, as wide as the belt: from -b/2 to b/2 out of the plane.
+    """The centerline of the belt, as wide as the belt: from -b/2 to b/2 out of the plane.
 
     It has points at all nodes and at all places where contact is recorded, where values are those that are recorded; in
     between they are interpolated. An element has one tension.
@@ -128,7 +128,7 @@ _LEAST = 0.5
 class Cylinders:
     """Pulleys as wide as the belt, with a marked sector that begins on the x axis when their angle is zero.
 
-    They end below the ribbon, which shows the centreline, by half of the belt's thickness at least: it is seen on arcs.
+    They end below the ribbon, which shows the centerline, by half of the belt's thickness at least: it is seen on arcs.
 
     Parameters
     ----------

@@ -33,7 +33,7 @@ _HALF_TURN = 179.95
 
 
 def rest_sheet(given: Drive, drive: Drive, installation: Installation) -> Sheet:
-    """Summarise a drive at rest."""
+    """Summarize a drive at rest."""
     parts: list[Table | Facts] = [
         Facts(tuple(_facts(given, drive, installation))),
         Table("Pulleys at rest", _PULLEY_HEADINGS, tuple(_pulleys(drive, installation))),

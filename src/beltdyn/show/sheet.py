@@ -146,7 +146,7 @@ _KILOWATTS = 1e4
 
 
 def run_sheet(run: Run) -> Sheet:
-    """Summarise a run in tables and facts."""
+    """Summarize a run in tables and facts."""
     if run.outputs == 0:
         return Sheet("The run ended before its first output.", ())
     summary = summarize(run)

@@ -1,4 +1,4 @@
-"""Generalised-alpha time integration with variable steps, in compiled code.
+"""Generalized-alpha time integration with variable steps, in compiled code.
 
 The local error of the position is (beta + (am - af) / 2 - 1/6) h^2 (A1 - A0) to leading order.  It is
 allowed in proportion to the length of the step; but not beyond a length at which errors that pull the same way would

@@ -1,4 +1,4 @@
-"""One step of generalised-alpha, solved by Newton's method with a line search, in compiled code.
+"""One step of generalized-alpha, solved by Newton's method with a line search, in compiled code.
 
 Second-order form of Arnold and Brüls (2007), in which the equations of motion hold exactly at the end of each step
 and an auxiliary acceleration A carries the numerical damping:
@@ -26,7 +26,7 @@ from beltdyn.system.motion import subtract_multipliers, subtract_solution
 from beltdyn.system.ring_matrix import factorise_ring, substitute
 from beltdyn.system.state_forces import prescribe
 
-# Coefficients of generalised-alpha (Chung and Hulbert 1993); the method is described in `alpha_step`
+# Coefficients of generalized-alpha (Chung and Hulbert 1993); the method is described in `alpha_step`
 
 
 class Method(NamedTuple):
@@ -196,7 +196,7 @@ def _follow(method: Method, before: float, after: float, lagged: float) -> tuple
     return followed, ((1.0 - method.af) * after + method.af * before - method.am * followed) / (1.0 - method.am)
 
 
-# The first guess of a step of generalised-alpha
+# The first guess of a step of generalized-alpha
 
 
 @kernel

@@ -1,4 +1,4 @@
-"""Eigenvalues of linearised equations of motion (K + s C + s^2 M) x = 0, those that swing, from the slowest on.
+"""Eigenvalues of linearized equations of motion (K + s C + s^2 M) x = 0, those that swing, from the slowest on.
 
 A motion that meets no force, such as that of a free pulley that turns, gives a double eigenvalue of zero: it may stand
 anywhere, and turn on.  Its rate takes its place as the unknown, which leaves no such pair.
@@ -382,7 +382,7 @@ class _Known:
 def _band_by_band(
     given: Pencil, count: int, first: float, counted: Callable[[ComplexArray], BoolArray]
 ) -> tuple[ComplexArray, ComplexArray]:
-    """Eigenvalues in neighbouring bands of frequencies, until enough of them swing and are counted.
+    """Eigenvalues in neighboring bands of frequencies, until enough of them swing and are counted.
 
     Disks along the imaginary axis leave out what is damped much between them: the rest of the wedge of modes below the
     last band is filled up, so that which of them are listed depends neither on shifts nor on the Arnoldi method.

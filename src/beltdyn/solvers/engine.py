@@ -1,6 +1,6 @@
 """The single compiled entry point of everything that solves the equations of motion.
 
-A kernel that Python calls is compiled whole, with all that it calls.  Linearising, for statics and for starts, and
+A kernel that Python calls is compiled whole, with all that it calls.  Linearizing, for statics and for starts, and
 stepping through time share most of their code; with a single entry point it is compiled once.
 """
 
@@ -33,7 +33,7 @@ ADVANCE: Final = 0
 LINEARISE: Final = 1
 """Assemble at the trial state of the integration, and solve."""
 ACCELERATE: Final = 2
-"""Prescribe the motion of what is driven, linearise, and put the solution into the trial acceleration."""
+"""Prescribe the motion of what is driven, linearize, and put the solution into the trial acceleration."""
 CORRECT: Final = 3
 """Assemble the residual alone at the trial state of the integration, and solve with the factors that are there."""
 
@@ -45,7 +45,7 @@ class Request(NamedTuple):
 
     kind: int
     time: float = 0.0
-    """Where the last step ends, or where to linearise, s."""
+    """Where the last step ends, or where to linearize, s."""
     budget: int = 0
     """Steps to try at most."""
     factors: TangentFactors = NO_TANGENT

@@ -1,7 +1,7 @@
 """Whether a belt flutters where it slides: how far vibrations could grow in a run.
 
 While a belt slides, vibrations near the frequency of the belt on its penalty springs may take energy from what drives
-the pulley and grow (`theory.sliding_flutter`).  How fast, the equations of motion say, linearised at states of the run;
+the pulley and grow (`theory.sliding_flutter`).  How fast, the equations of motion say, linearized at states of the run;
 the integral of that over the time of sliding is the logarithm of the factor by which a vibration grows.  What grows in
 a piece of belt stops growing when that has passed the arc on which it slides.
 """
@@ -26,7 +26,7 @@ if TYPE_CHECKING:
     from scipy.sparse import csc_array
 
 
-# Vibrations about a state in motion: eigenvalues of the equations of motion, linearised there
+# Vibrations about a state in motion: eigenvalues of the equations of motion, linearized there
 
 _BATCHES = 2
 """Batches of steps of the Arnoldi method, at most."""

@@ -1,4 +1,4 @@
-"""Generalised-alpha behind the interface of all integrators."""
+"""Generalized-alpha behind the interface of all integrators."""
 
 from collections.abc import Iterator
 from dataclasses import dataclass
@@ -34,7 +34,7 @@ that errors of time excite have an energy of fourth order in the step, and are l
 
 @dataclass(frozen=True)
 class GeneralizedAlpha:
-    """Generalised-alpha with variable steps.
+    """Generalized-alpha with variable steps.
 
     Attributes
     ----------

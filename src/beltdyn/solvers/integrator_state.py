@@ -1,4 +1,4 @@
-"""State and settings of generalised-alpha, as records for its kernels."""
+"""State and settings of generalized-alpha, as records for its kernels."""
 
 from typing import Final, NamedTuple
 
@@ -69,7 +69,7 @@ class Trial(NamedTuple):
 
 
 class IntegratorState(NamedTuple):
-    """The moving state of generalised-alpha, and what it tries next; everything is changed in place."""
+    """The moving state of generalized-alpha, and what it tries next; everything is changed in place."""
 
     clock: np.record
     """Row of `CLOCK`."""

@@ -58,8 +58,8 @@ def find_steady(
     tolerance
         Size of the last step, m. It is known before it is made, and differences of states are the more exact with it.
     most
-        Iterations, at most; with none of them the tangent at the state is factorised.
-    factorised
+        Iterations, at most; with none of them the tangent at the state is factorized.
+    factorized
         Whether the factors in `work` serve the first iteration: those of a state nearby, of which the first step is
         that of the implicit function theorem.
     work

@@ -159,7 +159,7 @@ class SteadySearch:
         return self._try(Setting(), factorised=True) or self._try(Setting())
 
     def factorised(self) -> SteadyWork:
-        """The factorised tangent at the state, for small changes of the drive."""
+        """The factorized tangent at the state, for small changes of the drive."""
         system = self._at(self.setting)
         drive_shafts(system, self.state.velocity)
         anchor = anchor_at(self.state, False)
@@ -271,7 +271,7 @@ class SteadySearch:
         Parameters
         ----------
         known
-            What this has given for a neighbour, among others. The ends are then those by the tangent, times the
+            What this has given for a neighbor, among others. The ends are then those by the tangent, times the
             factors that were found there.
 
         Returns
@@ -387,7 +387,7 @@ class SteadySearch:
     def _try(self, setting: Setting, tolerance: float | None = None, *, factorised: bool = False) -> bool:
         """Look for steady running at a setting from the state that there is, which stays where that fails.
 
-        The first corrections are by the tangent that is factorised already, if it is.  The tolerance is that of the
+        The first corrections are by the tangent that is factorized already, if it is.  The tolerance is that of the
         search by default.
         """
         state, system = self.state, self._at(setting)

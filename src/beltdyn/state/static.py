@@ -56,7 +56,7 @@ def find_equilibrium(
     system: System,
     start: State,
     *,
-    method: Literal["globalised", "newton"] = "globalised",
+    method: Literal["globalized", "newton"] = "globalized",
     max_iterations: int = 500,
 ) -> Equilibrium:
     """Find a static equilibrium of a belt from an initial state.
@@ -71,7 +71,7 @@ def find_equilibrium(
     start
         Initial state; its belt must be at rest.
     method
-        "globalised", or "newton" for the plain iteration of the paper.
+        "globalized", or "newton" for the plain iteration of the paper.
     max_iterations
         Largest number of iterations, by default 500.
 
@@ -144,7 +144,7 @@ def tensioner_compliance(system: System, state: State) -> FloatArray:
 
 
 class _Search:
-    """Belt and tensioners on their way to equilibrium, with the linearised equations where they stand."""
+    """Belt and tensioners on their way to equilibrium, with the linearized equations where they stand."""
 
     def __init__(self, system: System, start: State) -> None:
         self._system = system._replace(bodies=only_tensioners(system))
@@ -164,13 +164,13 @@ class _Search:
 
     @property
     def force(self) -> float:
-        """Largest force out of balance where the equations were linearised last, over E A alpha1."""
+        """Largest force out of balance where the equations were linearized last, over E A alpha1."""
         nodes = np.abs(self._here.matrix.node_side / self._scale)
         tensioners = np.abs(self._here.matrix.border_side[: self._reach.size] / self._reach)
         return max(float(np.max(nodes)), float(np.max(tensioners, initial=0.0))) / self._system.element.section.axial
 
     def linearise(self, shift: float) -> float:
-        """Linearise where the belt stands, with an inertial shift relative to axial waves; energy norm of the step.
+        """Linearize where the belt stands, with an inertial shift relative to axial waves; energy norm of the step.
 
         It is nan where the stiffness is singular.
         """
@@ -203,7 +203,7 @@ class _Search:
         return False
 
     def answer_to_force(self, number: int) -> FloatArray:
-        """How far tensioners move by a unit of force on one of them, from where the equations were linearised."""
+        """How far tensioners move by a unit of force on one of them, from where the equations were linearized."""
         tensioners = self._system.tensioners.copy()
         tensioners["push"][number] += 1.0
         correct(self._system._replace(tensioners=tensioners), self._motion, self._multipliers, self._ahead)

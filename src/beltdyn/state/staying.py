@@ -211,7 +211,7 @@ def depths(system: System, state: State, places: FloatArray) -> FloatArray:
 
 
 def _beyond(along: FloatArray, depth: FloatArray, inner: int, outer: int) -> float:
-    """Way from a point inside a pulley to its rim against the way to a neighbour outside, m."""
+    """Way from a point inside a pulley to its rim against the way to a neighbor outside, m."""
     return float((along[inner] - along[outer]) * depth[inner] / (depth[inner] - depth[outer]))
 
 

@@ -3,8 +3,8 @@
 The state of a system with N nodes is the vector of n N nodal coordinates, n to a node (six of the paper's element),
 followed by D coordinates of bodies: the angles of the P rims, those of the bodies behind the rims in hub chains, the
 states of controllers, and the places of tensioners.  Velocities and accelerations are ordered alike.  Elements couple a
-node with the next one only, and the centreline of an element is made of one or several curves; beyond that the system
-does not ask how a belt is discretised.
+node with the next one only, and the centerline of an element is made of one or several curves; beyond that the system
+does not ask how a belt is discretized.
 """
 
 from typing import Any, Final, NamedTuple
@@ -22,11 +22,11 @@ from beltdyn.records import Records, record
 
 PULLEY = record(
     center="2f8",  # m; where a tensioner carries the pulley, its place at coordinate zero
-    radius="f8",  # effective radius, at which the belt's centreline runs, m
+    radius="f8",  # effective radius, at which the belt's centerline runs, m
     friction="f8",  # coefficient of friction
     rolling="f8",  # coefficient of rolling resistance
     shaft="i8",  # body that drivers and loads act on: the rim, or the last body of its hub chain
-    carrier="i8",  # tensioner that carries the pulley, -1 where its centre is fixed
+    carrier="i8",  # tensioner that carries the pulley, -1 where its center is fixed
 )
 """A pulley."""
 
@@ -46,7 +46,7 @@ class Supports(NamedTuple):
     """Coordinates that do not move, shape (n N,)."""
     any_fixed: bool
     force: FloatArray
-    """Constant generalised forces on the nodal coordinates, weight among them, shape (n N,)."""
+    """Constant generalized forces on the nodal coordinates, weight among them, shape (n N,)."""
     moment: FloatArray
     """Constant moments that turn the section r_y of a node, N m, shape (N,)."""
 
@@ -72,11 +72,11 @@ class System(NamedTuple):
     mass: FloatArray
     """Mass matrices of the elements, shape (elements, 2 n, 2 n)."""
     vectors: tuple[int, ...]
-    """Where among the 2 n coordinates of an element the v vectors begin that carry its centreline."""
+    """Where among the 2 n coordinates of an element the v vectors begin that carry its centerline."""
     shift: tuple[float, ...]
     """What a shift of the whole belt does to these vectors: 1 for places, 0 for derivatives."""
     control: FloatArray
-    """Control points of the curves of the centreline from these vectors, shape (elements, curves, degree + 1, v)."""
+    """Control points of the curves of the centerline from these vectors, shape (elements, curves, degree + 1, v)."""
     turned: int
     """Coordinate of a node with which the vector begins that a moment on the node turns; -1 if none does."""
     hysteresis: Records
@@ -196,7 +196,7 @@ class BodyForces(NamedTuple):
     shaft: FloatArray
     """Torque on each shaft from outside: the load, or the driver's reaction, N m, shape (P,)."""
     force: FloatArray
-    """Generalised force on each body, but the driver's reaction; N m, or N on a sliding tensioner; shape (D,)."""
+    """Generalized force on each body, but the driver's reaction; N m, or N on a sliding tensioner; shape (D,)."""
     power: FloatArray
     """Powers in the order of `POWERS`, W, shape (9,)."""
     stored: FloatArray
@@ -204,7 +204,7 @@ class BodyForces(NamedTuple):
 
 
 class Equations(NamedTuple):
-    """Linearised equations of motion with their solution, and the body forces of the state that they belong to."""
+    """Linearized equations of motion with their solution, and the body forces of the state that they belong to."""
 
     matrix: RingMatrix
     """Tangent, and the residual as right-hand side."""

@@ -28,7 +28,7 @@ from beltdyn.system.hysteresis import hysteresis_rows
 
 
 def weight_forces(mesh: Discretization, nodes: int, gravity: tuple[float, float]) -> FloatArray:
-    """Generalised forces of a uniform gravity, the integral of rho A S^T g over the belt.
+    """Generalized forces of a uniform gravity, the integral of rho A S^T g over the belt.
 
     A uniform acceleration moves the material points alone, not the derivatives, so that the integral is the mass
     matrix of an element times g at its points.
@@ -188,7 +188,7 @@ def belt_system(
 
 
 def contact_points(contact: Contact | None) -> Quadrature:
-    """Where contact is evaluated on a curve of the centreline: at Gauss points, or at its ends alone."""
+    """Where contact is evaluated on a curve of the centerline: at Gauss points, or at its ends alone."""
     if contact is None:
         return gauss_points(1)
     if contact.sampling == "nodal":

@@ -101,7 +101,7 @@ def element_kind(system: System) -> ElementKind:
 
 
 def curve_lengths(system: System) -> FloatArray:
-    """Reference lengths of the curves of the centreline along the belt, m, shape (elements * curves,)."""
+    """Reference lengths of the curves of the centerline along the belt, m, shape (elements * curves,)."""
     curves = system.control.shape[1]
     return np.repeat(system.length / curves, curves)
 

@@ -1,4 +1,4 @@
-"""One element of the belt at a state: its coordinates, its centreline and the losses of its material."""
+"""One element of the belt at a state: its coordinates, its centerline and the losses of its material."""
 
 import numpy as np
 
@@ -26,10 +26,10 @@ def element_workspace(system: System) -> np.record:
             element=element_kind(system).workspace,  # residual and tangent of one element
             contact=contact_record(count, vectors),
             coordinates=f"(3,{2 * len(system.scale)})f8",  # position, velocity and acceleration of one element
-            control=f"({count},2)f8",  # control points of a curve of the centreline
+            control=f"({count},2)f8",  # control points of a curve of the centerline
             control_velocity=f"({count},2)f8",
             hysteresis=hysteresis_scratch(vectors),
-            drift=drift_record(vectors),  # by a change of the velocity of a pulley's centre
+            drift=drift_record(vectors),  # by a change of the velocity of a pulley's center
         )
     )
 
@@ -143,7 +143,7 @@ def material_forces(system: System, element: int, factors: DampingFactors, work:
 
 @kernel(inline=True)
 def centreline(system: System, element: int, curve: int, work: np.record) -> Curve:
-    """A curve of the centreline of an element.
+    """A curve of the centerline of an element.
 
     Parameters
     ----------
@@ -168,7 +168,7 @@ def centreline(system: System, element: int, curve: int, work: np.record) -> Cur
 
 @kernel
 def fill_control(system: System, element: int, curve: int, coordinates: FloatArray, points: FloatArray) -> None:
-    """Control points of a curve of the centreline from the coordinates of its element.
+    """Control points of a curve of the centerline from the coordinates of its element.
 
     Parameters
     ----------

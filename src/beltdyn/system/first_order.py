@@ -51,7 +51,7 @@ class JointConstraint:
         Parameters
         ----------
         force : ndarray, shape (n N,)
-            Generalised contact and elastic forces Q.
+            Generalized contact and elastic forces Q.
         constraint : ndarray, shape (n,), optional
             Q_d; zero for a rigid joint, whose constraint is linear.
 

@@ -1,9 +1,9 @@
 """How the mesh stands to the belt: it travels with the material, or stays in place while the belt flows through it.
 
-In a staying mesh, the point r(sigma, t) of the centreline is that of the material point sigma - s(t), with s the
+In a staying mesh, the point r(sigma, t) of the centerline is that of the material point sigma - s(t), with s the
 length of unstretched belt that has passed.  Its velocity is dr/dt + (ds/dt) dr/dsigma.  Within an element the second
 term is a polynomial like r itself, so that vectors D e of the element's own carry it exactly; derivatives of second and
-third order, which jump from element to element, make these vectors differ from those of the neighbour.  Its
+third order, which jump from element to element, make these vectors differ from those of the neighbor.  Its
 acceleration is
 
     d2r/dt2 + 2 (ds/dt) d2r/dt dsigma + (d2s/dt2) dr/dsigma + (ds/dt)^2 d2r/dsigma2.
@@ -23,7 +23,7 @@ from beltdyn.records import record
 from beltdyn.system.arrays import System
 from beltdyn.system.discretization import curve_lengths
 
-# Points of the centreline of a belt at any place along it
+# Points of the centerline of a belt at any place along it
 
 
 def centreline_points(
@@ -136,11 +136,11 @@ def staying(control: FloatArray, length: FloatArray, mass: float) -> Staying:
     Parameters
     ----------
     control : ndarray, shape (elements, 1, degree + 1, v)
-        Control points of the centreline from the vectors, as many as these.
+        Control points of the centerline from the vectors, as many as these.
     length : ndarray, shape (elements,)
         Reference lengths, m.
     mass
-        Mass of a metre of belt, kg/m.
+        Mass of a meter of belt, kg/m.
     """
     degree = control.shape[2] - 1
     basis = control[:, 0]

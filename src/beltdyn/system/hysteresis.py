@@ -4,8 +4,8 @@ Of an element with the reference length L it takes two strains, both of them mea
 
     eps = (1/L integral of q . q dx - 1) / 2 - eps_0,    q = dr/dx,
 
-beyond a strain eps_0 of reference, and the curvature kappa = (theta_j - theta_i) / L by the angles of the centreline
-at both ends.  Bending without tension shortens the centreline by b kappa^2, which is no stretch: it is added to eps.
+beyond a strain eps_0 of reference, and the curvature kappa = (theta_j - theta_i) / L by the angles of the centerline
+at both ends.  Bending without tension shortens the centerline by b kappa^2, which is no stretch: it is added to eps.
 Means know no waves of the strain within an element, and a strain that passes from one element to the next loses the
 same on any travelling mesh.  In a staying mesh nothing passes from element to element, and means would jump there:
 bending is damped point by point (`elements.planar_curve_damping`), and rows are of stretch alone.
@@ -25,7 +25,7 @@ from beltdyn.records import Records, record, records
 
 
 def hysteresis_record(vectors: int) -> np.dtype[np.void]:
-    """Kind of the rows of `add_hysteresis`, for a centreline of so many vectors."""
+    """Kind of the rows of `add_hysteresis`, for a centerline of so many vectors."""
     return record(
         length="f8",  # reference length L, m
         axial="f8",  # modulus of stretch, N
@@ -35,7 +35,7 @@ def hysteresis_record(vectors: int) -> np.dtype[np.void]:
         stretch_length="f8",  # l of stretch, m
         bending_length="f8",  # l of bending, m
         metric=f"({vectors},{vectors})f8",  # 1/L integral of q . q dx from products of the vectors
-        ends=f"(2,{vectors})f8",  # directions of the centreline at both ends from the vectors
+        ends=f"(2,{vectors})f8",  # directions of the centerline at both ends from the vectors
         middle=f"{vectors}f8",  # mean place of both ends from the vectors
     )
 
@@ -70,7 +70,7 @@ def hysteresis_rows(belt: Belt, length: FloatArray, control: FloatArray, passing
     length : ndarray, shape (elements,)
         Reference lengths of the elements, m.
     control : ndarray, shape (elements, curves, degree + 1, v)
-        Control points of the curves of the centreline from its v vectors.
+        Control points of the curves of the centerline from its v vectors.
     passing
         How strains pass along the belt; by default from one element to the next, without strain at rest.
     """
@@ -109,7 +109,7 @@ def add_hysteresis(
     own
         Row of the element, of `hysteresis_record`.
     vectors
-        Where among the coordinates of the element the vectors begin that carry its centreline.
+        Where among the coordinates of the element the vectors begin that carry its centerline.
     by_position, by_velocity
         The tangent is the sum of these times the derivatives with respect to e and to its rate; with both zero there
         is none.

@@ -296,7 +296,7 @@ def numerical_loss(system: System, before: Motion, after: Motion, impulse: Float
     """Energy that the damping of the time integrator takes in a step.
 
     The change of the kinetic energy should be the work of the forces of inertia M a on the way of the step.  What
-    generalised-alpha leaves between them is
+    generalized-alpha leaves between them is
 
         (a0 + a1)/2 . M (q1 - q0) - (v0 + v1)/2 . M (v1 - v0),
 

@@ -1,4 +1,4 @@
-"""Linearised equations of motion as arrays, and their solutions applied to states."""
+"""Linearized equations of motion as arrays, and their solutions applied to states."""
 
 import numpy as np
 

@@ -1,6 +1,6 @@
-"""Contact with a pulley that a tensioner carries: what the motion of its centre adds to the tangent.
+"""Contact with a pulley that a tensioner carries: what the motion of its center adds to the tangent.
 
-Contact depends on where the belt is and how it moves against the centre.  With the centre c(q), a change of the
+Contact depends on where the belt is and how it moves against the center.  With the center c(q), a change of the
 tensioner's coordinate acts like the opposite shift of the whole curve by c' dq, and like a change of its velocity by
 -(c' dq/dt + c'' dq/dt dq).  With T the tangent of the forces F on the vectors, w what a shift does to these
 vectors, and hub force -sum_a w_a F_a:
@@ -71,14 +71,14 @@ def pulley_speeds(system: System, velocity: FloatArray) -> FloatArray:
 
 
 class MovingCenter(NamedTuple):
-    """How the centre of a pulley moves with the coordinate of the tensioner that carries it."""
+    """How the center of a pulley moves with the coordinate of the tensioner that carries it."""
 
     unknown: int
-    """Place of the coordinate in the border, -1 where the centre is fixed."""
+    """Place of the coordinate in the border, -1 where the center is fixed."""
     rim: int
     """Place of the pulley's angle in the border, -1 where it is prescribed."""
     x: float
-    """c', derivative of the centre."""
+    """c', derivative of the center."""
     y: float
     drift_x: float
     """c'' dq/dt, rate of c'."""
@@ -88,13 +88,13 @@ class MovingCenter(NamedTuple):
 
 
 def drift_record(vectors: int) -> np.dtype[np.void]:
-    """Kind of what a drift of the centre's velocity does: forces on the vectors (N) and moment on the pulley (N m)."""
+    """Kind of what a drift of the center's velocity does: forces on the vectors (N) and moment on the pulley (N m)."""
     return record(force=f"({vectors},2)f8", moment="f8")
 
 
 @kernel
 def moving_center(system: System, pulley: int, position: FloatArray, velocity: FloatArray) -> MovingCenter:
-    """The motion of a pulley's centre at a state of shape (n N + D,)."""
+    """The motion of a pulley's center at a state of shape (n N + D,)."""
     carrier, rim = system.pulleys[pulley].carrier, system.bodies[pulley].unknown
     if carrier < 0:
         return MovingCenter(-1, rim, 0.0, 0.0, 0.0, 0.0, False)
@@ -112,7 +112,7 @@ def keep_drift(system: System, center: MovingCenter, contact: np.record, drift: 
     Parameters
     ----------
     system, center
-        The system, and how the centre moves.
+        The system, and how the center moves.
     contact
         With the derivatives of force and moment with respect to the velocity.
     drift
@@ -155,7 +155,7 @@ def couple_center(
     element
         Which one touches.
     center
-        How the centre moves.
+        How the center moves.
     drifting
         Factor of the drift: that of the derivative with respect to position, zero where there is none.
     contact

@@ -128,7 +128,7 @@ def _observe_energy(system: System, element: int, samples: Samples, result: Obse
 
 @kernel(inline=True)
 def _stretch(system: System, piece: Curve, xi: float, pull: float, rates: FloatArray) -> tuple[float, float, float]:
-    """Derivative of the centreline with respect to the belt coordinate, and the tension, with that by hysteresis."""
+    """Derivative of the centerline with respect to the belt coordinate, and the tension, with that by hysteresis."""
     fill_bernstein_rates(xi, rates)
     x, y = combine(piece.control, rates)
     vx, vy = combine(piece.velocity, rates)
@@ -290,7 +290,7 @@ def _observe_spans(system: System, samples: Samples, result: Observations, k: in
 
 @kernel(inline=True)
 def _observe_bodies(system: System, position: FloatArray, result: Observations, k: int) -> None:
-    """Centres of the pulleys and potential energy of weight and of constant forces on nodes."""
+    """Centers of the pulleys and potential energy of weight and of constant forces on nodes."""
     for c in range(system.first_body):
         result.potential_energy[k] -= system.supports.force[c] * position[c]
     for p in range(system.pulleys.size):

@@ -1,9 +1,9 @@
 """Linear algebra of the belt: a block-tridiagonal matrix, cyclic or open, with a border, solved in O(n).
 
-A closed ring is cut open by moving its last node to the border.  The inner nodes that remain are factorised, and
+A closed ring is cut open by moving its last node to the border.  The inner nodes that remain are factorized, and
 solved for all columns of the border at once; what the border's own equations leave of these solutions is a small dense
 matrix.  An equation of the border touches few nodes, so that the cost is linear in nodes times border.  Another
-right-hand side costs a sixth of a factorisation.
+right-hand side costs a sixth of a factorization.
 """
 
 import numpy as np
@@ -179,7 +179,7 @@ def places(matrix: RingMatrix) -> tuple[IntArray, IntArray]:
 
 @kernel
 def solve_ring(matrix: RingMatrix, closed: bool, node_part: FloatArray, border_part: FloatArray) -> bool:
-    """Factorise a matrix and solve for its right-hand side; see `factorise_ring` and `substitute`.
+    """Factorize a matrix and solve for its right-hand side; see `factorise_ring` and `substitute`.
 
     Returns
     -------
@@ -194,7 +194,7 @@ def solve_ring(matrix: RingMatrix, closed: bool, node_part: FloatArray, border_p
 
 @kernel
 def factorise_ring(matrix: RingMatrix, closed: bool) -> bool:
-    """Factorise a matrix, whose entries are kept as they are.
+    """Factorize a matrix, whose entries are kept as they are.
 
     Parameters
     ----------
@@ -242,7 +242,7 @@ def substitute(matrix: RingMatrix, closed: bool, node_part: FloatArray, border_p
     Parameters
     ----------
     matrix
-        Factorised by `factorise_ring`, since when its blocks between nodes and in the border's rows are the same.
+        Factorized by `factorise_ring`, since when its blocks between nodes and in the border's rows are the same.
     closed
         As there.
     node_part : ndarray, shape (N, n)

@@ -23,7 +23,7 @@ def layer_length(
 
 
 def tension_along_arc(x: FloatArray, entry: float, leaving: float, arc: float, layer: float) -> FloatArray:
-    """Tension along an arc, linearised and below the cap: T = T_in + (T_out - T_in) (e^(X/l) - 1) / (e^(a/l) - 1)."""
+    """Tension along an arc, linearized and below the cap: T = T_in + (T_out - T_in) (e^(X/l) - 1) / (e^(a/l) - 1)."""
     return np.asarray(entry + (leaving - entry) * np.expm1(x / layer) / np.expm1(arc / layer))
 
 
@@ -33,7 +33,7 @@ def friction_along_arc(x: FloatArray, entry: float, leaving: float, arc: float, 
 
 
 def creep_speed_loss(tight: float, slack: float, law: StretchParameters, arc: float, layer: float) -> float:
-    """Loss of speed (omega1 - omega2) / omega1 of a drive with equal pulleys below the cap, linearised.
+    """Loss of speed (omega1 - omega2) / omega1 of a drive with equal pulleys below the cap, linearized.
 
     With a growing exponential on each arc, (omega1 - omega2) R / c = (g1 - g2) coth(a / 2 l) and
     omega1 R / c = g1 + (g1 - g2) / (e^(a/l) - 1).  For l << a this is elastic creep, (T1 - T2) / EA; for l >> a it is

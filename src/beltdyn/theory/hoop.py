@@ -24,7 +24,7 @@ def hoop_stretch(
 ) -> float:
     """Stretch g of a spinning hoop by Green's strain, exactly: g^2 = 1 + (2 rho A c^2 - 3 EI kappa^2) / EA.
 
-    With v = c g and rho A / g kg in a running metre the hoop tension is rho A c^2 g.  The belt carries it by stretch,
+    With v = c g and rho A / g kg in a running meter the hoop tension is rho A c^2 g.  The belt carries it by stretch,
     EA (g^2 - 1) g / 2, and, as it was straight unstressed, by bending, 3/2 EI kappa^2 g (Eq. 14).
 
     Examples

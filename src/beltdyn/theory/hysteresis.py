@@ -1,4 +1,4 @@
-"""Hysteresis loss per metre of belt: bending onto and off a pulley, tension, compression.
+"""Hysteresis loss per meter of belt: bending onto and off a pulley, tension, compression.
 
 A material with the loss factor eta = tan delta = E''/E' loses in a cycle of the strain between two values
 
@@ -9,12 +9,12 @@ belt that bends from straight to the curvature 1 / R and back, and one whose ten
 
     pi / 4 eta EI / R^2,    pi / 4 eta (T1 - T2)^2 / EA
 
-a metre: pi / 2 eta of the energy of bending at the pulley.  That takes the loss of a cycle to depend on both values
+a meter: pi / 2 eta of the energy of bending at the pulley.  That takes the loss of a cycle to depend on both values
 alone, not on how fast and along which curve the strain goes between them.
 
-A belt under T that is pressed into a pulley by T / R a metre, and is k hard, sinks in by d = T / (R k).  Where it comes
+A belt under T that is pressed into a pulley by T / R a meter, and is k hard, sinks in by d = T / (R k).  Where it comes
 on and leaves it bends, and sinks in deeper, by r d.  With the same loss, pi / 2 eta of the energy, on each way between
-0, r d and d a metre loses
+0, r d and d a meter loses
 
     pi / 4 eta (2 r^2 - 1) T^2 / (k R^2).
 
@@ -38,12 +38,12 @@ STRETCH_SHARE: Final = 0.5 * pi
 
 
 def bending_loss(bending_stiffness: float, loss_factor: float, radii: FloatArray) -> FloatArray:
-    """Bending loss per metre of belt on each pulley, J/m, equal to a resisting force in N."""
+    """Bending loss per meter of belt on each pulley, J/m, equal to a resisting force in N."""
     return np.asarray(BENDING_SHARE * loss_factor * bending_stiffness / np.asarray(radii) ** 2)
 
 
 def stretch_loss(axial_stiffness: float, loss_factor: float, tight: float, slack: float) -> float:
-    """Loss per metre of belt over a tension cycle from slack to tight and back, J/m."""
+    """Loss per meter of belt over a tension cycle from slack to tight and back, J/m."""
     return BENDING_SHARE * loss_factor * (tight - slack) ** 2 / axial_stiffness
 
 
@@ -59,7 +59,7 @@ def deepest(stiffness: float) -> float:
 def compression_loss(
     tension: float, bending_stiffness: float, contact_stiffness: float, loss_factor: float, radii: FloatArray
 ) -> FloatArray:
-    """Compression loss per metre of belt on each pulley, J/m."""
+    """Compression loss per meter of belt on each pulley, J/m."""
     depth = deepest(bending_stiffness * contact_stiffness / tension**2)
     energy = (2.0 * depth**2 - 1.0) * tension**2 / contact_stiffness
     return np.asarray(BENDING_SHARE * loss_factor * energy / np.asarray(radii) ** 2)

@@ -10,7 +10,7 @@ class OpenBelt(NamedTuple):
     span: float
     """Length of each span, m."""
     tilt: float
-    """Angle between the spans and the line of centres, positive towards the second pulley, rad."""
+    """Angle between the spans and the line of centers, positive towards the second pulley, rad."""
     wrap: tuple[float, float]
     """Wrap angles, rad."""
     length: float

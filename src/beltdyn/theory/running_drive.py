@@ -42,7 +42,7 @@ class RunningDrive:
     mass, rotary_inertia
         rho A (kg/m) and rho I (kg m).
     distance, radii
-        Between the centres, and of the pulleys, m.
+        Between the centers, and of the pulleys, m.
     stiffness, friction, creep_rate_factor
         k_p (N/m^2), mu and nu_s (kg/(m s)).
     speed

@@ -94,7 +94,7 @@ class Shapes(NamedTuple):
     rims: ComplexArray
     """Ways of the rims, counter-clockwise, shape (k, P)."""
     tensioners: ComplexArray
-    """Ways of the centres, positive where the path gets longer, shape (k, K)."""
+    """Ways of the centers, positive where the path gets longer, shape (k, K)."""
 
 
 def belt_points(motions: SmallMotions) -> Points:
@@ -106,7 +106,7 @@ def belt_points(motions: SmallMotions) -> Points:
 
 
 def even_points(motions: SmallMotions) -> Points:
-    """Points at equal distances along the belt, as many of any mesh, and at the same places of neighbouring states."""
+    """Points at equal distances along the belt, as many of any mesh, and at the same places of neighboring states."""
     distance = float(motions.system.length.sum()) / _EVEN
     return _points_at(motions, distance * (np.arange(_EVEN, dtype=float) + 0.5), np.full(_EVEN, distance))
 

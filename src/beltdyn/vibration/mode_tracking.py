@@ -29,7 +29,7 @@ class Crossing(NamedTuple):
 
 
 def crossings(speed: FloatArray, frequency: FloatArray, damping_ratio: FloatArray, lines: FloatArray) -> list[Crossing]:
-    """Find where modes and excitations meet, by straight lines between neighbouring speeds.
+    """Find where modes and excitations meet, by straight lines between neighboring speeds.
 
     Parameters
     ----------

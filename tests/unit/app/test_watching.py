@@ -39,7 +39,7 @@ def test_what_is_drawn_lies_around_the_pulleys(result: Path) -> None:
     points = np.array(
         [[float(one) for one in pair.split()] for piece in seen.drawn["belt"] for pair in piece["d"][1:].split("L")]
     )
-    assert points[:, 1].max() == pytest.approx(81.25, abs=1.0)  # radius, mm: this belt touches with its centreline
+    assert points[:, 1].max() == pytest.approx(81.25, abs=1.0)  # radius, mm: this belt touches with its centerline
     assert points[0] == pytest.approx(points[-1], abs=0.01)  # closed
     assert [one["r"] for one in seen.drawn["pulleys"]] == [81.25, 81.25]
     turned = bd.open_run(result).fields_at()["pulley_angle"].values

@@ -101,7 +101,7 @@ CASES: dict[str, tuple[str, tuple[str, ...]]] = {
     # wedge and damping
     "wide wedge": (f"{SIZE}{STIFF}wedge_angle = 40", ("belt.wedge_angle = 40 must be at most 3.14159",)),
     "no wedge": (f"{SIZE}{STIFF}wedge_angle = 0", ("belt.wedge_angle = 0 must be greater than 0",)),
-    "wedge in metres": (f'{SIZE}{STIFF}wedge_angle = "40 mm"', ("must be in units of rad",)),
+    "wedge in meters": (f'{SIZE}{STIFF}wedge_angle = "40 mm"', ("must be in units of rad",)),
     "negative damping": (f"{SIZE}{STIFF}stretch_damping_time = -1", ("must be at least 0", "Give the damping time")),
     "damped truss": (
         f'{SIZE}{STIFF}bending_damping_time = 1e-3\nelements = 21\ndiscretization = "truss"',

@@ -78,7 +78,7 @@ CASES = (
     Case("missing name", 'name = "driver"\n', "", ("pulley[1].name is missing", "the name of the pulley")),
     Case("missing duration", "duration = 1.0", "", ("simulation.duration is missing", "the simulated time")),
     Case("missing friction", "friction = 1.2", "", ("contact.friction is missing", "coefficient of friction")),
-    # discretisation
+    # discretization
     Case(
         "discretisation",
         "elements = 20",

@@ -138,7 +138,7 @@ def test_before_the_beginning(short: Drive) -> None:
     component = component_of(short)
     assert np.isnan(outputs(component)).all()
     assert (component.time, component.get(SPEED), component.get(TORQUE)) == (0.0, 0.0, -0.1)
-    with pytest.raises(ModelError, match="the drive is not initialised"):
+    with pytest.raises(ModelError, match="the drive is not initialized"):
         component.step(0.0, 0.001)
     component.tolerance = -1.0
     with pytest.raises(ModelError, match=r"simulation\.rtol"):

@@ -254,7 +254,7 @@ def test_a_beginning_that_fails_is_told(unit: Path, host: Hosts) -> None:
     assert "simulation.rtol = 2.0" in one.logged[-1]
     with pytest.raises(FMICallException, match="DoStep failed"):
         one.step(0)
-    assert "the drive is not initialised" in one.logged[-1]
+    assert "the drive is not initialized" in one.logged[-1]
     one.unit.reset()
     one.put("simulation.rtol", 1e-3)
     one.begin()

@@ -1,4 +1,4 @@
-"""A drive at points of different widths, analysed by what takes no time."""
+"""A drive at points of different widths, analyzed by what takes no time."""
 
 from collections.abc import Callable
 from pathlib import Path

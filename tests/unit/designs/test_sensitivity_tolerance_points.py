@@ -30,7 +30,7 @@ def found(toleranced: Drive) -> Result:
 
 
 def test_both_spreads_agree(found: Result) -> None:
-    """Randomised Sobol points of two numbers have a deviation within a few per cent of the true one."""
+    """Randomized Sobol points of two numbers have a deviation within a few per cent of the true one."""
     values = found.dataset
     assert values.spread_of_points.values == pytest.approx(values.spread.values, rel=0.06)
     assert values.mean_of_points.values == pytest.approx(values["value"].values, rel=2e-3)

@@ -1,4 +1,4 @@
-"""The quintic element: derivatives, rigid motion, mass, pure bending, and how it meets its neighbours."""
+"""The quintic element: derivatives, rigid motion, mass, pure bending, and how it meets its neighbors."""
 
 import numpy as np
 import pytest
@@ -95,7 +95,7 @@ def test_energy_of_an_arc() -> None:
 @pytest.mark.parametrize("stretch", [0.95, 1.1])
 @pytest.mark.parametrize("turning", [-3.0, 20.0])
 def test_energy_is_that_of_the_papers_element_without_shear(stretch: float, turning: float) -> None:
-    """At a point: G and theta' are all that sections normal to the centreline leave of Eqs. 14 and 15."""
+    """At a point: G and theta' are all that sections normal to the centerline leave of Eqs. 14 and 15."""
     expected = energy_density(stretch**2, turning, 0.0, 0.0, SECTION)
     along = stretching(SECTION.stretch, stretch**2).energy
     found = along + bending_of(SECTION, stretch**2, stretch**2 * turning).energy

@@ -22,7 +22,7 @@ ROTARY = {"kind": "rotary", "pulley": "driven", "pivot": (0.191441, 0.2), "prelo
         (SLIDING | {"direction": (0, 0)}, "has zero length: at least one component must differ from zero"),
         (
             SLIDING | {"direction": (-1, 0)},
-            'the tensioner of "driven" cannot tension the belt: a metre along its direction lengthens the path by -2 m',
+            'the tensioner of "driven" cannot tension the belt: a meter along its direction lengthens the path by -2 m',
         ),
         (SLIDING | {"direction": (0, 1)}, 'the tensioner of "driven" cannot tension the belt'),
         (ROTARY | {"pivot": (0.191441, 0.0)}, "is the center of the pulley. Move one of them"),
@@ -75,7 +75,7 @@ def test_a_drive_with_tensioners_survives_its_text(drive: Drive) -> None:
 
 @pytest.mark.parametrize(("pivot", "leverage"), [((0.191441, 0.2), 2.0), ((0.191441, -0.2), -2.0)])
 def test_leverage_of_an_arm(drive: Drive, pivot: tuple[float, float], leverage: float) -> None:
-    """The driven pulley at (0.19, 0) with spans to the left: moved to the right by a metre, two metres of path."""
+    """The driven pulley at (0.19, 0) with spans to the left: moved to the right by a meter, two meters of path."""
     arm = RotaryTensioner(**ROTARY | {"pivot": pivot})
     assert arm.leverage(drive.path.centers[1], drive.path.gradient(1)) == pytest.approx(leverage, rel=1e-12)
 

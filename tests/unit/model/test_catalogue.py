@@ -59,7 +59,7 @@ def test_values_belong_to_elastomer_and_cord(name: str) -> None:
 
     Cords lose less than rubber, whose loss factor is 0.1 to 0.2, and so stretch less than bending.
     Waves of stretch are faster than in bare rubber, which has about 100 m/s, and slower than in aramid, with 9 km/s.
-    On the smallest pulley the fibre farthest from the tension line is strained by less than rubber bears for long.
+    On the smallest pulley the fiber farthest from the tension line is strained by less than rubber bears for long.
     """
     entry = read_catalogue()[name]
     assert 900 < entry.mass_per_length / (entry.width * entry.thickness) < 1400
@@ -93,7 +93,7 @@ def efficiency(name: str) -> float:
 
 @pytest.mark.parametrize("name", [name for name in NAMES if "wrapped" in read_catalogue()[name].kind])
 def test_efficiency_of_wrapped_v_belts(name: str) -> None:
-    """Published: 95 to 98 % (Gates), and 93 to 95 % of single belts with their bearings, which are not modelled."""
+    """Published: 95 to 98 % (Gates), and 93 to 95 % of single belts with their bearings, which are not modeled."""
     assert 0.93 < efficiency(name) < 0.99
 
 
@@ -136,7 +136,7 @@ def test_sections_of_classical_belts(name: str) -> None:
     ],
 )
 def test_the_back_is_as_much_longer_as_published(name: str, longer: float) -> None:
-    """Outer less datum length, mm, in whole millimetres and rounded up (ContiTech, price list Industry 2011)."""
+    """Outer less datum length, mm, in whole millimeters and rounded up (ContiTech, price list Industry 2011)."""
     assert 2e3 * pi * read_catalogue()[name].back_offset == pytest.approx(longer, abs=1.0)
 
 
@@ -193,7 +193,7 @@ def test_ones_own_extends_and_replaces(tmp_path: Path) -> None:
 
 def test_an_entry_is_checked() -> None:
     entry = read_catalogue()["A"]
-    with pytest.raises(ValueError, match=r"entry\.sold_by = \"metres\" is not a valid choice"):
+    with pytest.raises(ValueError, match=r"entry\.sold_by = \"meters\" is not a valid choice"):
         Entry(**entry.arguments | {"sold_by": "metres"})
 
 

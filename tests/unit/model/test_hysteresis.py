@@ -75,7 +75,7 @@ def test_bending_holds_the_belt_back_on_every_pulley(drive: Drive) -> None:
 
 
 def test_rolling_resistance_along_the_arc_takes_the_loss_of_compression(drive: Drive) -> None:
-    """A metre of belt that passes the arc under the tension at rest: rho T phi."""
+    """A meter of belt that passes the arc under the tension at rest: rho T phi."""
     belt, tension = drive.belt.replace(compression_loss_factor=0.5, contact_stiffness=2e7), install(drive).tension
     pressed = drive.replace(belt=belt)
     expected = compression_loss(tension, belt.bending_stiffness, 2e7, 0.5, drive.radii)

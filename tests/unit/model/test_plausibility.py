@@ -51,7 +51,7 @@ def test_a_rib_at_450_newton_and_more() -> None:
 
 
 def test_what_would_set_a_tension_right_is_named_where_a_length_sets_it() -> None:
-    """Diameters of the tension line, given as effective ones, stretch a belt of fixed centres by 2 pi offset."""
+    """Diameters of the tension line, given as effective ones, stretch a belt of fixed centers by 2 pi offset."""
     around = 1.0 + 0.12 * np.pi
     drive = two_pulleys({"profile": "PK", "ribs": 6, "nominal_length": around - 0.029})
     (text,) = told(drive)
@@ -61,7 +61,7 @@ def test_what_would_set_a_tension_right_is_named_where_a_length_sets_it() -> Non
 
 
 def test_what_other_diameters_would_mean() -> None:
-    """Six ribs PK on fixed centres: 2 pi times the offset more of path, told in tension or in length."""
+    """Six ribs PK on fixed centers: 2 pi times the offset more of path, told in tension or in length."""
     around = 1.0 + 0.12 * np.pi
     drive = two_pulleys({"profile": "PK", "ribs": 6, "nominal_length": around - 0.012})
     less = drive.replace(pulley=[one.replace(radius=one.radius - 0.0015) for one in drive.pulleys])

@@ -25,7 +25,7 @@ def test_nodes_stand_at_the_ends_of_arcs_where_elements_are_smallest() -> None:
 
 
 def test_an_endless_belt_asks_for_a_bounded_number_of_elements() -> None:
-    """Such as that of a drive whose center was given in nanometres."""
+    """Such as that of a drive whose center was given in nanometers."""
     arcs = [Arc(1e12, 1e12 + 0.3, 0.08), Arc(2e12, 2e12 + 0.3, 0.08)]
     assert graded_mesh(3e12, arcs, LAYER).size < 100_000
 

@@ -59,7 +59,7 @@ def slide() -> Drive:
 
 
 def test_a_slide_of_two_equal_pulleys(slide: Drive) -> None:
-    """Two spans pull: T = (F - k q) / 2; each metre of travel takes two of belt, and the friction half of itself."""
+    """Two spans pull: T = (F - k q) / 2; each meter of travel takes two of belt, and the friction half of itself."""
     sheet = tensioner_sheet(slide, tolerance="3 mm", wear="6 mm").dataset
     there = sheet.sel(state=["upper stop", "worn belt", "longest belt", "nominal belt", "shortest belt", "lower stop"])
     spring = PRELOAD - RATE * there.position

@@ -29,7 +29,7 @@ def test_left_of_the_way_of_the_belt_is_positive() -> None:
 
 
 def test_between_two_points_the_belt_is_straight() -> None:
-    """A belt across the line, 0.1 m of height on a metre: 0 at x = 0.4 and 0.06 in the middle, x = 1."""
+    """A belt across the line, 0.1 m of height on a meter: 0 at x = 0.4 and 0.06 in the middle, x = 1."""
     slope = 0.1 * (ALONG - 0.4)
     assert displaced(slope, slope) == pytest.approx([0.06, -0.06], rel=1e-12)
 

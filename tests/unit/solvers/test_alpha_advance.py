@@ -1,4 +1,4 @@
-"""One integration of generalised-alpha: stops, budget, interpolation, works, and how it gives up."""
+"""One integration of generalized-alpha: stops, budget, interpolation, works, and how it gives up."""
 
 import numpy as np
 import pytest

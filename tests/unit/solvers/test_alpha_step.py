@@ -1,4 +1,4 @@
-"""One step of generalised-alpha: coefficients, the error that it may make, and its solution."""
+"""One step of generalized-alpha: coefficients, the error that it may make, and its solution."""
 
 import numpy as np
 import pytest

@@ -1,4 +1,4 @@
-"""Generalised-alpha as an integrator: chunks, statistics, longest step."""
+"""Generalized-alpha as an integrator: chunks, statistics, longest step."""
 
 from collections.abc import Callable
 

@@ -249,7 +249,7 @@ OVER_CENTRE = {"kind": "rotary", "pulley": "idler", "pivot": (0.15, 0.2), "inert
 
 @pytest.mark.parametrize(("length", "degrees", "stable"), [(1.84, -55.4, True), (1.7, 1.5, False)])
 def test_which_balances_are_stable(length: float, degrees: float, stable: bool) -> None:
-    """An arm near its dead centre under a constant moment: one balance near its nominal place is not stable.
+    """An arm near its dead center under a constant moment: one balance near its nominal place is not stable.
 
     The closed form, the second variation of the model's own statics, and what two equilibria with a little more moment
     tell of the way the arm goes agree.

@@ -22,8 +22,8 @@ def cantilever(drive: Drive) -> System:
     return belt_system(drive.belt, fixed=SECTION_HELD, moments=[(-1, moment)])
 
 
-@pytest.mark.parametrize("method", ["globalised", "newton"])
-def test_a_result_tells_its_way(cantilever: System, method: Literal["globalised", "newton"]) -> None:
+@pytest.mark.parametrize("method", ["globalized", "newton"])
+def test_a_result_tells_its_way(cantilever: System, method: Literal["globalized", "newton"]) -> None:
     start = straight(cantilever)
     before = start.position.copy()
     found = find_equilibrium(cantilever, start, method=method)

@@ -123,7 +123,7 @@ def system(small: Drive) -> System:
 
 @pytest.fixture(scope="session")
 def scale(system: System) -> FloatArray:
-    """Coordinates that make a metre, shape (6 N + D,)."""
+    """Coordinates that make a meter, shape (6 N + D,)."""
     return np.concatenate([np.tile(1.0 / np.array(system.scale), system.nodes), 1.0 / system.bodies.reach])
 
 

@@ -114,7 +114,7 @@ def test_jacobian_of_bodies(with_machines: Callable[[str], Drive], tensioner: st
 
 
 def test_jacobian_where_a_tensioner_is_the_only_free_body(with_machines: Callable[[str], Drive]) -> None:
-    """All shafts run at given speeds; the arm turns, so that the centre it carries speeds up as it moves."""
+    """All shafts run at given speeds; the arm turns, so that the center it carries speeds up as it moves."""
     drive = with_machines("rotary")
     steady = {"speed": {"kind": "constant", "value": 5.0}, "inertia": 0.1, "mass": 0.3}
     kept = ("name", "center", "radius")

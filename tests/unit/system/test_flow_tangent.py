@@ -133,7 +133,7 @@ def test_without_flow_it_is_the_travelling_form(ring: System) -> None:
 
 
 def test_a_hoop_that_spins_is_in_balance(drive: Drive) -> None:
-    """EA (G - 1) / 2 = m c^2, G the squared stretch; and it takes m dc/dt a metre along the belt to spin it up."""
+    """EA (G - 1) / 2 = m c^2, G the squared stretch; and it takes m dc/dt a meter along the belt to spin it up."""
     belt = drive.belt.replace(discretization="quintic", elements=16, quadrature_points=8, bending_factor=1e-9)
     given = belt_system(belt, closure="shared_node")
     system = flowing_system(

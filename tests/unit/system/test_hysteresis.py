@@ -116,7 +116,7 @@ def test_a_belt_without_loss_factors_has_no_rows(drive: Drive) -> None:
 
 
 def test_moduli_of_a_drive(drive: Drive) -> None:
-    """Fixed centres: tensions lie on both sides of the tension at rest."""
+    """Fixed centers: tensions lie on both sides of the tension at rest."""
     belt: Belt = drive.belt.replace(stretch_loss_factor=0.08, bending_loss_factor=0.15)
     own = drive_system(prepare(drive.replace(belt=belt))).hysteresis[0]
     assert own.axial == pytest.approx(STRETCH_SHARE * 0.08 * belt.axial_stiffness)

@@ -21,7 +21,7 @@ PLACES = 0.5 + np.sqrt(0.15) * np.array([-1.0, 0.0, 1.0])
 
 
 def rectangle(drive: Drive, *rims: tuple[tuple[float, float], float]) -> System:
-    """Links around rims with these centres and radii."""
+    """Links around rims with these centers and radii."""
     belt = Belt(**drive.belt.model_dump() | {"length": 3.6, "elements": 4, "discretization": "truss"})
     pulleys = [
         Pulley(name=f"pulley {number}", center=center, radius=radius, inertia=0.1)

@@ -42,7 +42,7 @@ def test_the_deepest_place_is_that_of_a_beam_on_springs(stiffness: float) -> Non
 
 
 def test_compression_of_a_limp_belt_loses_what_a_cycle_of_its_springs_does() -> None:
-    """Between no force and T / R a metre, of springs of the stiffness k."""
+    """Between no force and T / R a meter, of springs of the stiffness k."""
     radii, tension, stiffness = np.array([0.05, 0.1]), 400.0, 2e7
     expected = [cycle_of_sine(stiffness, 0.0, tension / (radius * stiffness)) for radius in radii]
     found = compression_loss(tension, 1e-6, stiffness, FACTOR, radii)

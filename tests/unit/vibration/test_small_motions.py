@@ -1,4 +1,4 @@
-"""Linearised drives at rest: what turns freely, what sticks, and tensioners that are held."""
+"""Linearized drives at rest: what turns freely, what sticks, and tensioners that are held."""
 
 import numpy as np
 import pytest

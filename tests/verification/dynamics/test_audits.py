@@ -42,8 +42,8 @@ def test_slope_of_the_friction_law(slope: float) -> None:
     steep = simulate(loaded(friction_law="relative_creep", creep_rate_factor=None))
     assert not [warning for warning in steep.warnings if "friction builds up too slowly" in warning]
     before, after = summarize(soft).pulleys[1], summarize(steep).pulleys[1]
-    assert before.regularisation > 5.0 * before.elastic_creep
-    assert after.regularisation < 0.25 * after.elastic_creep
+    assert before.regularization > 5.0 * before.elastic_creep
+    assert after.regularization < 0.25 * after.elastic_creep
 
 
 @pytest.mark.slow

@@ -1,6 +1,6 @@
-"""Time integration: order, numerical damping and energy of generalised-alpha, and agreement of all integrators.
+"""Time integration: order, numerical damping and energy of generalized-alpha, and agreement of all integrators.
 
-Generalised-alpha after Chung and Hulbert (1993): second order, spectral radius at infinite frequency as prescribed, and
+Generalized-alpha after Chung and Hulbert (1993): second order, spectral radius at infinite frequency as prescribed, and
 for a radius of one no dissipation.  The smooth problem is the first axial mode of a clamped bar, cos(c k t) sin(k x),
 k = pi / 2L.
 """

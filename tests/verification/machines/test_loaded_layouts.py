@@ -97,7 +97,7 @@ def test_elastic_creep(make: Make, measured: Measured, driven: str, load: float)
 
     The layer of creep before the sliding arc is 3 degrees long, contact points are 3 degrees apart, and the arc of the
     driver has another friction than the back of the belt.  Without its offset a rim would seem 3 or 5 % slower.  The
-    load is (T1 - T2) R, where spans lie on lines at R - T / (2 k_p R) from the centre.
+    load is (T1 - T2) R, where spans lie on lines at R - T / (2 k_p R) from the center.
     """
     loaded = {"inertia": 1e-3, "torque": {"kind": "cosine_ramp", "start": 0.05, "end": 0.2, "value": load}}
     turns = {"speed": {"kind": "cosine_ramp", "start": 0.0, "end": 0.1, "value": 20.0}}

@@ -1,7 +1,7 @@
 """Drives with a tensioner in static equilibrium: virtual work, hub load, stops and weight.
 
 The spring is computed by hand from the place at which the solver leaves the tensioner.  The spans lie on lines at the
-distance R - d / 2 + E I / (2 R T) from the centres, d the depth to which the belt sinks in at the solver's tension T:
+distance R - d / 2 + E I / (2 R T) from the centers, d the depth to which the belt sinks in at the solver's tension T:
 it comes up to the rim with the slope d / lambda, lambda^2 = d R, and its bending moment goes over into an offset of
 the tension.  This leaves out the square of d / R, here up to 3e-4, with a factor of order one, and the mesh.
 """
@@ -152,7 +152,7 @@ def test_stops(make: Make, measured: Measured, stops: tuple[float, float], upper
 @pytest.mark.parametrize("tensioner", [sliding, rotary])
 @pytest.mark.parametrize("layout", LAYOUTS)
 def test_weight(make: Make, measured: Measured, layout: str, tensioner: Callable[..., Any]) -> None:
-    """Weight of the arm at its own centre of mass, of what slides, and of the pulley, by hand; the belt sags a little.
+    """Weight of the arm at its own center of mass, of what slides, and of the pulley, by hand; the belt sags a little.
 
     A span of the weight w hangs by w / 2 T from its chord at both ends, 2e-4 here, which its hub load feels.
     """

@@ -1,4 +1,4 @@
-"""The same drive turned, shifted, mirrored, run backwards, relabelled, or written in other units.
+"""The same drive turned, shifted, mirrored, run backwards, relabeled, or written in other units.
 
 An accessory drive with everything: harmonics on the crank, a load over angle, an isolator and a one-way clutch, an
 idler on the belt's back on a rotary tensioner with weight and dry friction.  Its circles are changed a little until

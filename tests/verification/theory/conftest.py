@@ -94,7 +94,7 @@ def running() -> Callable[[Drive, float, float], RunningDrive]:
 
 @pytest.fixture(scope="session")
 def around() -> Callable[[FloatArray, tuple[float, float]], FloatArray]:
-    """Angle of points, shape (k, 2), around a centre, continuous over the half plane away from the other pulley."""
+    """Angle of points, shape (k, 2), around a center, continuous over the half plane away from the other pulley."""
 
     def angle(points: FloatArray, center: tuple[float, float]) -> FloatArray:
         away = -np.sign(center[0])

@@ -214,7 +214,7 @@ def _draw(runs: Runs, factor: str, kind: str) -> Picture:
     caption = (
         f"Fig. {_FIGURES[factor, kind]}: {kind} force on the belt, νₛ = {POWERS[factor]} kg/(m s), "
         f"with 5, 7 and 11 points as published, and with {FINE} elements and better settings. "
-        "Grey dots: the line fitted to the latter."
+        "Gray dots: the line fitted to the latter."
     )
     return picture(caption)(_figure)(runs, factor, kind)
 

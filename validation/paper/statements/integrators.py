@@ -67,7 +67,7 @@ def _any(runs: Runs) -> Statement:
         quote="both Equations (26) and (27) present a very simple structure that facilitates the use of any standard "
         "integrator",
         page=248,
-        criterion="Integrators of SUNDIALS and SciPy finish, and their driven speeds are within 1 % of generalised-α "
+        criterion="Integrators of SUNDIALS and SciPy finish, and their driven speeds are within 1 % of generalized-α "
         "with a shared node, over the largest driven speed.",
         findings=[finding(joint) for joint in _JOINTS],
         remark="Contact and friction make the equations stiff: explicit integrators would take steps of a microsecond.",

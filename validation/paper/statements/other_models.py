@@ -262,7 +262,7 @@ def _smooth(comparisons: Sequence[Comparison]) -> Statement:
         "elements with contact at nodes.",
         findings=_findings(comparisons, finding),
         remark="A check of our own: the paper says that forces are distributed, not that they are even. A force at a "
-        "node is a force per metre times the length that the node stands for; per metre, nodes "
+        "node is a force per meter times the length that the node stands for; per meter, nodes "
         "show no ripple, since all lie equally deep. A cubic or a link that lies partly above and partly below the "
         "rim does. What is left in the reference is the swing of the drive itself.",
     )

@@ -48,11 +48,11 @@ def section(_: Runs) -> Section:
 @cache
 def _found(elements: int, plain: bool) -> Equilibrium:
     belt = released_belt(elements)
-    return release(belt, on_pulleys(closed(belt)), "newton" if plain else "globalised")
+    return release(belt, on_pulleys(closed(belt)), "newton" if plain else "globalized")
 
 
 def _curve(nodes: FloatArray) -> FloatArray:
-    """Points on the centreline, ends of elements included, shape (k, 2), m."""
+    """Points on the centerline, ends of elements included, shape (k, 2), m."""
     belt = released_belt(len(nodes))
     return centerline(belt.element_kind, nodes, np.full(len(nodes), belt.given_length / len(nodes)), _POINTS).reshape(
         -1, 2
@@ -131,7 +131,7 @@ def _circle() -> Statement:
         criterion="Radii between the center and any point of the belt agree to 0.1 % of the radius.",
         findings=[
             finding("as published: plain Newton", 10, True),
-            finding("globalised Newton", 10, False),
+            finding("globalized Newton", 10, False),
             finding(f"plain Newton, {_FINE} elements", _FINE, True),
         ],
         remark="Nodes lie on the circle to rounding. Between them, a cubic cannot.",
@@ -162,12 +162,12 @@ def _iterations() -> Statement:
                 Verdict.HOLDS if same else Verdict.OPEN,
             ),
             Finding(
-                "globalised Newton",
+                "globalized Newton",
                 [Number("iterations to 10⁻¹¹", found[False].iterations)],
                 Verdict.OPEN,
             ),
         ],
-        remark="The globalised method takes shorter steps, and finds the circle from starts from which plain Newton "
+        remark="The globalized method takes shorter steps, and finds the circle from starts from which plain Newton "
         "ends in a folded belt.",
     )
 

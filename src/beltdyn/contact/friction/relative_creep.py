@@ -1,4 +1,4 @@
-"""Coulomb friction, regularised below a creep velocity proportional to rim speed.
+"""Coulomb friction, regularized below a creep velocity proportional to rim speed.
 
 f_t = -mu f_n clip(v_t / v_c, -1, 1) with v_c = sqrt((s v_r)^2 + v_0^2), where v_r is the speed of the rim.  Elastic
 creep is a fraction of the belt's speed too, so that one creep ratio s serves from a crawl to full speed.

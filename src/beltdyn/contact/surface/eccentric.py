@@ -1,4 +1,4 @@
-"""An eccentric pulley: a circle of the effective radius with its centre off the shaft."""
+"""An eccentric pulley: a circle of the effective radius with its center off the shaft."""
 
 from collections.abc import Mapping
 from math import cos, sin, sqrt
@@ -12,7 +12,7 @@ from beltdyn.kernel import kernel
 
 @kernel
 def eccentric_gap(x: float, y: float, radius: float, surface: np.record) -> Gap:
-    """Gap of a point: as on a circle about its own centre.
+    """Gap of a point: as on a circle about its own center.
 
     Parameters
     ----------
@@ -34,7 +34,7 @@ def _reach(parameters: Mapping[str, float]) -> float:
 
 
 _KEYS = (
-    Parameter("eccentricity", "m", "the distance of the rim's centre from the shaft"),
-    Parameter("eccentric_angle", "rad", "the direction of the rim's centre at the start", above=None, default=0.0),
+    Parameter("eccentricity", "m", "the distance of the rim's center from the shaft"),
+    Parameter("eccentric_angle", "rad", "the direction of the rim's center at the start", above=None, default=0.0),
 )
 register(SurfaceKind("eccentric", eccentric_gap, _reach, _KEYS))

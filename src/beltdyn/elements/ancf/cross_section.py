@@ -31,7 +31,7 @@ def nodal_shear(gradient_x: float, gradient_y: float, section_x: float, section_
     """Shear of the section at a node from its two gradients (Eqs. 3 and 5).
 
     Eq. 3 turns the tangent by 90 degrees and then by the shear angle, r_s = n - t sin(gamma), with cos(gamma) taken
-    as 1; the nodal value is read from r_y, normalised so that a change of thickness is not taken for shear.
+    as 1; the nodal value is read from r_y, normalized so that a change of thickness is not taken for shear.
 
     Parameters
     ----------

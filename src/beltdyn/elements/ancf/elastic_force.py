@@ -1,6 +1,6 @@
 """Elastic force of the belt element and its exact tangent (Eq. 16).
 
-The energy depends on the centreline, through the four vectors r_i, r_x,i, r_j, r_x,j, and on the nodal shears s_i
+The energy depends on the centerline, through the four vectors r_i, r_x,i, r_j, r_x,j, and on the nodal shears s_i
 and s_j; beside them stands the thickness stretch of r_y.  Over the quadrature points the derivatives are gathered
 with respect to these vectors and shears.  The shears are carried to r_x and r_y once, by their own first and second
 derivatives.
@@ -179,9 +179,9 @@ class _Strain(NamedTuple):
     """A quadrature point, and how q and w there change G = q . q and theta = (q x w) / G."""
 
     slope: Four
-    """Factors of the centreline's vectors in q."""
+    """Factors of the centerline's vectors in q."""
     bend: Four
-    """Factors of the centreline's vectors in w."""
+    """Factors of the centerline's vectors in w."""
     gx: float
     """dG/dq."""
     gy: float
@@ -195,7 +195,7 @@ class _Strain(NamedTuple):
 
 @kernel
 def centreline(e: FloatArray, factors: Four) -> tuple[float, float]:
-    """Combine the four centreline vectors of an element with the given factors.
+    """Combine the four centerline vectors of an element with the given factors.
 
     Parameters
     ----------
@@ -346,7 +346,7 @@ def _add_row(block: FloatArray, a: int, slope: Four, bend: Four, q: float, w: fl
 
 @kernel(inline=True)
 def _add_strain(row: FloatArray, strain: _Strain, by_metric: float, by_turning: float) -> None:
-    """Add by_metric dG/de + by_turning dtheta/de to a row, in the places of the centreline's vectors."""
+    """Add by_metric dG/de + by_turning dtheta/de to a row, in the places of the centerline's vectors."""
     slope, bend = strain.slope, strain.bend
     qx, qy = by_metric * strain.gx + by_turning * strain.ax, by_metric * strain.gy + by_turning * strain.ay
     wx, wy = by_turning * strain.bx, by_turning * strain.by
@@ -362,7 +362,7 @@ def _add_strain(row: FloatArray, strain: _Strain, by_metric: float, by_turning: 
 
 @kernel(inline=True)
 def _fill_centreline(scratch: np.record, tangent: FloatArray) -> None:
-    """Overwrite the tangent by the centreline's part."""
+    """Overwrite the tangent by the centerline's part."""
     tangent[:] = 0.0
     for a in range(4):
         row = 6 * (a // 2) + 2 * (a % 2)

@@ -1,4 +1,4 @@
-"""The element kind of the paper: a cubic centreline, and sections with shear (Eqs. 2 and 6)."""
+"""The element kind of the paper: a cubic centerline, and sections with shear (Eqs. 2 and 6)."""
 
 import numpy as np
 
@@ -21,7 +21,7 @@ _LINEAR = np.array([[2.0, 1.0], [1.0, 2.0]])
 def element_mass(section: Section, length: FloatArray | float) -> FloatArray:
     """Mass matrix, the integral of rho S^T S over the volume.
 
-    The centreline carries rho A with cubic Hermite functions, the section vectors r_y carry rho I with linear ones;
+    The centerline carries rho A with cubic Hermite functions, the section vectors r_y carry rho I with linear ones;
     on a symmetric section the two do not couple.
 
     Parameters
@@ -60,7 +60,7 @@ def _hermite_control(length: FloatArray | float) -> FloatArray:
 
 
 def _upright(place: FloatArray, slope: FloatArray, _bend: FloatArray) -> FloatArray:
-    """Nodal coordinates of a centreline whose sections stand upright on it, shape (N, 6)."""
+    """Nodal coordinates of a centerline whose sections stand upright on it, shape (N, 6)."""
     normal = np.stack([-slope[:, 1], slope[:, 0]], axis=1)
     return np.hstack([place, slope, normal / np.linalg.norm(slope, axis=1, keepdims=True)])
 

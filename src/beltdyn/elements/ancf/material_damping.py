@@ -34,7 +34,7 @@ DAMPING_WORKSPACE = record(
 
 
 class _Point(NamedTuple):
-    """A point of the centreline and the rates of its strains."""
+    """A point of the centerline and the rates of its strains."""
 
     tangent_x: float
     """Unit tangent u = q / |q|."""
@@ -112,7 +112,7 @@ def damping_force(
 
 @kernel(inline=True)
 def _first(a: int) -> int:
-    """First coordinate of the centreline's vector a, in the order of `shape_functions`."""
+    """First coordinate of the centerline's vector a, in the order of `shape_functions`."""
     return 6 * (a // 2) + 2 * (a % 2)
 
 
@@ -201,7 +201,7 @@ def _add_products(
 
 @kernel(inline=True)
 def _add_curvature(point: _Point, slope: Four, bend: Four, force: float, moment: float, tangent: FloatArray) -> None:
-    """Add force times the second derivative of eps and moment times that of kappa in the centreline's vectors.
+    """Add force times the second derivative of eps and moment times that of kappa in the centerline's vectors.
 
     The former is n n^T / |q|, the latter fold (n u^T + u n^T) + cross n n^T in q and q, -n u^T / |q| in q and w.
     """

@@ -1,6 +1,6 @@
-"""Centreline of the belt element: cubic Hermite shape functions (Eqs. 2 and 6).
+"""Centerline of the belt element: cubic Hermite shape functions (Eqs. 2 and 6).
 
-The centreline is carried by the four vectors r_i, r_x,i, r_j, r_x,j of an element, in this order everywhere.
+The centerline is carried by the four vectors r_i, r_x,i, r_j, r_x,j of an element, in this order everywhere.
 """
 
 from beltdyn.kernel import kernel

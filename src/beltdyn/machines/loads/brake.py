@@ -103,7 +103,7 @@ class BandBrake(Load):
     radius: Length = Field(gt=0, description="the radius of the drum, in m")
     friction: Ratio = Field(gt=0, description="the coefficient of friction between band and drum")
     wrap: Angle = Field(gt=0, description="the wrap angle, in rad")
-    self_energising: Literal["counter-clockwise", "clockwise"] = Field(
+    self_energizing: Literal["counter-clockwise", "clockwise"] = Field(
         "counter-clockwise", description="the self-energizing sense of rotation, away from the pulled end"
     )
     creep_speed: AngularSpeed = Field(0.1, gt=0, description="the speed at which the torque reaches 76 %, in rad/s")
@@ -112,7 +112,7 @@ class BandBrake(Load):
         """Torques over the force, and the creep speed."""
         strong = self.radius * expm1(self.friction * self.wrap)
         weak = -self.radius * expm1(-self.friction * self.wrap)
-        forward, backward = (strong, weak) if self.self_energising == "counter-clockwise" else (weak, strong)
+        forward, backward = (strong, weak) if self.self_energizing == "counter-clockwise" else (weak, strong)
         return {"forward": forward, "backward": backward, "creep_speed": self.creep_speed}
 
     @property

@@ -18,7 +18,7 @@ from beltdyn.records import record
 
 RESISTANCE = record(
     constant="f8",  # c, N m
-    creep_speed="f8",  # omega_c, over which the constant part builds up (dry friction, regularised), rad/s
+    creep_speed="f8",  # omega_c, over which the constant part builds up (dry friction, regularized), rad/s
     linear="f8",  # l, N m s/rad
     quadratic="f8",  # q, N m s^2/rad^2
 )

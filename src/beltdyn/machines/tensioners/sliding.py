@@ -59,7 +59,7 @@ class SlidingTensioner(MovingTensioner):
         found = float(gradient @ np.array(self.direction))
         if found < LEAST_LEVERAGE:
             raise ValueError(
-                f'the tensioner of "{self.pulley}" cannot tension the belt: a metre along its direction lengthens the '
+                f'the tensioner of "{self.pulley}" cannot tension the belt: a meter along its direction lengthens the '
                 f"path by {found:.3g} m. Choose a direction that lengthens the path"
             )
         return found
@@ -78,5 +78,5 @@ class SlidingTensioner(MovingTensioner):
         return mass + self.mass
 
     def reach(self, center: FloatArray) -> float:
-        """One metre a metre."""
+        """One meter a meter."""
         return 1.0

@@ -20,7 +20,7 @@ _ROUNDING = 4 * np.finfo(float).eps
 
 
 def _unit(vector: tuple[float, float]) -> tuple[float, float]:
-    """Make a vector one metre long; one that is so already stays as it is."""
+    """Make a vector one meter long; one that is so already stays as it is."""
     length = float(np.hypot(*vector))
     if length == 0:
         raise ValueError("has zero length: at least one component must differ from zero")
@@ -50,7 +50,7 @@ SPRING = record(
 
 
 class TensionerForce(NamedTuple):
-    """Generalised force of a tensioner on its coordinate, positive where it lengthens the path, without weight."""
+    """Generalized force of a tensioner on its coordinate, positive where it lengthens the path, without weight."""
 
     force: float
     """N or N m."""
@@ -163,7 +163,7 @@ class MovingTensioner(Tensioner):
     center_at: ClassVar[Callable[[np.record, float], Center]]
     """Kernel: center of the pulley from constants and q."""
     force_at: ClassVar[Callable[[np.record, float, float], TensionerForce]] = spring_force
-    """Kernel: generalised force from constants, q and its rate."""
+    """Kernel: generalized force from constants, q and its rate."""
 
     if TYPE_CHECKING:
         preload: float
@@ -206,7 +206,7 @@ class MovingTensioner(Tensioner):
         Returns
         -------
         float
-            Metre of path for a metre along the line, or along the arc of the arm turned counter-clockwise.
+            Meter of path for a meter along the line, or along the arc of the arm turned counter-clockwise.
 
         Raises
         ------

@@ -16,7 +16,7 @@ from beltdyn.results.checks.contact import (
     lifted_by_speed,
     slack_spans,
 )
-from beltdyn.results.checks.creep import impossible_slip, regularised_slip, smoothed_friction
+from beltdyn.results.checks.creep import impossible_slip, regularized_slip, smoothed_friction
 from beltdyn.results.checks.ending import NOTHING_RECORDED, unfinished, unsettled
 from beltdyn.results.checks.evidence import Check, Evidence
 from beltdyn.results.checks.mesh import begun_by_means, mean_torques, off_steady_running, unresolved_by_mesh
@@ -52,7 +52,7 @@ CHECKS: tuple[Check, ...] = (
     near_gross_slip,
     gross_slip_before,
     impossible_slip,
-    regularised_slip,
+    regularized_slip,
     smoothed_friction,
     driving_loads,
     mean_torques,

@@ -58,7 +58,7 @@ def impossible_slip(evidence: Evidence) -> Iterator[Finding]:
         )
 
 
-def regularised_slip(evidence: Evidence) -> Iterator[Finding]:
+def regularized_slip(evidence: Evidence) -> Iterator[Finding]:
     """Slip that is due more to the slope of the friction law than to elastic creep."""
     led = [
         pulley
@@ -66,16 +66,16 @@ def regularised_slip(evidence: Evidence) -> Iterator[Finding]:
         if abs(pulley.slip) > LEAST_SLIP
         and pulley.sliding == 0.0
         and pulley.slip * pulley.elastic_creep >= 0.0
-        and pulley.slip * pulley.regularisation > 0.0
-        and abs(pulley.regularisation) > abs(pulley.elastic_creep)
+        and pulley.slip * pulley.regularization > 0.0
+        and abs(pulley.regularization) > abs(pulley.elastic_creep)
     ]
-    worst = max(led, key=lambda pulley: abs(pulley.regularisation), default=None)
-    if worst is not None and (evidence.window.turns or _exceeds_stretch(evidence, worst.regularisation)):
+    worst = max(led, key=lambda pulley: abs(pulley.regularization), default=None)
+    if worst is not None and (evidence.window.turns or _exceeds_stretch(evidence, worst.regularization)):
         radii = dict(zip((one.name for one in evidence.pulleys), evidence.drive.radii.tolist(), strict=True))
         driver = evidence.drive.reference
         rim = abs(evidence.pulleys[driver].speed) * float(evidence.drive.radii[driver])
-        parts = [f"{one.regularisation:.2%} of {one.slip:.2%} on {one.name}" for one in led]
-        losses = sum(abs(one.regularisation * one.belt_torque) / radii[one.name] for one in led) * rim
+        parts = [f"{one.regularization:.2%} of {one.slip:.2%} on {one.name}" for one in led]
+        losses = sum(abs(one.regularization * one.belt_torque) / radii[one.name] for one in led) * rim
         yield Finding(
             "friction builds up too slowly with slip velocity: the slope of the friction law causes more slip than "
             f"elastic creep, {listing(parts)}.",
@@ -87,7 +87,7 @@ def regularised_slip(evidence: Evidence) -> Iterator[Finding]:
 def smoothed_friction(evidence: Evidence) -> Iterator[Finding]:
     """Friction losses added by the slope of the friction law, from the creep at arc entries (`entry_creep`)."""
     window, lost = evidence.window, evidence.balance.lost
-    if evidence.drive.ends or not window.turns or any(regularised_slip(evidence)):
+    if evidence.drive.ends or not window.turns or any(regularized_slip(evidence)):
         return
     added = [_added_by_slope(evidence, number) for number in range(len(evidence.pulleys))]
     power = sum(added)

@@ -67,7 +67,7 @@ def artificial_losses(evidence: Evidence) -> Iterator[Finding]:
         # beyond critical damping the loss no longer grows with the damping
         growing = min(drive.contact_damping, drive.critical_damping)
         yield Finding(
-            f"contact damping dissipates {power:.3g} W, {share:.1%} of the power input: it stabilises the computation "
+            f"contact damping dissipates {power:.3g} W, {share:.1%} of the power input: it stabilizes the computation "
             "and is not a loss of a real belt.",
             _spoiled(balance, power),
             f"Reduce contact.damping from {drive.contact_damping:.2g} to {growing * _DAMPING_GOAL / share:.1g} N s/m^2 "

@@ -1,4 +1,4 @@
-"""Quantities derived from a run: functions of a `Run` that return labelled arrays with units."""
+"""Quantities derived from a run: functions of a `Run` that return labeled arrays with units."""
 
 from beltdyn.results.derived.arc import contact_arc, wear_by_arc, wear_by_belt
 from beltdyn.results.derived.labels import pulley_number

@@ -30,7 +30,7 @@ def wear_by_arc(run: Run, start: float | None = None, end: float | None = None) 
     Returns
     -------
     DataArray
-        J per metre of arc, by pulley and ``share``, the position of the middle of the segment: 0 at the inlet tangent
+        J per meter of arc, by pulley and ``share``, the position of the middle of the segment: 0 at the inlet tangent
         point of a belt running in the direction of ascending belt coordinate, 1 at the outlet. Coordinates ``angle``
         (rad) and ``part_length`` (m).
 
@@ -75,7 +75,7 @@ def wear_by_belt(run: Run, start: float | None = None, end: float | None = None)
     Returns
     -------
     DataArray
-        J per metre of belt, by pulley and element. On a staying mesh an element represents the belt that it contained
+        J per meter of belt, by pulley and element. On a staying mesh an element represents the belt that it contained
         at the start. Pulleys on the back of the belt wear its other surface.
 
     Raises

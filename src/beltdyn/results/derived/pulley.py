@@ -199,7 +199,7 @@ def slips(run: Run, start: float | None = None, end: float | None = None, *, tur
     with the stretches g of the spans that reach the two pulleys, (T_d - T_i) / E A at small strain, is the creep
     of a belt without bending stiffness under Coulomb friction (Reynolds 1874, Grashof 1883). ``bending`` is due to the
     stretch lost in bending and its hysteresis at the inlet (`theory.elastic_creep.entry_strain`), and
-    ``regularisation``, the rest, to the slope of the friction law. Sliding has no bound, as on an overloaded pulley.
+    ``regularization``, the rest, to the slope of the friction law. Sliding has no bound, as on an overloaded pulley.
 
     Parameters
     ----------
@@ -213,7 +213,7 @@ def slips(run: Run, start: float | None = None, end: float | None = None, *, tur
     Returns
     -------
     xarray.Dataset
-        ``slip``, ``creep``, ``elastic_creep``, ``bending``, ``regularisation`` and ``sliding`` in %, over time and
+        ``slip``, ``creep``, ``elastic_creep``, ``bending``, ``regularization`` and ``sliding`` in %, over time and
         pulley; NaN while the driver stands still.
 
     Examples
@@ -235,7 +235,7 @@ def slips(run: Run, start: float | None = None, end: float | None = None, *, tur
         "creep": (parts.slip - parts.sliding, "Creep"),
         "elastic_creep": (parts.elastic_creep, "Elastic creep"),
         "bending": (parts.bending, "Slip due to bending"),
-        "regularisation": (parts.regularisation, "Slip due to the friction law slope"),
+        "regularization": (parts.regularization, "Slip due to the friction law slope"),
         "sliding": (parts.sliding, "Sliding"),
     }
     like = dataset["pulley_speed"]

@@ -226,7 +226,7 @@ def _title(run: Result, name: str, time: float) -> str:
 
 
 def _shade_sliding(ax: Axes, angle: FloatArray, sliding: FloatArray) -> None:
-    """Shade what slides, half of the way to the neighbours of each point."""
+    """Shade what slides, half of the way to the neighbors of each point."""
     if angle.size:
         edges = np.concatenate([angle[:1], 0.5 * (angle[1:] + angle[:-1]), angle[-1:]])
         ax.stairs(sliding, edges, transform=ax.get_xaxis_transform(), fill=True, color=SHADE, zorder=0)

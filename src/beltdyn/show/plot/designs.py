@@ -1,4 +1,4 @@
-"""Figures of an optimisation: the goal of the designs that were tried, and the best design beside the start."""
+"""Figures of an optimization: the goal of the designs that were tried, and the best design beside the start."""
 
 from collections.abc import Callable
 from functools import partial

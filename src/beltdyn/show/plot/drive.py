@@ -213,7 +213,7 @@ def make_room(ax: Axes, extent: FloatArray) -> None:
     """
     ax.set_aspect("equal")
     held = extent
-    for _ in range(_ROUNDS):  # letters keep their size, so that they cover more metres when the limits grow
+    for _ in range(_ROUNDS):  # letters keep their size, so that they cover more meters when the limits grow
         margin = _MARGIN * float(np.ptp(held, axis=0).max())
         low, high = held.min(axis=0) - margin, held.max(axis=0) + margin
         ax.set(xlim=(low[0], high[0]), ylim=(low[1], high[1]))

@@ -1,4 +1,4 @@
-"""How every figure looks, and how axes are labelled from the dataset."""
+"""How every figure looks, and how axes are labeled from the dataset."""
 
 from collections.abc import Callable, Sequence
 from functools import wraps

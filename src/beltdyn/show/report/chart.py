@@ -54,7 +54,7 @@ class Named(NamedTuple):
 
 
 def can_be_charted(ax: Axes) -> bool:
-    """Whether a panel has lines, over axes that may be stretched one by one, and no bars, pictures or colours."""
+    """Whether a panel has lines, over axes that may be stretched one by one, and no bars, pictures or colors."""
     straight = ax.name == "rectilinear" and ax.get_aspect() == "auto" and not ax.images
     others = [one for one in ax.collections if not isinstance(one, _AS_DRAWN) or one.get_array() is not None]
     bars = [one for one in ax.patches if not (isinstance(one, StepPatch) or _across(ax, one))]

@@ -1,4 +1,4 @@
-"""What the page needs to show a run moving: the belt at some instants, in colour, and its pulleys."""
+"""What the page needs to show a run moving: the belt at some instants, in color, and its pulleys."""
 
 import base64
 from typing import Any

@@ -12,7 +12,7 @@ from beltdyn.results.provenance import mesh_facts
 from beltdyn.results.schema import runs_steadily
 from beltdyn.show.plot.headline import given_keys
 
-# The charting library of the page (Bokeh, BSD licence), taken from its installation, and what it is given
+# The charting library of the page (Bokeh, BSD license), taken from its installation, and what it is given
 
 _NAME = "figures"
 

@@ -12,7 +12,7 @@ from beltdyn.quadrature import gauss_points
 
 @given(velocity=arrays(np.float64, 12, elements=st.floats(-10.0, 10.0)))
 def test_kinetic_energy_is_that_of_the_velocity_field(velocity: FloatArray, section: Section, length: float) -> None:
-    """Hermite cubics on the centreline, linear functions on the sections; four Gauss points are exact."""
+    """Hermite cubics on the centerline, linear functions on the sections; four Gauss points are exact."""
     xi, weights = gauss_points(4)
     hermite = np.array(
         [

@@ -57,7 +57,7 @@ def test_a_brake_is_clamped_over_time_and_may_be_weaker_backwards(torque: Torque
 
 @pytest.mark.parametrize(("strong", "sense"), [("counter-clockwise", 1), ("clockwise", -1)])
 def test_a_band_brake_is_eytelweins(torque: Torque, strong: str, sense: int) -> None:
-    band, ratio = BAND | {"self_energising": strong}, np.exp(0.3 * 1.5 * np.pi)
+    band, ratio = BAND | {"self_energizing": strong}, np.exp(0.3 * 1.5 * np.pi)
     with_it, against = torque(band, sense * 40.0).torque, torque(band, -sense * 40.0).torque
     assert with_it == pytest.approx(-sense * 200.0 * 0.15 * (ratio - 1), rel=1e-12)
     assert against == pytest.approx(sense * 200.0 * 0.15 * (1 - 1 / ratio), rel=1e-12)

@@ -1,4 +1,4 @@
-"""Figures of optimisations."""
+"""Figures of optimizations."""
 
 from pathlib import Path
 from typing import Any
