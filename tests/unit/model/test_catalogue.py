@@ -194,7 +194,7 @@ def test_ones_own_extends_and_replaces(tmp_path: Path) -> None:
 def test_an_entry_is_checked() -> None:
     entry = read_catalogue()["A"]
     with pytest.raises(ValueError, match=r"entry\.sold_by = \"meters\" is not a valid choice"):
-        Entry(**entry.arguments | {"sold_by": "metres"})
+        Entry(**entry.arguments | {"sold_by": "meters"})
 
 
 def test_every_error_says_where_it_is(tmp_path: Path) -> None:

@@ -212,14 +212,14 @@ def _range(run: Run) -> str:
 
 
 def _operating_point(run: Run) -> str:
-    """Mean speed at the end of the pulley that gives most power, and the power that is put in."""
+    """Mean speed at the end of the pulley with the largest power, and the power input."""
     with run.recorded() as recorded:
         over = mean_window(recorded, run.drive)
         power = over.product(recorded, "shaft_torque", "shaft_speed")
         speed = RPM * over.mean(recorded, "pulley_speed")
         put_in = power_balance(recorded, over).power_in
     first = int(power.argmax()) if put_in > 0.0 else 0
-    given = f", {_power(put_in)} in" if put_in > 0.0 else ""
+    given = f", {_power(put_in)} input" if put_in > 0.0 else ""
     return f"{run.drive.pulleys[first].name} {_whole(float(speed[first]))} rpm{given} at the end"
 
 

@@ -14,7 +14,7 @@ def test_a_run_is_named_with_its_operating_point(run: Run) -> None:
     """The driver turns at 30 rad/s and puts in 29.25 W."""
     named = Run(run.dataset, run.drive, Path("fan.nc"))
     speed = float(run.dataset["pulley_speed"][-1, 0]) * 30.0 / 3.141592653589793
-    assert headline(named) == f"fan: driver {speed:.4g} rpm, 29.2 W in at the end"
+    assert headline(named) == f"fan: driver {speed:.4g} rpm, 29.2 W input at the end"
     assert headline(run) == headline(named).removeprefix("fan: ")
 
 
