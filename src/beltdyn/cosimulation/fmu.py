@@ -125,7 +125,7 @@ def _maker(fmi: str) -> tuple[Any, str]:
         return import_module(package).FmuBuilder, module
     except ModuleNotFoundError:
         raise ModelError(
-            f'{package} is not installed, but is needed for FMI {fmi}. Install it: pip install "beltdyn[fmu]"'
+            f"{package} is not installed, but is needed for FMI {fmi}. Install beltdyn with its extra beltdyn[fmu]"
         ) from None
 
 

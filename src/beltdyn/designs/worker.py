@@ -326,8 +326,8 @@ class DaskWorkers:
             from distributed import Client
         except ImportError as error:
             raise ModelError(
-                f"scheduler = {scheduler!r} needs dask.distributed, which is not installed. Install it: pip install "
-                "'beltdyn[cluster]'."
+                f"scheduler = {scheduler!r} needs dask.distributed, which is not installed. Install beltdyn with its "
+                "extra beltdyn[cluster]."
             ) from error
         try:
             self._client = Client(scheduler, timeout=_CONNECT, set_as_default=False)

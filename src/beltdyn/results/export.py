@@ -92,7 +92,7 @@ def require_parquet(folder: Path, overwrite: bool = False) -> None:
     except ImportError:
         raise ModelError(
             f"tables in {folder} cannot be written as Parquet because pyarrow is not installed. "
-            "Install it: pip install 'beltdyn[parquet]', or write CSV or MAT."
+            "Install beltdyn with its extra beltdyn[parquet], or write CSV or MAT."
         ) from None
     for name in NAMES:
         require_replaceable(folder / f"{name}.parquet", _is_parquet, overwrite)

@@ -455,8 +455,8 @@ def _import_sundials() -> Any:
         import sksundae
     except ImportError as error:
         raise ModelError(
-            'simulation.integrator = "cvode" or "ida" needs scikit-sundae, which is not installed. Install it: '
-            'pip install "beltdyn[integrators]", or choose "generalized_alpha", "bdf" or "radau".'
+            'simulation.integrator = "cvode" or "ida" needs scikit-sundae, which is not installed. Install beltdyn '
+            'with its extra beltdyn[integrators], or choose "generalized_alpha", "bdf" or "radau".'
         ) from error
     return sksundae
 

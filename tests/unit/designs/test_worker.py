@@ -28,7 +28,7 @@ def test_jobs_are_none_of_a_cluster() -> None:
 
 def test_the_extra_that_is_missing_is_named(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setitem(sys.modules, "distributed", None)
-    with pytest.raises(ModelError, match=r"pip install 'beltdyn\[cluster\]'"):
+    with pytest.raises(ModelError, match=r"its extra beltdyn\[cluster\]"):
         DaskWorkers("tcp://host:1")
 
 

@@ -46,7 +46,7 @@ def animate(
     run : Run
         The run.
     path : Path or str
-        The file: a GIF, or an MP4, for which ``pip install "beltdyn[video]"`` or the program ffmpeg is needed.
+        The file: a GIF, or an MP4, which needs the extra ``beltdyn[video]`` or the program ffmpeg.
     frames : int
         Largest number of pictures; they are spread evenly over the outputs of fields.
     frame_rate : float
@@ -157,8 +157,8 @@ def _writer(path: Path, frame_rate: int) -> AbstractMovieWriter:
             return FFMpegWriter(fps=frame_rate, metadata={"comment": MARK}, extra_args=list(_EVEN))
         case ".mp4":
             raise ModelError(
-                f"{path} cannot be written: MP4 needs the program ffmpeg. Install it: pip install "
-                '"beltdyn[video]", or write a .gif.'
+                f"{path} cannot be written: MP4 needs the program ffmpeg. Install beltdyn with its extra "
+                "beltdyn[video], or write a .gif."
             )
         case suffix:
             raise ModelError(

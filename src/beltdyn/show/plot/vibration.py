@@ -211,7 +211,7 @@ def animate_modes(result: Result, path: Path | str, frame_rate: int = 25, overwr
     result : Result
         Of `modes`.
     path : Path or str
-        The file: a GIF, or an MP4, for which ``pip install "beltdyn[video]"`` or the program ffmpeg is needed.
+        The file: a GIF, or an MP4, which needs the extra ``beltdyn[video]`` or the program ffmpeg.
     frame_rate : float
         Pictures shown per second.
     overwrite : bool
