@@ -91,8 +91,6 @@ def test_without_pyarrow_the_message_tells_what_to_install(
     run: Run, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setitem(sys.modules, "pyarrow", None)
-    with pytest.raises(
-        ModelError, match=r"pyarrow is not installed\. Install .* its extra beltdyn\[parquet\]"
-    ):
+    with pytest.raises(ModelError, match=r"pyarrow is not installed\. Install .* its extra beltdyn\[parquet\]"):
         write_parquet(run, tmp_path / "tables")
     assert list(tmp_path.iterdir()) == []
