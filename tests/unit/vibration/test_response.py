@@ -66,7 +66,7 @@ def test_beyond_its_range_it_says_why_and_by_how_much(shaken: Drive) -> None:
     )
     assert "amplitudes may err by" in said
     assert "so that the span goes slack" in said
-    assert "slides in a part of each period" in said
+    assert "slides during part of each period" in said
     assert "beltdyn sweep" in said
     assert (found.dataset.amplitude_error.values > 0.05).all()
 
