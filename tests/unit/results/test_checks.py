@@ -296,4 +296,4 @@ def test_losses_and_slip_off_those_of_steady_running(turning: Callable[..., Run]
     (warning,) = said(beside(0.03, -0.1), "steady running")
     assert "losses are off by +3.0% (friction +3.0% of the losses)" in warning
     assert "the slip of driven is off by -10.0% of the largest slip" in warning
-    assert "Leave out simulation.rtol = 0.01" in warning
+    assert "Omit simulation.rtol = 0.01" in warning
