@@ -215,7 +215,7 @@ def _beside_jump(slack: At, tight: At, wanted: float) -> At:
 
 
 def _tension_over_length(prepared: Prepared) -> float:
-    """By how much a belt gets tighter with each metre that it is shorter by, as estimated, N/m.
+    """By how much a belt gets tighter with each meter that it is shorter by, as estimated, N/m.
 
     Where tensioners yield, that is a small part of the belt's own stiffness over its length.
     """

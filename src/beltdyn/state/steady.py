@@ -33,7 +33,7 @@ def instant_given(drive: Drive, at: float | str | None) -> float:
     return drive.simulation.end if at is None else number_in("at", at, "s")
 
 
-# Steady running from that of a neighbour: the same drive under other speeds, torques or loads, or one much like
+# Steady running from that of a neighbor: the same drive under other speeds, torques or loads, or one much like
 
 
 def require_neighbour(drive: Drive, start: Run, elements: int | None) -> None:
@@ -59,7 +59,7 @@ def with_length_of(prepared: Prepared, start: Run) -> Prepared | None:
 
 
 def search_from(prepared: Prepared, start: Run, time: float) -> SteadySearch:
-    """A search for steady running that begins with that of a neighbour, on its mesh.
+    """A search for steady running that begins with that of a neighbor, on its mesh.
 
     Its speeds are changed in proportion to those that are prescribed.
     """
@@ -215,7 +215,7 @@ def steady_beside(
 
 
 def tangent_of(run: Run) -> SteadyWork:
-    """The factorised tangent of steady running, from `steady_state`."""
+    """The factorized tangent of steady running, from `steady_state`."""
     return _begin(run.prepared, run, float(run.dataset.attrs["steady_at"])).factorised()
 
 
@@ -263,7 +263,7 @@ def _from_rest(
 
 
 def _continued(prepared: Prepared, start: Run, instant: float, force_tolerance: float, *, bands: bool) -> _Found | None:
-    """Find steady running from that of a neighbour, on its mesh, or on another one where that is too coarse.
+    """Find steady running from that of a neighbor, on its mesh, or on another one where that is too coarse.
 
     None if that fails.
     """
@@ -283,7 +283,7 @@ def _continued(prepared: Prepared, start: Run, instant: float, force_tolerance: 
 
 
 def _begin(prepared: Prepared, start: Run, instant: float) -> SteadySearch:
-    """A search that begins with the steady running of a neighbour."""
+    """A search that begins with the steady running of a neighbor."""
     return search_from(with_length_of(prepared, start) or bring_to_stand(prepared).prepared, start, instant)
 
 

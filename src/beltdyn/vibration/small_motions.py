@@ -1,4 +1,4 @@
-"""A drive about a state, linearised: (K + s C + s^2 M) x = 0 for small motions x exp(s t).
+"""A drive about a state, linearized: (K + s C + s^2 M) x = 0 for small motions x exp(s t).
 
 The belt flows through a staying mesh, so that steady running is a point at rest of the equations: the forces of
 Coriolis and the centrifugal forces of the moving belt are in C and K.  Speeds, torques and schedules are held.
@@ -60,11 +60,11 @@ _STICKS = 100.0
 """Stiffness along the rim of a belt that sticks, over that of the normal force, on the pulley with least friction."""
 _NO_FORCE, _LITTLE_FORCE = 1e-9, 2e-2
 """Force that a free motion meets at most, over the sum of its parts: of a body that turns, and of the belt that turns
-all pulleys, which roll on radii a little smaller than those of its centreline."""
+all pulleys, which roll on radii a little smaller than those of its centerline."""
 
 
 class SmallMotions(NamedTuple):
-    """A drive about a state, linearised."""
+    """A drive about a state, linearized."""
 
     prepared: Prepared
     system: System
@@ -190,7 +190,7 @@ def _in_motion(
 
 
 def _linearised(prepared: Prepared, held: System, state: State, speed: float) -> SmallMotions:
-    """Linearise a drive with constant torques, on a staying mesh, with the damping of its tensioners."""
+    """Linearize a drive with constant torques, on a staying mesh, with the damping of its tensioners."""
     tensioners = drive_system(prepared).tensioners.copy()
     for kind in tensioners.dtype.names or ():
         for name in _DRY if "spring" in (tensioners.dtype[kind].names or ()) else ():

@@ -212,7 +212,7 @@ def _range(run: Run) -> str:
 
 
 def _operating_point(run: Run) -> str:
-    """Mean speed at the end of the pulley with the largest power, and the power input."""
+    """Mean speed of the pulley with the largest power, and the power input; at the end of a run over time."""
     with run.recorded() as recorded:
         over = mean_window(recorded, run.drive)
         power = over.product(recorded, "shaft_torque", "shaft_speed")
@@ -220,7 +220,8 @@ def _operating_point(run: Run) -> str:
         put_in = power_balance(recorded, over).power_in
     first = int(power.argmax()) if put_in > 0.0 else 0
     given = f", {_power(put_in)} input" if put_in > 0.0 else ""
-    return f"{run.drive.pulleys[first].name} {_whole(float(speed[first]))} rpm{given} at the end"
+    instant = "" if runs_steadily(run.dataset) else " at the end"
+    return f"{run.drive.pulleys[first].name} {_whole(float(speed[first]))} rpm{given}{instant}"
 
 
 def _power(power: float) -> str:

@@ -18,6 +18,11 @@ def test_a_run_is_named_with_its_operating_point(run: Run) -> None:
     assert headline(run) == headline(named).removeprefix("fan: ")
 
 
+def test_steady_running_has_no_end(run: Run) -> None:
+    steady = Run(run.dataset.assign_attrs(belt_parameter=0.0), run.drive)
+    assert headline(steady).endswith(" W input")
+
+
 def test_the_name_of_a_drive_goes_before_that_of_its_file(run: Run) -> None:
     named = Run(run.dataset, run.drive.replace(name="Fan of the paint shop"), Path("fan.nc"))
     assert headline(named).startswith("Fan of the paint shop: driver ")
