@@ -89,7 +89,7 @@ _ALL = (
         "beltdyn.points.tensioner_sheet:tensioner_sheet",
         "Compute tensioner positions and tensions over the range of belt lengths.",
     ),
-    Analysis("beltdyn.points.rating:rating", "Rate the belt: rated power, utilisation, belts needed."),
+    Analysis("beltdyn.points.rating:rating", "Rate the belt: rated power, utilization, belts needed."),
     Analysis("beltdyn.designs.sensitivity:sensitivity", "Compute the sensitivity of results to each input."),
     Analysis("beltdyn.vibration.modes:modes", "Compute natural modes: frequencies, damping, shapes."),
     Analysis("beltdyn.designs.optimize:optimize", "Optimize parameters of a drive for a goal."),

@@ -95,7 +95,7 @@ class Proposal:
         m/s.
     rated_power : float
         Of all belts, W.
-    utilisation : float
+    utilization : float
         Design power over rated power.
     tension : float
         At rest, of all belts, run in, N; `RUN_IN` times the least one.

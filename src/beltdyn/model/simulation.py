@@ -172,10 +172,10 @@ class Limits(Part):
         None, gt=0, description="the least slip safety: the factor on all loads at which gross slip begins"
     )
     largest_utilisation: Ratio | None = Field(
-        None, gt=0, description="the largest utilisation of a pulley: design power over the rated power of the belt"
+        None, gt=0, description="the largest utilization of a pulley: design power over the rated power of the belt"
     )
     service_factor: Ratio | None = Field(
-        None, gt=0, le=5, description="the service factor, design power over power, in the utilisation; by default 1"
+        None, gt=0, le=5, description="the service factor, design power over power, in the utilization; by default 1"
     )
 
     @model_validator(mode="after")

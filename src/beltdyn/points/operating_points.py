@@ -57,7 +57,7 @@ VARIABLES = {
     "hub_load": Variable(PULLEY, "N", "Hub load"),
     "hub_force": Variable((*PULLEY, "axis"), "N", "Force of the belt on the pulley"),
     "rated_power": Variable(PULLEY, "W", "Rated power of the belt"),
-    "utilisation": Variable(PULLEY, "1", "Utilisation: design power over rated power"),
+    "utilisation": Variable(PULLEY, "1", "Utilization: design power over rated power"),
     "span_tension": Variable(_SPAN, "N", "Span tension"),
     "tensioner_position": Variable(_TENSIONER, "m or rad", "Tensioner position"),
     "tensioner_position_after_tensioning": Variable(

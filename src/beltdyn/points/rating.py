@@ -1,4 +1,4 @@
-"""Power rating of the belt of a drive: rated power, utilisation and number of belts needed at each pulley."""
+"""Power rating of the belt of a drive: rated power, utilization and number of belts needed at each pulley."""
 
 from collections.abc import Iterator
 from typing import Any
@@ -28,13 +28,13 @@ COLUMNS = {
     "ratio_power": Variable(_PULLEY, "W", "Additional power by the ratio, one belt or rib"),
     "wrap_factor": Variable(_PULLEY, "1", "Wrap factor"),
     "rated_power": Variable(_PULLEY, "W", "Rated power of the belt"),
-    "utilisation": Variable(_PULLEY, "1", "Utilisation: design power over rated power"),
+    "utilisation": Variable(_PULLEY, "1", "Utilization: design power over rated power"),
     "belts_needed": Variable(_PULLEY, "1", "Belts or ribs needed"),
 }
 """What a rating tells of each pulley."""
 SCALARS = {
     "belts": Variable((), "1", "Belts or ribs"),
-    "largest_utilisation": Variable((), "1", "Largest utilisation"),
+    "largest_utilisation": Variable((), "1", "Largest utilization"),
     "most_belts_needed": Variable((), "1", "Belts or ribs needed"),
     "belt_speed": Variable((), "m/s", "Belt speed"),
     "service_factor": Variable((), "1", "Service factor"),
@@ -51,7 +51,7 @@ def rating(
     at: float | str | None = None,
     progress: Report | None = None,
 ) -> Result:
-    """Rate the belt in steady running: rated power, utilisation and number of belts or ribs needed at each pulley.
+    """Rate the belt in steady running: rated power, utilization and number of belts or ribs needed at each pulley.
 
     The rated power is that of the belt's profile in the catalogue, by the law of `beltdyn.theory.belt_rating` with the
     wrap, length, belts and pulleys factors. The design power is the power of a pulley times the service factor.

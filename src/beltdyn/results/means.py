@@ -53,7 +53,7 @@ class PulleySummary:
         Magnitude of the mean force of the belt on the pulley, N.
     rated_power : float
         Rated power of the belt on the pulley, W; NaN without a rating of its profile, and on the back of the belt.
-    utilisation : float
+    utilization : float
         Design power over rated power; NaN as above.
 
     Examples

@@ -1,4 +1,4 @@
-"""Utilisation: design power at each pulley over the rated power of the belt there."""
+"""Utilization: design power at each pulley over the rated power of the belt there."""
 
 import numpy as np
 

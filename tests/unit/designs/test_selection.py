@@ -51,7 +51,7 @@ def test_one_belt_less_would_not_do(found: tuple[Proposal, ...]) -> None:
 
 @pytest.mark.parametrize("profiles", ["SPA", "SPB", "PK", "PL", "B"])
 def test_the_drive_file_is_that_drive(profiles: str) -> None:
-    """The belt of standard length has the tension on the center distance, but for a take-up of some millimetres."""
+    """The belt of standard length has the tension on the center distance, but for a take-up of some millimeters."""
     one = select(**TASK, profiles=profiles)[0]
     drive = loads(one.text)
     path = open_belt(one.distance, (0.5 * one.driver_diameter, 0.5 * one.driven_diameter))

@@ -1,4 +1,4 @@
-"""Utilisation from powers put in by hand, on two pulleys and with an idler on the back."""
+"""Utilization from powers put in by hand, on two pulleys and with an idler on the back."""
 
 from math import pi
 
