@@ -15,7 +15,7 @@ METAL = {"facecolor": "0.8", "edgecolor": "0.35", "linewidth": 1.0}
 RUBBER = {"facecolor": "tab:blue", "edgecolor": "tab:blue", "alpha": 0.35}
 
 
-def v_belt(axes: Axes, entry: bd.Entry) -> None:
+def v_belt(axes: Axes, entry: bd.model.Entry) -> None:
     """Draw a V-belt in its groove, mm above the datum diameter."""
     half, top, slope = 500 * entry.width, 1e3 * entry.back_offset, tan(0.5 * (entry.wedge_angle or pi))
     bottom = top - 1e3 * entry.thickness
@@ -31,7 +31,7 @@ def v_belt(axes: Axes, entry: bd.Entry) -> None:
     label(axes, entry, land, "datum diameter $d_d$")
 
 
-def v_ribbed(axes: Axes, entry: bd.Entry, ribs: int = 4) -> None:
+def v_ribbed(axes: Axes, entry: bd.model.Entry, ribs: int = 4) -> None:
     """Draw a V-ribbed belt in its grooves, mm above the effective diameter."""
     pitch, slope = 1e3 * entry.width, tan(0.5 * (entry.wedge_angle or pi))
     back = 1e3 * (entry.pitch_offset + entry.back_offset)
@@ -53,7 +53,7 @@ def v_ribbed(axes: Axes, entry: bd.Entry, ribs: int = 4) -> None:
     label(axes, entry, land, "effective diameter $d_e$")
 
 
-def flat(axes: Axes, entry: bd.Entry) -> None:
+def flat(axes: Axes, entry: bd.model.Entry) -> None:
     """Draw a flat belt on its rim, mm above the outside diameter."""
     half, land = 500 * entry.width, 500 * entry.width + 2
     axes.fill([-land, land, land, -land], [0, 0, -3, -3], **METAL)
@@ -61,7 +61,7 @@ def flat(axes: Axes, entry: bd.Entry) -> None:
     label(axes, entry, land, "outside diameter")
 
 
-def label(axes: Axes, entry: bd.Entry, land: float, diameter: str) -> None:
+def label(axes: Axes, entry: bd.model.Entry, land: float, diameter: str) -> None:
     """Draw the lines that count, and how far they are apart."""
     line, back = 1e3 * entry.pitch_offset, 1e3 * (entry.pitch_offset + entry.back_offset)
     reach = 2.3 * land

@@ -24,7 +24,7 @@ class ModelError(BeltdynError, ValueError):
     Examples
     --------
     >>> try:
-    ...     bd.Step(time="1 kg", value=2.0)
+    ...     bd.model.Step(time="1 kg", value=2.0)
     ... except bd.ModelError as error:
     ...     print(error)
     step.time = "1 kg" must be in units of s, not "kg". Give the instant of the step, in s.

@@ -1,4 +1,4 @@
-"""What a script needs is there from the start, and found by completion."""
+"""What a script needs is found by completion, and nothing else; the rest is in submodules of one subject."""
 
 import pkgutil
 import re
@@ -10,7 +10,6 @@ from types import ModuleType
 import pytest
 
 import beltdyn as bd
-import beltdyn.model
 import beltdyn.theory
 
 
@@ -18,9 +17,13 @@ def run(program: str) -> str:
     return subprocess.run([sys.executable, "-c", program], capture_output=True, text=True, check=True).stdout.strip()
 
 
-@pytest.mark.parametrize("name", dir(bd))
-def test_every_name_is_there(name: str) -> None:
-    assert getattr(bd, name) is not None
+MOST = 60
+"""Names that a user looks through."""
+
+
+def test_completion_shows_what_a_user_needs() -> None:
+    assert len(dir(bd)) <= MOST
+    assert all(getattr(bd, name) is not None for name in dir(bd))
 
 
 OF_THE_PACKAGE = {
@@ -34,14 +37,12 @@ OF_THE_PACKAGE = {
 """What models lend to results and solvers, and scripts do not need."""
 
 
-@pytest.mark.parametrize("package", [beltdyn.model])
-def test_the_names_of_models_are_among_them(package: object) -> None:
-    assert set(package.__all__) - OF_THE_PACKAGE <= set(dir(bd))  # type: ignore[attr-defined]
-
-
 def test_modules_are_there_without_anything_else_being_used_before() -> None:
-    used = "bd.results.VARIABLES, bd.derived.slips, bd.theory.capstan.capstan_ratio, bd.plot.speeds"
-    assert run(f"import beltdyn as bd; print(len([{used}]))") == "4"
+    used = (
+        "bd.results.VARIABLES, bd.derived.slips, bd.theory.capstan.capstan_ratio, bd.plot.speeds, bd.model.Fan, "
+        "bd.extend.figure"
+    )
+    assert run(f"import beltdyn as bd; print(len([{used}]))") == "6"
 
 
 def test_every_module_of_theory_is_named() -> None:
@@ -55,8 +56,24 @@ def test_importing_the_package_imports_nothing_heavy() -> None:
 
 def test_the_reference_tells_of_every_name() -> None:
     reference = (Path(__file__).parents[2] / "docs" / "reference.md").read_text(encoding="utf-8")
+    sections = dict(re.findall(r"currentmodule:: (\S+)\n(.*?)```", reference, flags=re.DOTALL))
     listed = set(re.findall(r"^    (\w+)$", reference, flags=re.MULTILINE))
     modules = {name for name in dir(bd) if isinstance(getattr(bd, name), ModuleType)}
-    assert set(dir(bd)) - modules - {"VARIABLES"} <= listed
+    assert set(dir(bd)) - modules <= listed
+    assert set(bd.model.__all__) - OF_THE_PACKAGE <= listed
     assert set(bd.plot.__all__) - {"FIGURES"} <= listed
     assert set(bd.derived.__all__) <= listed
+    assert set(bd.extend.__all__) == set(re.findall(r"^    (\w+)$", sections["beltdyn.extend"], flags=re.MULTILINE))
+
+
+@pytest.mark.parametrize("shown", ["drive", "run", "rest"])
+def test_a_repr_says_in_two_lines_what_it_is(shown: str) -> None:
+    drive = bd.example("two_pulley")
+    drive = drive.replace(simulation=drive.simulation.replace(duration=1e-3))
+    run = bd.simulate(drive)
+    said = {
+        "drive": 'Drive "Belt drive": driver, driven; belt of 1.2727 m',
+        "run": 'Run of "Belt drive": 0 to 0.001 s, ',
+        "rest": 'StaticResult of "Belt drive": equilibrium, ',
+    }
+    assert repr({"drive": drive, "run": run, "rest": bd.equilibrium(drive)}[shown]).startswith(said[shown])

@@ -24,8 +24,8 @@ EXAMPLES = files("beltdyn") / "examples"
 def losses_by_hand(drive: bd.Drive) -> dict[str, float]:
     """Forces that hold the belt back, N."""
     return {
-        "belt bending": bending_resistance(bd.prepare(drive)),
-        "belt compression": float(compression_losses(bd.prepare(drive)).sum()),
+        "belt bending": bending_resistance(bd.model.prepare(drive)),
+        "belt compression": float(compression_losses(bd.model.prepare(drive)).sum()),
     }
 
 

@@ -25,7 +25,7 @@ class Sdirk2:
             slope = slope - change
             if np.max(np.abs(part * change)) < 1e-9:
                 return slope
-        raise bd.StepError("Newton's method does not converge")
+        raise bd.extend.StepError("Newton's method does not converge")
 
 
 drive = bd.example("two_pulley")
@@ -37,7 +37,7 @@ drive = drive.replace(
 
 
 def end(length):
-    run = bd.simulate(drive, integrator=bd.Stepwise(Sdirk2(), bd.FixedSteps(length)))
+    run = bd.simulate(drive, integrator=bd.extend.Stepwise(Sdirk2(), bd.extend.FixedSteps(length)))
     assert run.dataset.attrs["integrator"] == "sdirk2"
     return run.dataset.nodal_coordinates[-1].values - run.dataset.nodal_coordinates[0].values
 
@@ -48,7 +48,7 @@ errors = [np.linalg.norm(end(length) - exact) for length in lengths]
 order = np.polyfit(np.log(lengths), np.log(errors), 1)[0]
 assert 1.7 < order < 2.6, order
 
-controlled = bd.simulate(drive, integrator=bd.Stepwise(Sdirk2(), bd.ErrorControl(1e-4))).dataset
+controlled = bd.simulate(drive, integrator=bd.extend.Stepwise(Sdirk2(), bd.extend.ErrorControl(1e-4))).dataset
 usual = bd.simulate(drive).dataset
 difference = controlled.pulley_torque[-1, 0] - usual.pulley_torque[-1, 0]
 assert abs(difference) < 0.01 * abs(usual.pulley_torque[-1, 0]), difference

@@ -4,7 +4,7 @@ import re
 from collections.abc import Callable
 from inspect import Parameter, cleandoc, signature
 from pathlib import Path
-from types import UnionType
+from types import NoneType, UnionType
 from typing import TYPE_CHECKING, Annotated, Any, Union, get_args
 
 from cyclopts import Parameter as Option
@@ -21,6 +21,9 @@ if TYPE_CHECKING:
 
 SHARED = ("output", "progress", "overwrite", "start")
 """Parameters of the functions that are no options of the command."""
+
+_TYPED = str, float, int, bool, Path, NoneType
+"""Types that a word of a command line gives."""
 
 _ABOUT = """
 Several drives are computed in parallel on all cores. Ctrl-C, or a termination signal, ends the command and keeps the
@@ -104,11 +107,8 @@ def analysis_command(analysis: Analysis) -> Callable[..., int]:
 
 
 def _in_words(annotation: Any) -> Any:
-    """The type of an option, without results and studies in a union, which no word of a command line gives."""
-    from beltdyn.parts.part import Part
-    from beltdyn.results import Result
-
-    kept = [one for one in get_args(annotation) if not (isinstance(one, type) and issubclass(one, (Result, Part)))]
+    """The type of an option, without what no word of a command line gives: arrays, results and studies."""
+    kept = [one for one in get_args(annotation) if one in _TYPED]
     return Union[tuple(kept)] if isinstance(annotation, UnionType) else annotation  # noqa: UP007
 
 

@@ -8,7 +8,7 @@ from cyclopts import Parameter
 from beltdyn.cli.console import lines_of_file, show, show_error, show_warnings
 from beltdyn.cli.output import show_parts
 from beltdyn.cli.progress import progress_bar
-from beltdyn.errors import BeltdynError, ConvergenceError, ModelError
+from beltdyn.errors import BeltdynError, ModelError
 
 
 def check(
@@ -54,33 +54,26 @@ def check(
 
 def _check(file: Path, figure: Path | None, force: bool) -> None:
     """Check one drive file."""
-    from beltdyn.model import advise, install, load, unstable_balance
-    from beltdyn.show.rest_sheet import rest_sheet
-    from beltdyn.state.installation import bring_to_rest
+    from beltdyn.model import load
+    from beltdyn.show.check import check as check_drive
 
-    drive = given = load(file)
+    drive = load(file)
     if figure is not None:
         from beltdyn.results.atomic import is_marked, require_replaceable
 
         require_replaceable(figure, is_marked, force)
-    estimate = install(drive)
-    failure: ConvergenceError | None = None
-    unstable: tuple[str, ...] = ()
-    try:
-        with progress_bar() as report:
-            rest = bring_to_rest(drive, report)
-        drive, installation, unstable = rest.drive, rest.installation, rest.unstable
-    except ConvergenceError as error:
-        failure, installation = error, estimate
+    with progress_bar() as report:
+        checked = check_drive(drive, report)
+    if checked.failure:
         show("No static equilibrium was found. These are closed-form estimates without bending and weight.\n")
-    show_parts(rest_sheet(given, drive, installation).parts)
+    show_parts(checked.sheet.parts)
     show()
-    show_warnings([*([str(unstable_balance(unstable))] if unstable else []), *advise(given, estimate)])
+    show_warnings(checked.warnings)
     if figure is None:
         show(f"Plot the layout: beltdyn check {file} --figure layout.png")
     else:
         from beltdyn.show import plot
 
-        show(f"Layout: {plot.save_layout(drive, figure, installation, force)}")
-    if failure:
-        raise failure
+        show(f"Layout: {plot.save_layout(checked.drive, figure, checked.installation, force)}")
+    if checked.failure:
+        raise checked.failure

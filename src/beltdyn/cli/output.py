@@ -146,7 +146,7 @@ def analyse_to(
     if result.status == "interrupted":
         from beltdyn.transient.checkpoint import checkpoint_file
 
-        goes_on = f" Resume with: beltdyn {analysis.name} --resume {path}" if checkpoint_file(path).exists() else ""
+        goes_on = f" Resume with: beltdyn {analysis.command} --resume {path}" if checkpoint_file(path).exists() else ""
         show(f"\nInterrupted. The results computed so far are kept.{goes_on}")
     show(f"\nResults: {path}   (figures: beltdyn plot {path})")
     write_extras(result, path, extras, force)

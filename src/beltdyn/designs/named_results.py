@@ -46,9 +46,10 @@ def need_bands(names: Iterable[str]) -> bool:
     return any(name.startswith("tensioner_position_after") for name in names)
 
 
-def listed(text: str) -> list[str]:
-    """Names with commas between."""
-    return [name.strip() for name in text.split(",") if name.strip()]
+def listed(names: str | Sequence[str]) -> list[str]:
+    """Names of a list, or of a text with commas between."""
+    given = names.split(",") if isinstance(names, str) else names
+    return [name.strip() for name in given if name.strip()]
 
 
 def values_of(run: Run) -> dict[str, float]:
@@ -78,7 +79,7 @@ def _numbers_of_modes(drive: Drive) -> list[str]:
     return [str(first + one) for first in firsts for one in range(MODES)]
 
 
-def names_in(known: Mapping[str, float] | Sequence[str], of: str, key: str = "of") -> list[str]:
+def names_in(known: Mapping[str, float] | Sequence[str], of: str | Sequence[str], key: str = "of") -> list[str]:
     """The names of results that a text asks for."""
     if of == "all":
         return list(known)

@@ -82,7 +82,7 @@ def _numbers_in(value: object, path: str) -> Iterator[Number]:
             yield from _numbers_in(one, f"{path}[{entry_name(one) or number}]")
 
 
-def chosen_numbers(drive: Drive, numbers: str | None, tolerances: Mapping[str, float]) -> list[Number]:
+def chosen_numbers(drive: Drive, numbers: str | Sequence[str] | None, tolerances: Mapping[str, float]) -> list[Number]:
     """The requested parameters; those with tolerances always count as parameters of the drive.
 
     Beside numbers that are given there are those that follow from them and may be given in their place, such as the
@@ -237,8 +237,8 @@ _USUAL = {STEADY: "efficiency, least_slip_safety, largest_tension", REST: "tensi
 def sensitivity(
     drive: Drive,
     *,
-    of: str | None = None,
-    numbers: str | None = None,
+    of: str | Sequence[str] | None = None,
+    numbers: str | Sequence[str] | None = None,
     about: str = STEADY,
     at: float | str | None = None,
     force_tolerance: float | None = None,
@@ -255,14 +255,14 @@ def sensitivity(
     drive
         The drive.
     of
-        Results, separated by commas, such as "efficiency, pulley_slip[driven], hub_load": variables of a map, and in
-        brackets the pulley, span, tensioner or cause of one. Results of modes are "frequency[SPAN]" and
+        Results, a list or separated by commas, such as "efficiency, pulley_slip[driven], hub_load": variables of a map,
+        and in brackets the pulley, span, tensioner or cause of one. Results of modes are "frequency[SPAN]" and
         "damping_ratio[SPAN]", of the lowest mode dominated by the span, and "mode_frequency[NUMBER]" and
         "mode_damping_ratio[NUMBER]". "all" selects all of them. By default efficiency, slip safety and tension; at
         rest tension and hub loads.
     numbers
-        Paths of parameters, separated by commas, such as "belt.width, pulley[driven].radius". By default all non-zero
-        parameters of the drive at that instant.
+        Paths of parameters, a list or separated by commas, such as "belt.width, pulley[driven].radius". By default all
+        non-zero parameters of the drive at that instant.
     about
         "steady" or "rest".
     at

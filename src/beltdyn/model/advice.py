@@ -168,7 +168,8 @@ def advise(drive: Drive, installation: Installation) -> list[str]:
 
     Examples
     --------
-    >>> len(bd.advise(drive, bd.install(drive)))  # contact, its damping, friction and mesh are those of the paper
+    >>> estimate = bd.model.install(drive)
+    >>> len(bd.model.advise(drive, estimate))  # contact, its damping, friction and mesh are those of the paper
     4
     """
     lost, sunk = _tension(drive, installation), _penetration(drive, installation)

@@ -34,6 +34,9 @@ from beltdyn.parts.part import Part
 from beltdyn.parts.quantity import Acceleration, Title, Words
 from beltdyn.parts.text_file import parse_toml
 
+_MOST_NAMED = 8
+"""Pulleys that a drive names where it says what it is."""
+
 
 class Drive(Part):
     """A belt drive, validated, with all derived values.
@@ -81,6 +84,16 @@ class Drive(Part):
         (0.0, 0.0), description="the acceleration of gravity as [x, y], in m/s^2"
     )
     _source: str | None = PrivateAttr(None)
+
+    def __repr__(self) -> str:
+        names = [pulley.name for pulley in self.pulleys]
+        pulleys = ", ".join(names) if len(names) <= _MOST_NAMED else f"{len(names)} pulleys"
+        belt, length = self.belt, self.belt.length
+        size = f"of {length:.5g} m" if length is not None else f"at {belt.installed_tension:.5g} N"
+        tensioners = f", {len(self.tensioners)} tensioner{'s' * (len(self.tensioners) > 1)}" if self.tensioners else ""
+        return f'Drive "{self.title}": {pulleys}; {"open " * bool(self.ends)}belt {size}{tensioners}'
+
+    __str__ = __repr__
 
     def __reduce__(self) -> tuple[Callable[[str], "Drive"], tuple[str]]:
         """Travel between processes as a drive file, which holds no functions of Python."""

@@ -65,7 +65,7 @@ class FixedEnd(End):
 
     Examples
     --------
-    >>> bd.FixedEnd(name="anchor", kind="fixed", point=["0 mm", "200 mm"]).point
+    >>> bd.model.FixedEnd(name="anchor", kind="fixed", point=["0 mm", "200 mm"]).point
     (0.0, 0.2)
     """
 
@@ -95,7 +95,7 @@ class PulledEnd(End):
 
     Examples
     --------
-    >>> bd.PulledEnd(name="lever", kind="pulled", direction=[0, -1], tension="50 N").tension
+    >>> bd.model.PulledEnd(name="lever", kind="pulled", direction=[0, -1], tension="50 N").tension
     50.0
     """
 
@@ -114,7 +114,7 @@ class WeightEnd(End):
 
     Examples
     --------
-    >>> bd.WeightEnd(name="weight", kind="weight", mass="5 kg").mass
+    >>> bd.model.WeightEnd(name="weight", kind="weight", mass="5 kg").mass
     5.0
     """
 

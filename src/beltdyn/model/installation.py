@@ -37,7 +37,7 @@ class Installation:
 
     Examples
     --------
-    >>> installed = bd.install(drive)
+    >>> installed = bd.model.install(drive)
     >>> print(f"{installed.tension:.2f} N, {installed.span_frequencies[0]:.1f} Hz")
     26.56 N, 21.0 Hz
     """

@@ -39,7 +39,7 @@ class Path:
     Examples
     --------
     >>> import numpy as np
-    >>> two = bd.Path(np.array([[0.0, 0.0], [1.0, 0.0]]), np.array([0.1, 0.1]))
+    >>> two = bd.model.Path(np.array([[0.0, 0.0], [1.0, 0.0]]), np.array([0.1, 0.1]))
     >>> round(two.length, 4)  # two spans of a metre, and a circle
     2.6283
     """

@@ -59,7 +59,7 @@ class Prepared:
 
     Examples
     --------
-    >>> prepared = bd.prepare(drive)
+    >>> prepared = bd.model.prepare(drive)
     >>> prepared.belt_length, prepared.elements
     (1.2727, 100)
     >>> print(f"{prepared.installation.tension:.1f} N")
@@ -266,7 +266,7 @@ def prepare(drive: Drive) -> Prepared:
     Examples
     --------
     >>> open_drive = drive.replace(contact=bd.Contact(friction=0.3))
-    >>> [choice.key for choice in bd.prepare(open_drive).choices][:2]
+    >>> [choice.key for choice in bd.model.prepare(open_drive).choices][:2]
     ['contact.stiffness', 'contact.damping']
     """
     completed = drive.completed
@@ -290,7 +290,7 @@ def install(drive: Drive) -> Installation:
     """Estimate tension, penetration and tensioner positions for the belt at rest.
 
     `beltdyn.model.static_estimate` and `beltdyn.model.tensioner_balance` have the equations, which leave out bending
-    stiffness and weight; `beltdyn.bring_to_rest` finds static equilibrium.
+    stiffness and weight; `beltdyn.state.installation.bring_to_rest` finds static equilibrium.
 
     Parameters
     ----------
@@ -302,7 +302,7 @@ def install(drive: Drive) -> Installation:
 
     Examples
     --------
-    >>> round(bd.install(drive).tension, 1)  # N
+    >>> round(bd.model.install(drive).tension, 1)  # N
     26.6
     """
     return prepare(drive).installation
@@ -324,7 +324,7 @@ def tensioner_balances(drive: Drive, installation: Installation) -> tuple[tuple[
 
     Examples
     --------
-    >>> bd.tensioner_balances(drive, bd.install(drive))  # it has no tensioners
+    >>> bd.model.tensioner_balances(drive, bd.model.install(drive))  # it has no tensioners
     ()
     """
     one = prepare(drive)

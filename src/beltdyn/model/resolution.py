@@ -226,7 +226,7 @@ def layer_lengths(drive: OnPulleys, tension: float) -> tuple[float, float]:
 
     Examples
     --------
-    >>> bending, sinking = bd.layer_lengths(drive, tension=30.0)
+    >>> bending, sinking = bd.model.layer_lengths(drive, tension=30.0)
     >>> print(f"{1e3 * bending:.2f} mm, {1e3 * sinking:.2f} mm")
     5.27 mm, 1.73 mm
     """
@@ -257,7 +257,7 @@ def mesh_errors(drive: OnPulleys, running: Running, elements: int) -> dict[str, 
 
     Examples
     --------
-    >>> errors = bd.mesh_errors(drive, bd.model.Running(tension=30.0), elements=100)
+    >>> errors = bd.model.mesh_errors(drive, bd.model.Running(tension=30.0), elements=100)
     >>> print(f"{errors['slip']:.2%} of the slip, {errors['losses']:.1%} of the losses")
     0.33% of the slip, 1.1% of the losses
     """
@@ -293,7 +293,7 @@ def elements_needed(drive: OnPulleys, running: Running) -> dict[str, int]:
 
     Examples
     --------
-    >>> bd.elements_needed(drive, bd.model.Running(tension=30.0))["slip"]
+    >>> bd.model.elements_needed(drive, bd.model.Running(tension=30.0))["slip"]
     56
     """
     return {name: fewest(drive, running, name, limit / _SURE) for name, limit in ERROR_LIMITS.items()}

@@ -31,7 +31,7 @@ class TensionerBalance(NamedTuple):
     --------
     >>> slide = {"kind": "sliding", "pulley": "driven", "direction": [1, 0], "mass": 1.0, "preload": 60.0}
     >>> sprung = drive.replace(tensioner=[slide])
-    >>> [[one.stable for one in places] for places in bd.tensioner_balances(sprung, bd.install(sprung))]
+    >>> [[one.stable for one in places] for places in bd.model.tensioner_balances(sprung, bd.model.install(sprung))]
     [[True]]
     """
 

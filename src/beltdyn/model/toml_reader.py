@@ -134,7 +134,7 @@ def json_schema() -> dict[str, Any]:
 
     Examples
     --------
-    >>> bd.json_schema()["title"]
+    >>> bd.model.json_schema()["title"]
     'Drive'
     """
     schema = Drive.model_json_schema()

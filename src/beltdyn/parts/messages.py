@@ -53,7 +53,7 @@ class Finding:
 
     Examples
     --------
-    >>> found = bd.Finding("The belt is long.", "The slack span sags.", "Shorten it.")
+    >>> found = bd.results.Finding("The belt is long.", "The slack span sags.", "Shorten it.")
     >>> print(found)
     The belt is long. The slack span sags. Shorten it.
     """

@@ -127,6 +127,13 @@ class Part(BaseModel):
         except ValidationError as error:
             raise ModelError(explain(error, type(self), data)) from None
 
+    def __repr_args__(self) -> Any:
+        """Arguments that differ from their defaults."""
+        fields = type(self).model_fields
+        return [(name, value) for name, value in super().__repr_args__() if value != fields[str(name)].get_default()]
+
+    __str__ = BaseModel.__repr__
+
     @classmethod
     def keys(cls) -> list[str]:
         """Names of all constructor arguments."""

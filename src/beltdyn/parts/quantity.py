@@ -2,11 +2,12 @@
 
 import math
 import re
+from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import lru_cache
 from math import isfinite
 from types import MappingProxyType
-from typing import TYPE_CHECKING, Annotated, get_args
+from typing import TYPE_CHECKING, Annotated, SupportsFloat, TypeAlias, get_args
 
 import numpy as np
 from pydantic import BeforeValidator, Strict, StringConstraints
@@ -264,24 +265,47 @@ def number_in(name: str, value: float | str, unit: str) -> float:
     return number
 
 
-def numbers_in(name: str, text: str, unit: str, count: int) -> FloatArray:
-    """Read a range as equally spaced numbers, or a list of numbers."""
-    ranged, listed = _RANGE.fullmatch(str(text)), _LIST.fullmatch(str(text))
+Number: TypeAlias = str | SupportsFloat
+"""A text with a unit, or a number in SI units."""
+Numbers: TypeAlias = str | Sequence[float] | FloatArray
+"""A range or list as text with its unit, or numbers in SI units."""
+
+
+def numbers_in(name: str, given_numbers: Numbers, unit: str, count: int) -> FloatArray:
+    """Numbers in ascending order: those of an array or list in SI units, of a text, or equally spaced in its range."""
     example = "700..6000 rpm" if unit == "rad/s" else f"0.2..1.2 {unit}".rstrip()
-    if ranged is not None:
-        if not 2 <= count <= _MOST:
-            raise ModelError(f"{count} points of {name} = {text!r} are not possible. Give 2 to {_MOST:,}.")
-        first, last, given = ranged.groups()
-        found = np.linspace(_number(name, first, given, unit), _number(name, last, given, unit), count)
-    elif listed is not None:
-        given = listed[2]
-        found = np.array([_number(name, one.strip(), given, unit) for one in listed[1].split(",")])
-    else:
-        raise ModelError(f"{name} = {text!r} must be a range such as {example!r}, or numbers separated by commas.")
+    text = given_numbers
+    found = _numbers_of_text(name, text, unit, count, example) if isinstance(text, str) else _finite(name, text, unit)
     ascending = np.sort(found)
     if np.any(np.diff(ascending) == 0.0):
         raise ModelError(f"{name} = {text!r} contains the same number twice. Write a range such as {example!r}.")
     return ascending
+
+
+def _finite(name: str, given: Sequence[float] | FloatArray, unit: str) -> FloatArray:
+    """Numbers that are given as such."""
+    try:
+        found = np.atleast_1d(np.asarray(given, dtype=float))
+    except (TypeError, ValueError):
+        found = np.full(1, np.nan)
+    if found.ndim != 1 or not 1 <= found.size <= _MOST or not np.all(np.isfinite(found)):
+        in_unit = f" in {unit}" if unit else ""
+        raise ModelError(f"{name} = {given!r} must be 1 to {_MOST:,} finite numbers{in_unit}, or a text with a unit.")
+    return found
+
+
+def _numbers_of_text(name: str, text: str, unit: str, count: int, example: str) -> FloatArray:
+    """Numbers of a range or of a list."""
+    ranged, listed = _RANGE.fullmatch(text), _LIST.fullmatch(text)
+    if ranged is not None:
+        if not 2 <= count <= _MOST:
+            raise ModelError(f"{count} points of {name} = {text!r} are not possible. Give 2 to {_MOST:,}.")
+        first, last, given = ranged.groups()
+        return np.linspace(_number(name, first, given, unit), _number(name, last, given, unit), count)
+    if listed is not None:
+        given = listed[2]
+        return np.array([_number(name, one.strip(), given, unit) for one in listed[1].split(",")])
+    raise ModelError(f"{name} = {text!r} must be a range such as {example!r}, or numbers separated by commas.")
 
 
 def _number(name: str, number: str, given: str, unit: str) -> float:

@@ -6,7 +6,7 @@ from pathlib import Path
 from beltdyn.arrays import FloatArray
 from beltdyn.errors import ModelError
 from beltdyn.model import Drive
-from beltdyn.parts.quantity import numbers_in
+from beltdyn.parts.quantity import Numbers, numbers_in
 from beltdyn.points.changed_drive import at_speed_under, driver_of, held_at, sense_of, with_load
 from beltdyn.points.operating_points import OperatingPoints, serpentine
 from beltdyn.results import Result, Variable
@@ -17,8 +17,8 @@ def operating_map(
     drive: Drive,
     *,
     pulley: str | None = None,
-    speed: str | None = None,
-    load: str | None = None,
+    speed: Numbers | None = None,
+    load: Numbers | None = None,
     points: int = 40,
     load_points: int = 10,
     at: float | str | None = None,
@@ -39,10 +39,10 @@ def operating_map(
     pulley
         The pulley whose speed is prescribed, in place of its motor; by default the driver.
     speed
-        Its speeds: a range such as "700..6000 rpm", or a list "700, 1500, 3000 rpm"; positive in its sense of rotation.
-        By default those of the drive file.
+        Its speeds: a range such as "700..6000 rpm", a list "700, 1500, 3000 rpm", or an array in rad/s; positive in
+        its sense of rotation. By default those of the drive file.
     load
-        Factors on all torques and loads except motors: a range such as "0.2..1.2", or a list.
+        Factors on all torques and loads except motors: a range such as "0.2..1.2", a list, or an array.
     points
         Number of speeds of a range.
     load_points
@@ -106,7 +106,7 @@ def at_point(held: Drive, pulley: int, there: Mapping[str, float]) -> Drive:
     return at_speed_under(held, pulley, sense_of(held, pulley) * there["speed"], factor)
 
 
-def load_factors(load: str, count: int) -> FloatArray:
+def load_factors(load: Numbers, count: int) -> FloatArray:
     """Factors on loads."""
     factors = numbers_in("load", load, "", count)
     if factors[0] < 0.0:

@@ -14,7 +14,7 @@ from beltdyn.model import Drive, Installation, Prepared, prepare
 from beltdyn.model.carrier import moved
 from beltdyn.model.tensioner_balance import held_belt
 from beltdyn.parts.messages import reason
-from beltdyn.parts.quantity import to_si
+from beltdyn.parts.quantity import Number, to_si
 from beltdyn.points.operating_points import Axes
 from beltdyn.results import Result, Variable, build_result
 from beltdyn.solvers.progress import Progress, Report
@@ -69,8 +69,8 @@ def tensioner_sheet(
     drive: Drive,
     *,
     pulley: str | None = None,
-    tolerance: str = "0.5 %",
-    wear: str = "1 %",
+    tolerance: Number = "0.5 %",
+    wear: Number = "1 %",
     progress: Report | None = None,
 ) -> Result:
     """Compute a tensioner sheet: position, tension and hub load of a tensioner for belts of different lengths.
@@ -86,9 +86,9 @@ def tensioner_sheet(
     pulley
         The pulley of the tensioner; by default that of the only moving tensioner.
     tolerance
-        Length tolerance of a new belt, such as "6 mm" or "0.5 %".
+        Length tolerance of a new belt, such as "6 mm" or "0.5 %", or in m.
     wear
-        Elongation of the belt over its life, such as "10 mm" or "1 %".
+        Elongation of the belt over its life, such as "10 mm" or "1 %", or in m.
     progress
         Called repeatedly with a `Progress`.
 
@@ -300,11 +300,14 @@ def _number_of(drive: Drive, pulley: str | None) -> int:
     return names.index(pulley) if pulley is not None else 0
 
 
-def _length(name: str, text: str, nominal: float) -> float:
+def _length(name: str, text: Number, nominal: float) -> float:
     """A length, m, given as one or as a part of the nominal length."""
-    whole = text.strip()
+    whole = str(text).strip()
     try:
-        found = nominal * float(whole[:-1]) / 100.0 if whole.endswith("%") else to_si(whole, "m")
+        if isinstance(text, str):
+            found = nominal * float(whole[:-1]) / 100.0 if whole.endswith("%") else to_si(whole, "m")
+        else:
+            found = float(text)
     except ValueError as error:
         raise ModelError(
             f'{name} = {text!r} {reason(error)}. Give a length or a share, such as "6 mm" or "0.5 %".'

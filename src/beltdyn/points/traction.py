@@ -12,7 +12,7 @@ from beltdyn.arrays import FloatArray
 from beltdyn.errors import ConvergenceError, ModelError, cause_of
 from beltdyn.model import Drive
 from beltdyn.model.pulley import flat_friction_on
-from beltdyn.parts.quantity import numbers_in
+from beltdyn.parts.quantity import Numbers, numbers_in
 from beltdyn.points.changed_drive import at_speed, driver_of, held_at, sense_of, with_pulley
 from beltdyn.points.operating_points import Axes, OperatingPoints
 from beltdyn.results import Result, Run, Variable, summarize
@@ -59,7 +59,7 @@ def traction(
     drive: Drive,
     *,
     pulley: str | None = None,
-    slip: str | None = None,
+    slip: Numbers | None = None,
     points: int = 30,
     at: float | str | None = None,
     force_tolerance: float | None = None,
@@ -82,7 +82,7 @@ def traction(
     pulley
         The pulley; by default the only loaded one.
     slip
-        Slips: a range such as "0..20 %", or a list. By default from zero to a fifth beyond gross slip.
+        Slips: a range such as "0..20 %", a list, or an array. By default from zero to a fifth beyond gross slip.
     points
         Number of slips of a range.
     at

@@ -106,7 +106,7 @@ def power_balance(recorded: Recorded, window: Window | None = None) -> Balance:
     Examples
     --------
     >>> with run.recorded() as recorded:
-    ...     balance = bd.power_balance(recorded)
+    ...     balance = bd.results.power_balance(recorded)
     >>> sorted(balance.losses)[:2]
     ['belt bending', 'belt compression']
     """

@@ -20,6 +20,10 @@ if TYPE_CHECKING:
     import xarray as xr
 
 
+_MOST_SIZES = 4
+"""Dimensions that a result names where it says what it is."""
+
+
 class Result:
     """The result of an analysis.
 
@@ -43,7 +47,18 @@ class Result:
         self._dataset = dataset
 
     def __repr__(self) -> str:
-        return f"{type(self).__name__}(kind={self.kind!r}, path={self.path!r})"
+        try:
+            said = f"{self._extent}; {self.status}"
+        except (ModelError, OSError):
+            said = "its file cannot be read any more"
+        file = "" if self.path is None else f", {self.path}"
+        return f'{type(self).__name__} of "{self.drive.title}": {said}{file}'
+
+    @property
+    def _extent(self) -> str:
+        """What it covers, in a few words."""
+        sizes = [f"{size} {dim}" for dim, size in list(self.dataset.sizes.items())[:_MOST_SIZES]]
+        return ", ".join([self.kind.replace("_", " "), *sizes])
 
     def _repr_html_(self) -> str:
         """Show the result in a notebook: presentation lies above, and is found by its name."""
@@ -136,9 +151,9 @@ def build_result(
 
     Examples
     --------
-    >>> power, speed = bd.Variable(("speed",), "W", "Power"), bd.Variable(("speed",), "rad/s", "Speed")
+    >>> power, speed = bd.extend.Variable(("speed",), "W", "Power"), bd.extend.Variable(("speed",), "rad/s", "Speed")
     >>> known, over = {"power": (power, [10.0, 20.0])}, {"speed": (speed, [50.0, 100.0])}
-    >>> found = bd.build_result("dynamometer", drive, known, over)
+    >>> found = bd.extend.build_result("dynamometer", drive, known, over)
     >>> found.dataset.power.sel(speed=100.0).item()
     20.0
     """

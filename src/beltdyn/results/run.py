@@ -25,7 +25,7 @@ from beltdyn.results.provenance import (
     mesh_resolution,
 )
 from beltdyn.results.result import Result, build_result, drive_of
-from beltdyn.results.schema import COORDINATES, DERIVED, VARIABLES, InMemory, Recorded, Variable
+from beltdyn.results.schema import COORDINATES, DERIVED, VARIABLES, InMemory, Recorded, Variable, runs_steadily
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -124,8 +124,14 @@ class Run(Result):
         super().__init__(dataset, drive, path)
         self._stamp = None if path is None else stamp(path)
 
-    def __repr__(self) -> str:
-        return f"Run(path={self.path!r})"
+    @property
+    def _extent(self) -> str:
+        dataset, pulleys = self.dataset, f"{len(self.drive.pulleys)} pulleys"
+        if runs_steadily(dataset):
+            return f"steady running, {pulleys}"
+        times = dataset["time"].values
+        over = f"{times[0]:.4g} to {times[-1]:.4g} s, " if times.size else ""
+        return f"{over}{times.size} outputs, {pulleys}"
 
     @property
     def kind(self) -> str:
@@ -289,7 +295,7 @@ def open_run(path: Path | str) -> Run:
     --------
     >>> short = drive.replace(simulation=drive.simulation.replace(duration=0.01))
     >>> _ = bd.simulate(short, "short.nc")
-    >>> bd.open_run("short.nc").dataset.pulley_speed.dims
+    >>> bd.results.open_run("short.nc").dataset.pulley_speed.dims
     ('time', 'pulley')
     """
     path = Path(path)

@@ -4,8 +4,8 @@ from pathlib import Path
 from typing import Any
 
 import xarray as xr
-from xarray.backends.h5netcdf_ import H5NetCDFArrayWrapper, H5NetCDFStore
-from xarray.core.indexing import LazilyIndexedArray
+from xarray.backends import BackendArray, BackendEntrypoint
+from xarray.core.indexing import IndexingSupport, LazilyIndexedArray, explicit_indexing_adapter
 
 from beltdyn.errors import ModelError
 from beltdyn.results.atomic import unreadable
@@ -13,31 +13,44 @@ from beltdyn.results.atomic import unreadable
 
 def open_values(path: Path) -> xr.Dataset:
     """Open a file of HDF5; values that cannot be read later raise a `ModelError`."""
-    store = _Store.open(path)
-    try:
-        return xr.open_dataset(store, decode_times=False)
-    except BaseException:
-        store.close()
-        raise
+    return xr.open_dataset(path, engine=_ResultFile, decode_times=False)
 
 
-class _Values(H5NetCDFArrayWrapper):
+class _ResultFile(BackendEntrypoint):
+    """A file whose values are `_Values`, as xarray's guide on new backends describes."""
+
+    open_dataset_parameters = ("filename_or_obj", "drop_variables", "decode_times")
+
+    def open_dataset(self, filename_or_obj: Any, *, drop_variables: Any = None, decode_times: bool = False) -> Any:
+        path = Path(filename_or_obj)
+        stored = xr.open_dataset(
+            path, engine="h5netcdf", cache=False, drop_variables=drop_variables, decode_times=decode_times
+        )
+        guarded = {
+            name: xr.Variable(
+                variable.dims, LazilyIndexedArray(_Values(variable, path)), variable.attrs, variable.encoding
+            )
+            for name, variable in stored.variables.items()
+            if name not in stored.xindexes
+        }
+        dataset = stored.assign({name: guarded[name] for name in stored.data_vars})
+        dataset = dataset.assign_coords({name: guarded[name] for name in guarded if name in stored.coords})
+        dataset.set_close(stored.close)
+        return dataset
+
+
+class _Values(BackendArray):
     """The values of a variable."""
 
-    __slots__ = ()
+    def __init__(self, variable: xr.Variable, path: Path) -> None:
+        self._variable, self._path = variable, path
+        self.shape, self.dtype = variable.shape, variable.dtype
 
-    def _getitem(self, key: Any) -> Any:
+    def __getitem__(self, key: Any) -> Any:
+        return explicit_indexing_adapter(key, self.shape, IndexingSupport.OUTER, self._read)
+
+    def _read(self, key: tuple[Any, ...]) -> Any:
         try:
-            return super()._getitem(key)  # type: ignore[no-untyped-call]
+            return self._variable[key].values
         except Exception as error:  # readers of HDF5 raise many unrelated types where bytes are wrong
-            raise ModelError(unreadable(Path(self.datastore.ds.filename), error)) from error
-
-
-class _Store(H5NetCDFStore):
-    """A file whose values are `_Values`."""
-
-    __slots__ = ()
-
-    def open_store_variable(self, name: str, var: Any) -> xr.Variable:
-        variable: xr.Variable = super().open_store_variable(name, var)  # type: ignore[no-untyped-call]
-        return variable.copy(data=LazilyIndexedArray(_Values(name, self)))  # type: ignore[no-untyped-call,arg-type]
+            raise ModelError(unreadable(self._path, error)) from error

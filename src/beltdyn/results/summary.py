@@ -203,7 +203,7 @@ class Compared:
 
     Examples
     --------
-    >>> slip = bd.Compared("slip", "driven", "%", run=0.21, steady=0.2)
+    >>> slip = bd.results.Compared("slip", "driven", "%", run=0.21, steady=0.2)
     >>> print(f"{slip.quantity} of {slip.name}: {slip.run - slip.steady:+.2f} {slip.unit}")
     slip of driven: +0.01 %
     """

@@ -76,6 +76,28 @@ class Sheet(NamedTuple):
     parts: tuple[Table | Facts, ...]
 
 
+def as_text(sheet: Sheet) -> str:
+    """A sheet as plain text."""
+    parts = ([sheet.title] if sheet.title else []) + ["\n".join(_lines(part)) for part in sheet.parts]
+    return "\n\n".join(parts)
+
+
+def _lines(part: Table | Facts) -> list[str]:
+    """The lines of a table, names to the left and numbers to the right, or of facts."""
+    title = [part.title] if part.title else []
+    if isinstance(part, Facts):
+        width = max((len(name) for name, _ in part.facts), default=0)
+        return title + [f"{name:{width}}  {fact}" for name, fact in part.facts]
+    headings = [heading.split("\n") for heading in part.headings]
+    deep = max(map(len, headings))
+    rows = [*zip(*([""] * (deep - len(one)) + one for one in headings), strict=True), *part.rows]
+    widths = [max(map(len, column)) for column in zip(*rows, strict=True)]
+    return title + [
+        "  ".join(f"{cell:{'>' if number else '<'}{width}}" for number, (cell, width) in enumerate(cells)).rstrip()
+        for cells in (tuple(zip(row, widths, strict=True)) for row in rows)
+    ]
+
+
 # The sheet of a study: number of points, and range of each input and result
 
 _DIGITS = 5

@@ -47,7 +47,7 @@ class GeneralizedAlpha:
 
     Examples
     --------
-    >>> bd.GeneralizedAlpha(spectral_radius=0.9, rtol=1e-4)
+    >>> bd.extend.GeneralizedAlpha(spectral_radius=0.9, rtol=1e-4)
     GeneralizedAlpha(spectral_radius=0.9, rtol=0.0001, max_step=None)
     """
 

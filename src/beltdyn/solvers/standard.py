@@ -105,7 +105,7 @@ class FixedSteps:
 
     Examples
     --------
-    >>> bd.FixedSteps(1e-4).length
+    >>> bd.extend.FixedSteps(1e-4).length
     0.0001
     """
 
@@ -137,7 +137,7 @@ class ErrorControl:
 
     Examples
     --------
-    >>> bd.ErrorControl(rtol=1e-4).rtol
+    >>> bd.extend.ErrorControl(rtol=1e-4).rtol
     0.0001
     """
 
@@ -279,7 +279,7 @@ class StandardIntegrator:
 
     Examples
     --------
-    >>> bd.StandardIntegrator("radau", rtol=1e-4)
+    >>> bd.extend.StandardIntegrator("radau", rtol=1e-4)
     StandardIntegrator(name='radau', rtol=0.0001, max_step=None)
     """
 

@@ -121,7 +121,7 @@ def bring_to_rest(drive: Drive, progress: Report | None = None) -> Rest:
 
     Examples
     --------
-    >>> rest = bd.bring_to_rest(drive)
+    >>> rest = bd.state.installation.bring_to_rest(drive)
     >>> rest._fields
     ('prepared', 'system', 'state', 'seen', 'unstable')
     """

@@ -10,7 +10,7 @@ from numpy.typing import ArrayLike
 from beltdyn.arrays import FloatArray
 from beltdyn.errors import ModelError
 from beltdyn.model import Drive, prepare
-from beltdyn.parts.quantity import RPM, numbers_in
+from beltdyn.parts.quantity import RPM, Numbers, numbers_in
 from beltdyn.points.changed_drive import at_instant, at_speed, driver_of, held_at, sense_of
 from beltdyn.points.operating_points import Axes, OperatingPoints
 from beltdyn.results import Result, Run, Variable
@@ -258,11 +258,11 @@ _KEPT = (
 def campbell(
     drive: Drive,
     *,
-    speed: str,
+    speed: Numbers,
     pulley: str | None = None,
     points: int = 40,
     count: int = 8,
-    orders: str | None = None,
+    orders: Numbers | None = None,
     dry_tensioners: str = SLIDING,
     at: float | str | None = None,
     force_tolerance: float | None = None,
@@ -281,8 +281,8 @@ def campbell(
     drive
         The drive.
     speed
-        Speeds of the pulley: a range such as "700..6000 rpm", or a list "700, 1500, 3000 rpm"; positive in its sense of
-        rotation.
+        Speeds of the pulley: a range such as "700..6000 rpm", a list "700, 1500, 3000 rpm", or an array in rad/s;
+        positive in its sense of rotation.
     pulley
         The pulley whose speed is prescribed, in place of its motor; by default the driver.
     points
@@ -290,8 +290,8 @@ def campbell(
     count
         Number of modes at each speed, from the lowest frequency.
     orders
-        Exciting orders of the pulley's rotation, such as "1, 2, 4". By default the harmonics of speeds and loads in the
-        drive file, and the rotation of all pulleys and of the belt.
+        Exciting orders of the pulley's rotation, such as "1, 2, 4" or [1, 2, 4]. By default the harmonics of speeds
+        and loads in the drive file, and the rotation of all pulleys and of the belt.
     dry_tensioners
         "sliding" for tensioners without dry friction, as in large vibrations, or "stuck" for tensioners held by it, as
         in small ones.

@@ -12,7 +12,7 @@ from beltdyn.errors import ModelError
 from beltdyn.machines import AngleSpeedTable, AngleTable, LoadTable
 from beltdyn.machines.loads.load import Load
 from beltdyn.model import Drive
-from beltdyn.parts.quantity import numbers_in
+from beltdyn.parts.quantity import Numbers, numbers_in
 from beltdyn.results import Run
 
 # Amplitudes of what excites a drive: waves in the speeds and torques of shafts over their angles
@@ -125,10 +125,11 @@ def own_excitations(drive: Drive) -> list[Excitation]:
     return [*dict.fromkeys(found), Excitation("turn of the belt", TURN, 1.0, BELT)]
 
 
-def given_excitations(orders: str, drive: Drive, number: int) -> list[Excitation]:
+def given_excitations(orders: Numbers, drive: Drive, number: int) -> list[Excitation]:
     """Orders of the rotation of a pulley that a user gives."""
     name = drive.pulleys[number].name
-    found = [] if ".." in orders else [float(one) for one in numbers_in("orders", orders, "", 2)]
+    ranged = isinstance(orders, str) and ".." in orders
+    found = [] if ranged else numbers_in("orders", orders, "", 2).tolist()
     if not found or found[0] <= 0.0:
         raise ModelError(f'orders = {orders!r} must be positive numbers separated by commas, such as "0.5, 1, 2".')
     return [Excitation(f"order {order:g} of {name}", TURN, order, SHAFT, number) for order in found]

@@ -9,7 +9,7 @@ from numpy.typing import ArrayLike
 from beltdyn.arrays import BoolArray, ComplexArray, IntArray
 from beltdyn.errors import ConvergenceError, ModelError
 from beltdyn.model import Drive
-from beltdyn.parts.quantity import RPM, numbers_in
+from beltdyn.parts.quantity import RPM, Number, numbers_in
 from beltdyn.points.changed_drive import at_speed, driver_of, held_at, sense_of
 from beltdyn.results import Result, Run, Variable, build_result
 from beltdyn.results.schema import AXIS_NAMES, COORDINATES, runs_steadily
@@ -206,7 +206,7 @@ def modes(
     drive: Drive | Run,
     *,
     about: str | Run = STEADY,
-    speed: str | None = None,
+    speed: Number | None = None,
     pulley: str | None = None,
     at: float | str | None = None,
     count: int = 12,
@@ -230,7 +230,7 @@ def modes(
         "steady" or "rest"; or the result of `steady_state`, or of a run over time on a staying mesh, whose drive is
         then used. The state of a run at an instant is treated as a steady state.
     speed
-        Speed of the driver, such as "800 rpm", in place of its motor; by default that of the drive file.
+        Speed of the driver, such as "800 rpm", or in rad/s, in place of its motor; by default that of the drive file.
     pulley
         The pulley whose speed is prescribed by `speed`; by default the driver.
     at
@@ -288,7 +288,9 @@ def modes(
     return Result(result.dataset.assign_attrs(told), result.drive)
 
 
-def _require_sense(about: str | Run, speed: str | None, pulley: str | None, at: float | str | None, count: int) -> None:
+def _require_sense(
+    about: str | Run, speed: Number | None, pulley: str | None, at: float | str | None, count: int
+) -> None:
     """Make sure that the options make sense."""
     if count < 1:
         raise ModelError(f"count = {count} must be 1 or more.")
@@ -309,9 +311,9 @@ def _require_sense(about: str | Run, speed: str | None, pulley: str | None, at: 
         raise ModelError(f"pulley = {pulley!r} needs a speed to prescribe. Give speed.")
 
 
-def _at_speed(drive: Drive, speed: str, pulley: str | None, at: float | str | None) -> Drive:
+def _at_speed(drive: Drive, speed: Number, pulley: str | None, at: float | str | None) -> Drive:
     """The drive with a pulley at a speed."""
-    values = numbers_in("speed", speed, "rad/s", 2)
+    values = numbers_in("speed", speed if isinstance(speed, str) else [float(speed)], "rad/s", 2)
     if values.size > 1:
         raise ModelError(f'speed = {speed!r} must be a single speed, such as "800 rpm".')
     held = held_at(drive, at)

@@ -11,7 +11,7 @@ from beltdyn.arrays import FloatArray
 from beltdyn.errors import ModelError
 from beltdyn.model import Drive
 from beltdyn.parts.messages import suggest
-from beltdyn.parts.quantity import numbers_in
+from beltdyn.parts.quantity import Numbers, numbers_in
 from beltdyn.parts.table_file import HeadedColumn, read_headed
 from beltdyn.points.changed_drive import at_instant, at_speed, driver_of, held_at, sense_of
 from beltdyn.points.operating_points import Axes, OperatingPoints, labels_of
@@ -142,7 +142,7 @@ _KEPT = (
 def response(
     drive: Drive,
     *,
-    speed: str,
+    speed: Numbers,
     pulley: str | None = None,
     points: int = 40,
     dry_tensioners: str = SLIDING,
@@ -164,8 +164,8 @@ def response(
     drive
         The drive, with harmonics of a prescribed speed or of loads, or with torques over the shaft angle.
     speed
-        Speeds of the pulley: a range such as "700..6000 rpm", or a list "700, 1500, 3000 rpm"; positive in its sense of
-        rotation.
+        Speeds of the pulley: a range such as "700..6000 rpm", a list "700, 1500, 3000 rpm", or an array in rad/s;
+        positive in its sense of rotation.
     pulley
         The pulley whose speed is prescribed; by default the driver.
     points

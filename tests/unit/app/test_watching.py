@@ -20,7 +20,7 @@ def result(tmp_path_factory: pytest.TempPathFactory, drive_text: str) -> Path:
 
 
 def test_the_latest_instant_is_seen_once(result: Path) -> None:
-    watcher, run = Watcher(result), bd.open_run(result)
+    watcher, run = Watcher(result), bd.results.open_run(result)
     seen = watcher.look()
     assert seen is not None
     instant = run.fields_at()
@@ -42,7 +42,7 @@ def test_what_is_drawn_lies_around_the_pulleys(result: Path) -> None:
     assert points[:, 1].max() == pytest.approx(81.25, abs=1.0)  # radius, mm: this belt touches with its centerline
     assert points[0] == pytest.approx(points[-1], abs=0.01)  # closed
     assert [one["r"] for one in seen.drawn["pulleys"]] == [81.25, 81.25]
-    turned = bd.open_run(result).fields_at()["pulley_angle"].values
+    turned = bd.results.open_run(result).fields_at()["pulley_angle"].values
     assert [one["angle"] for one in seen.drawn["pulleys"]] == pytest.approx(-np.degrees(turned))
 
 

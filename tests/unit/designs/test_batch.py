@@ -14,12 +14,12 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from beltdyn import open_run, simulate
+from beltdyn import simulate
 from beltdyn.designs.batch import simulate_all
 from beltdyn.designs.worker import Ending
 from beltdyn.errors import ModelError
 from beltdyn.model import Drive
-from beltdyn.results import Run, summarize
+from beltdyn.results import Run, open_run, summarize
 from beltdyn.solvers.progress import BatchProgress
 
 Change = Callable[..., Drive]

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from beltdyn.errors import ModelError
-from beltdyn.parts.quantity import numbers_in
+from beltdyn.parts.quantity import Numbers, numbers_in
 
 
 def test_a_range_is_divided_equally() -> None:
@@ -38,12 +38,17 @@ def test_a_number_without_its_unit_is_asked_for_it() -> None:
         numbers_in("speed", "80", "rad/s", 2)
 
 
-def test_numbers_that_are_no_text() -> None:
-    """The unit is not known."""
-    with pytest.raises(ModelError, match=r"speed = \[10\.0, 20\.0\] must be a range such as '700\.\.6000 rpm'"):
-        numbers_in("speed", [10.0, 20.0], "rad/s", 5)  # type: ignore[arg-type]
-    with pytest.raises(ModelError, match="has no unit"):
-        numbers_in("speed", 20.0, "rad/s", 5)  # type: ignore[arg-type]
+@pytest.mark.parametrize("given", [[20.0, 10.0], np.array([20.0, 10.0]), (10, 20), range(10, 21, 10)])
+def test_arrays_and_lists_are_in_si_units(given: Numbers) -> None:
+    np.testing.assert_array_equal(numbers_in("speed", given, "rad/s", 5), [10.0, 20.0])
+
+
+@pytest.mark.parametrize("given", [[], [np.nan], [[1.0, 2.0]], ["10 rpm"], None])
+def test_what_is_no_array_of_numbers(given: Numbers) -> None:
+    with pytest.raises(ModelError, match="must be 1 to 10,000 finite numbers in rad/s, or a text with a unit"):
+        numbers_in("speed", given, "rad/s", 5)
+    with pytest.raises(ModelError, match="the same number twice"):
+        numbers_in("speed", [1.0, 1.0], "rad/s", 5)
 
 
 @pytest.mark.parametrize("count", [1, 10_001])

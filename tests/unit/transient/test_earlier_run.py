@@ -59,7 +59,7 @@ def scale(values: np.ndarray) -> float:
 
 def test_time_energy_and_forces_are_continuous(whole: Run, second: Run) -> None:
     """States are recorded in double precision, but velocities of nodes with 24 binary digits: to 6e-8."""
-    first = bd.open_run(second.drive.simulation.start.file).dataset  # type: ignore[union-attr]
+    first = bd.results.open_run(second.drive.simulation.start.file).dataset  # type: ignore[union-attr]
     after = second.dataset
     assert float(first.time[-1]) == float(after.time[0]) == MIDDLE
     assert float(after.time[-1]) == pytest.approx(END, rel=1e-12)
@@ -76,7 +76,7 @@ def test_two_runs_end_as_one(whole: Run, second: Run) -> None:
     for name in (*ENERGIES, "pulley_speed", "pulley_angle", "span_tension", "hub_force"):
         large = scale(whole.dataset[name].values)
         np.testing.assert_allclose(mine[name], last[name], rtol=0.0, atol=2e-4 * large, err_msg=name)
-    first = bd.open_run(second.drive.simulation.start.file).dataset  # type: ignore[union-attr]
+    first = bd.results.open_run(second.drive.simulation.start.file).dataset  # type: ignore[union-attr]
     for name in WORKS:
         together = float(first[name][-1] + mine[name])
         assert together == pytest.approx(

@@ -9,9 +9,9 @@ import pytest
 from matplotlib.collections import LineCollection
 from matplotlib.figure import Figure
 
-from beltdyn import equilibrium, open_run, simulate
+from beltdyn import equilibrium, simulate
 from beltdyn.model import Drive
-from beltdyn.results import Run
+from beltdyn.results import Run, open_run
 from beltdyn.show import plot
 
 Change = Callable[..., Drive]

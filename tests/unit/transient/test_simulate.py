@@ -7,9 +7,10 @@ import numpy as np
 import pytest
 import xarray as xr
 
-from beltdyn import equilibrium, open_run, simulate
+from beltdyn import equilibrium, simulate
 from beltdyn.errors import ConvergenceError, ModelError
 from beltdyn.model import Drive
+from beltdyn.results import open_run
 from beltdyn.solvers.progress import Progress
 
 Change = Callable[..., Drive]

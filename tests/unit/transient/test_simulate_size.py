@@ -10,11 +10,11 @@ import numpy as np
 import psutil
 import pytest
 
-from beltdyn import open_run, simulate
+from beltdyn import simulate
 from beltdyn.errors import ModelError
 from beltdyn.model import Drive, prepare
 from beltdyn.observation.recording import result_layout
-from beltdyn.results import expected_bytes
+from beltdyn.results import expected_bytes, open_run
 from beltdyn.system.build import drive_system
 
 Change = Callable[..., Drive]

@@ -48,6 +48,6 @@ def test_waves_of_torques(waving: Drive) -> None:
 def test_means_over_the_angle(waving: Drive) -> None:
     _, mean = steady = averaged(waving).pulleys[1].load
     assert [one.kind for one in steady] == ["resistance", "table"]
-    assert isinstance(mean, bd.LoadTable)
+    assert isinstance(mean, bd.model.LoadTable)
     np.testing.assert_allclose(mean.torques, MEAN, rtol=1e-3)
     assert averaged(loaded_two_pulley()) == loaded_two_pulley()

@@ -44,7 +44,7 @@ def test_the_belt_passes_as_in_steady_running(settled: bd.Run, steady: bd.Run) -
 def test_modes_of_a_settled_run_are_those_of_steady_running(settled: bd.Run, steady: bd.Run) -> None:
     """Frequencies to 0.1 %; those of their two meshes, of 29 and 35 elements, differ by 0.014 %."""
     assert settled.path is not None
-    found, expected = (modes(run, count=6).dataset for run in (bd.open_run(settled.path), steady))
+    found, expected = (modes(run, count=6).dataset for run in (bd.results.open_run(settled.path), steady))
     light = (found.damping_ratio < 0.5).values
     assert np.count_nonzero(light) == 6
     np.testing.assert_allclose(found.frequency[light], expected.frequency[light], rtol=1e-3)

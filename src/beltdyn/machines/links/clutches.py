@@ -42,7 +42,7 @@ class FrictionClutch(HubLink):
 
     Examples
     --------
-    >>> bd.FrictionClutch(kind="friction_clutch", capacity="20 N m", locking_damping=1.0).capacity
+    >>> bd.model.FrictionClutch(kind="friction_clutch", capacity="20 N m", locking_damping=1.0).capacity
     20.0
     """
 
@@ -81,7 +81,7 @@ class OneWayClutch(HubLink):
 
     Examples
     --------
-    >>> bd.OneWayClutch(kind="one_way_clutch", locking_damping=1.0, inertia="20 kg cm^2").inertia
+    >>> bd.model.OneWayClutch(kind="one_way_clutch", locking_damping=1.0, inertia="20 kg cm^2").inertia
     0.002
     """
 

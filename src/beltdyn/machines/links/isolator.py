@@ -35,7 +35,7 @@ class Isolator(HubLink):
 
     Examples
     --------
-    >>> bd.Isolator(kind="isolator", stiffness="200 N m/rad", damping=0.5).stiffness
+    >>> bd.model.Isolator(kind="isolator", stiffness="200 N m/rad", damping=0.5).stiffness
     200.0
     """
 

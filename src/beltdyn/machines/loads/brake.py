@@ -56,7 +56,7 @@ class Brake(Load):
 
     Examples
     --------
-    >>> bd.Brake(kind="brake", torque={"kind": "step", "time": 0.5, "value": 20.0}).torque.at([0.0, 1.0])
+    >>> bd.model.Brake(kind="brake", torque={"kind": "step", "time": 0.5, "value": 20.0}).torque.at([0.0, 1.0])
     array([ 0., 20.])
     """
 
@@ -86,7 +86,7 @@ class BandBrake(Load):
 
     Examples
     --------
-    >>> load = bd.BandBrake(
+    >>> load = bd.model.BandBrake(
     ...     kind="band_brake", force={"kind": "constant", "value": 50.0}, radius="80 mm",
     ...     friction=0.3, wrap="270 deg"
     ... )

@@ -59,7 +59,7 @@ class FunctionLoad(Load):
 
     Examples
     --------
-    >>> fan = bd.FunctionLoad(function=lambda time, angle, speed: -2e-3 * speed * abs(speed))
+    >>> fan = bd.model.FunctionLoad(function=lambda time, angle, speed: -2e-3 * speed * abs(speed))
     >>> driver, driven = drive.pulleys
     >>> drive = drive.replace(pulley=[driver, driven.replace(load=[fan])])
     """

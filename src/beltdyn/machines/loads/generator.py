@@ -64,7 +64,7 @@ class Generator(Load):
 
     Examples
     --------
-    >>> load = bd.Generator(
+    >>> load = bd.model.Generator(
     ...     kind="generator", power={"kind": "constant", "value": 1000.0}, efficiency=0.7,
     ...     cut_in_speed="1500 rpm", full_field_power="2 kW"
     ... )

@@ -112,7 +112,7 @@ class InductionMotor(Load):
 
     Examples
     --------
-    >>> load = bd.InductionMotor(
+    >>> load = bd.model.InductionMotor(
     ...     kind="induction_motor", rated_power="1.5 kW", rated_speed="1430 rpm",
     ...     locked_rotor_ratio=2.2, breakdown_ratio=2.6
     ... )

@@ -54,7 +54,7 @@ class Motor(Load):
 
     Examples
     --------
-    >>> load = bd.Motor(
+    >>> load = bd.model.Motor(
     ...     kind="motor", breakdown_torque="20 N m",
     ...     breakdown_slip=0.2, synchronous_speed="1500 rpm"
     ... )
@@ -131,7 +131,7 @@ class ServoMotor(Load):
 
     Examples
     --------
-    >>> load = bd.ServoMotor(
+    >>> load = bd.model.ServoMotor(
     ...     kind="servo_motor", speed={"kind": "constant", "value": 100.0}, proportional_gain=0.5,
     ...     integral_time="50 ms", torque_limit="10 N m"
     ... )

@@ -47,7 +47,7 @@ class Resistance(Load):
 
     Examples
     --------
-    >>> bd.Resistance(kind="resistance", constant="2 N m", linear=0.1).constant
+    >>> bd.model.Resistance(kind="resistance", constant="2 N m", linear=0.1).constant
     2.0
     """
 
@@ -77,7 +77,7 @@ class Fan(Load):
 
     Examples
     --------
-    >>> bd.Fan(kind="fan", rated_power="2 kW", rated_speed="1500 rpm").rated_power
+    >>> bd.model.Fan(kind="fan", rated_power="2 kW", rated_speed="1500 rpm").rated_power
     2000.0
     """
 
@@ -111,7 +111,7 @@ class Pump(Load):
 
     Examples
     --------
-    >>> load = bd.Pump(
+    >>> load = bd.model.Pump(
     ...     kind="pump", displacement="10 cm^3",
     ...     pressure={"kind": "constant", "value": 1e6}, efficiency=0.9
     ... )

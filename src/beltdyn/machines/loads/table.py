@@ -71,7 +71,7 @@ class LoadTable(Load):
 
     Examples
     --------
-    >>> bd.LoadTable(kind="table", speeds=[0.0, 100.0], torques=[0.0, -5.0]).torques
+    >>> bd.model.LoadTable(kind="table", speeds=[0.0, 100.0], torques=[0.0, -5.0]).torques
     (0.0, -5.0)
     """
 
@@ -288,7 +288,7 @@ class AngleTable(_OverAngle):
 
     Examples
     --------
-    >>> bd.AngleTable(kind="angle_table", angles=["0 deg", "90 deg", "180 deg"], torques=[0.0, 5.0, 1.0]).torques
+    >>> bd.model.AngleTable(kind="angle_table", angles=["0 deg", "90 deg", "180 deg"], torques=[0.0, 5.0, 1.0]).torques
     (0.0, 5.0, 1.0)
     """
 

@@ -27,7 +27,7 @@ class Harmonic(Part):
 
     Examples
     --------
-    >>> bd.Harmonic(order=2, amplitude=0.01).order
+    >>> bd.model.Harmonic(order=2, amplitude=0.01).order
     2.0
     """
 

@@ -17,7 +17,7 @@ class Constant(Profile[Value], Generic[Value]):
 
     Examples
     --------
-    >>> bd.Constant(value=3.0).at([0.0, 1.0])
+    >>> bd.model.Constant(value=3.0).at([0.0, 1.0])
     array([3., 3.])
     """
 
@@ -58,7 +58,7 @@ class Ramp(Rise[Value], Generic[Value]):
 
     Examples
     --------
-    >>> bd.Ramp(start=0.0, end=2.0, value=10.0).at([0.5, 1.0, 3.0])
+    >>> bd.model.Ramp(start=0.0, end=2.0, value=10.0).at([0.5, 1.0, 3.0])
     array([ 2.5,  5. , 10. ])
     """
 
@@ -79,7 +79,7 @@ class Step(Profile[Value], Generic[Value]):
 
     Examples
     --------
-    >>> bd.Step(time="500 ms", value=2.0).at([0.0, 1.0])
+    >>> bd.model.Step(time="500 ms", value=2.0).at([0.0, 1.0])
     array([0., 2.])
     """
 
@@ -105,7 +105,7 @@ class CosineRamp(Rise[Value], Generic[Value]):
 
     Examples
     --------
-    >>> bd.CosineRamp(start=0.0, end=2.0, value=10.0).at([0.0, 1.0, 2.0]).round(6)
+    >>> bd.model.CosineRamp(start=0.0, end=2.0, value=10.0).at([0.0, 1.0, 2.0]).round(6)
     array([ 0.,  5., 10.])
     """
 
@@ -130,7 +130,7 @@ class CosineRampPublished(Rise[Value], Generic[Value]):
 
     Examples
     --------
-    >>> bd.CosineRampPublished(start=0.0, end=2.0, value=10.0).at([0.0, 1.0, 2.0]).round(6)
+    >>> bd.model.CosineRampPublished(start=0.0, end=2.0, value=10.0).at([0.0, 1.0, 2.0]).round(6)
     array([ 0.,  5., 10.])
     """
 

@@ -19,7 +19,7 @@ class Table(Profile[Value], Generic[Value]):
 
     Examples
     --------
-    >>> bd.Table(times=[0.0, 1.0], values=[0.0, 5.0]).at([0.5])
+    >>> bd.model.Table(times=[0.0, 1.0], values=[0.0, 5.0]).at([0.5])
     array([2.5])
     """
 

@@ -50,7 +50,7 @@ class RotaryTensioner(MovingTensioner):
 
     Examples
     --------
-    >>> bd.RotaryTensioner(kind="rotary", pulley="idler", pivot=["100 mm", "50 mm"], preload="20 N m").pivot
+    >>> bd.model.RotaryTensioner(kind="rotary", pulley="idler", pivot=["100 mm", "50 mm"], preload="20 N m").pivot
     (0.1, 0.05)
     """
 

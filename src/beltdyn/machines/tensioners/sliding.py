@@ -32,7 +32,7 @@ class SlidingTensioner(MovingTensioner):
 
     Examples
     --------
-    >>> bd.SlidingTensioner(kind="sliding", pulley="idler", direction=[0, 1], preload="300 N", rate="2 N/mm").rate
+    >>> bd.model.SlidingTensioner(kind="sliding", pulley="idler", direction=[0, 1], preload="300 N", rate="2 N/mm").rate
     2000.0
     """
 

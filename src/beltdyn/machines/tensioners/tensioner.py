@@ -269,7 +269,7 @@ class FixedTensioner(Tensioner):
 
     Examples
     --------
-    >>> bd.FixedTensioner(kind="fixed", pulley="idler", direction=[0, 2], take_up="10 mm").take_up
+    >>> bd.model.FixedTensioner(kind="fixed", pulley="idler", direction=[0, 2], take_up="10 mm").take_up
     0.01
     """
 

@@ -42,6 +42,6 @@ def test_all_on_a_page_and_moving(found: bd.Result, tmp_path: Path) -> None:
 
 
 def test_other_results_have_no_modes(drive: Drive, tmp_path: Path) -> None:
-    other = bd.build_result("natural", drive, {}, {})
+    other = bd.extend.build_result("natural", drive, {}, {})
     with pytest.raises(ModelError, match="not of natural"):
         plot.animate_modes(other, tmp_path / "modes.gif")
