@@ -248,7 +248,7 @@ def _run_of(drive: Drive, given: Run | Path | str) -> Run:
     """The run whose damage is added, of the same pulleys and with the fatigue data of the drive."""
     run = given if isinstance(given, Run) else open_result(given)
     if not isinstance(run, Run):
-        raise ModelError(f"run = {str(given)!r} holds results of {run.kind}. Give a result file of `beltdyn run`.")
+        raise ModelError(f"run = {str(given)!r} holds results of {run.kind}. Give a result file of `beltdyn simulate`.")
     mine, other = ([one.name for one in owner.pulleys] for owner in (drive, run.drive))
     if mine != other:
         raise ModelError(
