@@ -36,7 +36,6 @@ ELSEWHERE = {
     # Seen by a user through something else, and tested there.
     "app/numbers_view.py": "unit/app/test_page.py",
     "__init__.py": "unit/test_public_names.py",
-    "extend.py": "unit/test_public_names.py",
     "analyses.py": "unit/cli/test_analysis.py",
     "cli/*.py": "unit/cli/test_commands.py",
     "cosimulation/beltdyn_fmi*.py": "unit/cosimulation/test_fmu.py",
