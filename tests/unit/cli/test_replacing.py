@@ -94,7 +94,7 @@ def test_devices(refuse: Refuse, drive_file: Path) -> None:
 WRONG_TABLES = {
     "duty.csv": "duration [s],nobody speed [rpm]\n1,100\n",
     "measured.csv": "hub_lod[driven] [N]\n50\n",
-    "study.toml": 'drive = "DRIVE"\nanalysis = "static"\nresults = ["hub_lod"]\n[[number]]\npath = "belt.width"\n'
+    "study.toml": 'drive = "DRIVE"\nanalysis = "equilibrium"\nresults = ["hub_lod"]\n[[number]]\npath = "belt.width"\n'
     'values = "10, 12 mm"\n',
     "optimize.toml": '[[number]]\npath = "belt.width"\nleast = "8 mm"\nlargest = "12 mm"\n[goal]\nresult = "hub_lod"\n',
     "calibrate.toml": '[[number]]\npath = "belt.width"\nleast = "8 mm"\nlargest = "12 mm"\n'
