@@ -380,6 +380,12 @@ class Belt(Part):
             return None
         return read_catalogue(section.get("catalogue")).get(section["profile"])
 
+    @property
+    def v_belts(self) -> int:
+        """Number of V-belts side by side; 1 for a belt in one piece."""
+        entry, section = self.entry, self._section
+        return section["ribs"] if section and entry and entry.pulley_diameter == "datum" else 1
+
     def rated(self, length: float) -> RatedBelt | None:
         """The belt as its profile is rated, with an unstretched length in m; None without a rating."""
         entry = self.entry

@@ -9,6 +9,7 @@ from beltdyn.model.simulation import unused_settings
 from beltdyn.parts.messages import aligned
 from beltdyn.results.layout import describe_size
 from beltdyn.show.sheet import Facts, Sheet, Table
+from beltdyn.show.tensioning import instruction
 
 _PULLEY_HEADINGS = (
     "",
@@ -41,6 +42,8 @@ def rest_sheet(given: Drive, drive: Drive, installation: Installation) -> Sheet:
     ]
     if installation.tensioner_positions.size:
         parts.append(Table("Tensioners at rest", _TENSIONER_HEADINGS, tuple(_tensioners(drive, installation))))
+    if drive.belt.entry is not None and (told := instruction(drive, installation)) is not None:
+        parts.append(told.table)
     if given.completed.choices:
         parts.append(Facts(tuple(_choices(given)), "Chosen values (not given in the file)"))
     return Sheet("", tuple(parts))

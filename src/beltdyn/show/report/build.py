@@ -21,8 +21,8 @@ from beltdyn.show.plot.style import tension_colors
 from beltdyn.show.report.chart import charted
 from beltdyn.show.report.motion import motion, swinging
 from beltdyn.show.report.page_parts import analysis_of, differing_keys, embedded, library, origin
-from beltdyn.show.report.tensioning import tensioning
 from beltdyn.show.sheet import Table, sheet
+from beltdyn.show.tensioning import tensioning
 
 # Key numbers of results against their limits, and the verdict
 
@@ -256,7 +256,7 @@ def _part(name: str, number: int, result: Result, moving: Mapping[str, Any]) -> 
         "about": _about(result),
         "tensioning": tensioning(result.drive, given_keys(result).get("belt.installed_tension"))
         if isinstance(result, Run | StaticResult)
-        else [],
+        else None,
         "drive": result.drive_as_given,
     }
 
