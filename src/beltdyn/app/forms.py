@@ -21,7 +21,7 @@ _SHORT_OF: Mapping[str, tuple[str, ...]] = {
     "pulley": ("name", "center", "radius", "side", "speed", "inertia", "torque", "load"),
     "contact": ("friction",),
     "simulation": ("duration", "output_interval", "start"),
-    "limits": ("largest_slip", "largest_hub_load", "largest_tension", "least_slip_safety", "largest_utilisation"),
+    "limits": ("largest_slip", "largest_hub_load", "largest_tension", "least_slip_safety", "largest_utilization"),
     "tensioner": ("pulley", "direction", "pivot", "preload", "rate", "mass", "inertia", "stops", "take_up"),
 }
 """Keys of each group shown by default, in this order; others are shown if given."""

@@ -115,7 +115,7 @@ def _row(one: "Proposal") -> tuple[str, ...]:
         f"{RPM * one.driven_speed:.4g}",
         f"{one.belt_speed:.3g}",
         f"{1e-3 * one.rated_power:.3g}",
-        f"{one.utilisation:.0%}",
+        f"{one.utilization:.0%}",
         *(f"{value:.4g}" for value in (one.tension, one.hub_load)),
         f"{one.frequency:.3g}",
         f"{1e3 * one.face_width:.4g}",

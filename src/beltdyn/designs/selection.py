@@ -122,7 +122,7 @@ class Proposal:
     driven_speed: float
     belt_speed: float
     rated_power: float
-    utilisation: float
+    utilization: float
     tension: float
     hub_load: float
     frequency: float
@@ -201,7 +201,7 @@ def select(
     Examples
     --------
     >>> found = bd.select(power="7.5 kW", speed="1450 rpm", driven_speed="700 rpm", profiles="SPA")
-    >>> found[0].profile, found[0].utilisation <= 1.0
+    >>> found[0].profile, found[0].utilization <= 1.0
     ('SPA', True)
     """
     task = Task(
@@ -393,7 +393,7 @@ def _proposal(name: str, pair: _Pair, fit: _Fit, task: Task, catalogue: str | No
         driven_speed=task.speed * (driver + offset) / (driven + offset),
         belt_speed=fit.speed,
         rated_power=fit.power,
-        utilisation=task.design_power / fit.power,
+        utilization=task.design_power / fit.power,
         tension=tension,
         hub_load=2.0 * tension * sin(0.5 * min(fit.path.wrap)),
         frequency=lowest_frequency(fit.path.span, tension, mass, bending=belts * entry.bending_stiffness),
@@ -412,7 +412,7 @@ def _drive_file(one: Proposal) -> str:
     return f"""\
 # {1e-3 * task.power:.4g} kW at {RPM * task.speed:.4g} rpm, {RPM * one.driven_speed:.4g} rpm driven; service factor \
 {task.service_factor:.3g}.
-# Rated power {1e-3 * one.rated_power:.4g} kW, {one.utilisation:.0%} used; belt speed {one.belt_speed:.3g} m/s.
+# Rated power {1e-3 * one.rated_power:.4g} kW, {one.utilization:.0%} used; belt speed {one.belt_speed:.3g} m/s.
 
 [belt]
 profile = "{one.profile}"
@@ -444,5 +444,5 @@ start = "steady"
 
 [limits]
 service_factor = {task.service_factor:.4g}
-largest_utilisation = 1.0
+largest_utilization = 1.0
 """

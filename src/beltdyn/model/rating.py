@@ -144,7 +144,7 @@ class RatedBelt(NamedTuple):
         shared = belts_factor(belts) if self.in_set else 1.0
         return belts * shared * pulleys_factor(pulleys) * self.rating.length_factor(self.nominal_length)
 
-    def belts_needed(self, utilisation: float, pulleys: int) -> int:
+    def belts_needed(self, utilization: float, pulleys: int) -> int:
         """Least number of belts or ribs that carry what is this share of the rated power of the present ones."""
-        needed = utilisation * self.factor(self.belts, pulleys) * (1.0 - _ROUNDING)
+        needed = utilization * self.factor(self.belts, pulleys) * (1.0 - _ROUNDING)
         return next((count for count in range(1, MOST_BELTS) if self.factor(count, pulleys) >= needed), MOST_BELTS)

@@ -171,7 +171,7 @@ class Limits(Part):
     least_slip_safety: Ratio | None = Field(
         None, gt=0, description="the least slip safety: the factor on all loads at which gross slip begins"
     )
-    largest_utilisation: Ratio | None = Field(
+    largest_utilization: Ratio | None = Field(
         None, gt=0, description="the largest utilization of a pulley: design power over the rated power of the belt"
     )
     service_factor: Ratio | None = Field(

@@ -57,7 +57,7 @@ VARIABLES = {
     "hub_load": Variable(PULLEY, "N", "Hub load"),
     "hub_force": Variable((*PULLEY, "axis"), "N", "Force of the belt on the pulley"),
     "rated_power": Variable(PULLEY, "W", "Rated power of the belt"),
-    "utilisation": Variable(PULLEY, "1", "Utilization: design power over rated power"),
+    "utilization": Variable(PULLEY, "1", "Utilization: design power over rated power"),
     "span_tension": Variable(_SPAN, "N", "Span tension"),
     "tensioner_position": Variable(_TENSIONER, "m or rad", "Tensioner position"),
     "tensioner_position_after_tensioning": Variable(
@@ -89,12 +89,12 @@ _OF_PULLEYS = {
     "wrap_angle": "wrap_angle",
     "hub_load": "hub_load",
     "rated_power": "rated_power",
-    "utilisation": "utilisation",
+    "utilization": "utilization",
 }
 """Variable -> attribute of a `PulleySummary`."""
 
 
-_OF_RATING = ("rated_power", "utilisation")
+_OF_RATING = ("rated_power", "utilization")
 
 
 def labels_of(drive: Drive) -> dict[str, list[str]]:

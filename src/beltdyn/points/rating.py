@@ -13,7 +13,7 @@ from beltdyn.points.changed_drive import held_at
 from beltdyn.results import Result, Variable, build_result
 from beltdyn.results.schema import COORDINATES
 from beltdyn.results.summary import means_of
-from beltdyn.results.utilisation import rate, utilisation
+from beltdyn.results.utilization import rate, utilization
 from beltdyn.solvers.progress import Report
 from beltdyn.state.steady import steady_state
 from beltdyn.theory.belt_rating import belts_factor, pulleys_factor
@@ -28,13 +28,13 @@ COLUMNS = {
     "ratio_power": Variable(_PULLEY, "W", "Additional power by the ratio, one belt or rib"),
     "wrap_factor": Variable(_PULLEY, "1", "Wrap factor"),
     "rated_power": Variable(_PULLEY, "W", "Rated power of the belt"),
-    "utilisation": Variable(_PULLEY, "1", "Utilization: design power over rated power"),
+    "utilization": Variable(_PULLEY, "1", "Utilization: design power over rated power"),
     "belts_needed": Variable(_PULLEY, "1", "Belts or ribs needed"),
 }
 """What a rating tells of each pulley."""
 SCALARS = {
     "belts": Variable((), "1", "Belts or ribs"),
-    "largest_utilisation": Variable((), "1", "Largest utilization"),
+    "largest_utilization": Variable((), "1", "Largest utilization"),
     "most_belts_needed": Variable((), "1", "Belts or ribs needed"),
     "belt_speed": Variable((), "m/s", "Belt speed"),
     "service_factor": Variable((), "1", "Service factor"),
@@ -83,7 +83,7 @@ def rating(
     Examples
     --------
     >>> found = bd.rating(bd.example("alternator_drive"), service_factor=1.2).dataset
-    >>> found.largest_utilisation.item() < 1.0, found.belts_needed.dims
+    >>> found.largest_utilization.item() < 1.0, found.belts_needed.dims
     (True, ('pulley',))
     """
     held = held_at(_served(drive, service_factor), at)
@@ -93,7 +93,7 @@ def rating(
     speeds, powers = (np.array([getattr(one, name) for one in means]) for name in ("speed", "power"))
     found = rate(held, speeds, powers, centers)
     assert found is not None
-    used = utilisation(held, found.power, powers)
+    used = utilization(held, found.power, powers)
     pulleys = len(held.pulleys)
     needed = [belt.belts_needed(one, pulleys) if np.isfinite(one) else np.nan for one in used.tolist()]
     columns: tuple[Any, ...] = (

@@ -95,7 +95,7 @@ def _of_run(run: Result) -> Iterator[Found]:
     yield _worst("least_tension", tension, "N", time, spans)
     yield _worst("least_slip_safety", np.array([[one.slip_safety for one in means]]), "1", [over], pulleys)
     if run.drive.rated_belt is not None:
-        yield _worst("largest_utilisation", np.array([[one.utilisation for one in means]]), "%", [over], pulleys)
+        yield _worst("largest_utilization", np.array([[one.utilization for one in means]]), "%", [over], pulleys)
 
 
 _OF_TABLES = {
@@ -104,7 +104,7 @@ _OF_TABLES = {
     "largest_tension": ("span_tension", "span", "N"),
     "least_tension": ("span_tension", "span", "N"),
     "least_slip_safety": ("slip_safety", "pulley", "1"),
-    "largest_utilisation": ("utilisation", "pulley", "%"),
+    "largest_utilization": ("utilization", "pulley", "%"),
 }
 """Key -> variable of operating points, the dimension of its names, and the unit."""
 

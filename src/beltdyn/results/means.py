@@ -10,7 +10,7 @@ from beltdyn.results.mechanics import rim_speeds
 from beltdyn.results.schema import Recorded, names
 from beltdyn.results.slip_safety import slip_safety_of_states
 from beltdyn.results.slipping import slip_parts
-from beltdyn.results.utilisation import rate, utilisation
+from beltdyn.results.utilization import rate, utilization
 
 
 @dataclass(frozen=True, slots=True)
@@ -79,7 +79,7 @@ class PulleySummary:
     wrap_angle: float
     hub_load: float
     rated_power: float
-    utilisation: float
+    utilization: float
 
 
 @dataclass(frozen=True, slots=True)
@@ -168,7 +168,7 @@ def pulley_means(recorded: Recorded, drive: Drive, window: Window | None = None)
         wrap_angle,
         np.hypot(hub_force[:, 0], hub_force[:, 1]),
         rated,
-        utilisation(drive, rated, power),
+        utilization(drive, rated, power),
     )
     return tuple(
         PulleySummary(name, *map(float, row)) for name, *row in zip(names(recorded, "pulley"), *columns, strict=True)

@@ -1,4 +1,4 @@
-"""Power rating of V-belts and V-ribbed belts: the rating law of standards and catalogues, and its factors.
+"""Power rating of V-belts and V-ribbed belts: the rating law of standards and catalogs, and its factors.
 
 A belt, or rib, on two equal pulleys whose tension line has the diameter d carries, at the belt speed v, the pull
 

@@ -9,7 +9,7 @@ import pytest
 from beltdyn.designs.selection import DIAMETERS, RUN_IN, Proposal, select
 from beltdyn.errors import ModelError
 from beltdyn.model import install, loads, read_catalogue
-from beltdyn.results.utilisation import rate
+from beltdyn.results.utilization import rate
 from beltdyn.theory.path import open_belt
 
 RPM = 30.0 / pi
@@ -27,8 +27,8 @@ def test_they_carry_the_power_within_the_space(found: tuple[Proposal, ...]) -> N
         assert 0.4 <= one.distance <= 0.7
         assert one.driven_diameter <= 0.4
         assert one.driven_speed == pytest.approx(700.0 / RPM, rel=0.03)
-        assert one.utilisation == pytest.approx(9e3 / one.rated_power)
-        assert one.utilisation <= 1.0
+        assert one.utilization == pytest.approx(9e3 / one.rated_power)
+        assert one.utilization <= 1.0
         entry = read_catalogue()[one.profile]
         assert one.nominal_length in entry.lengths
         assert {one.driver_diameter, one.driven_diameter} <= set(DIAMETERS)
@@ -46,7 +46,7 @@ def test_one_belt_less_would_not_do(found: tuple[Proposal, ...]) -> None:
     for one in found:
         belt = one.drive.rated_belt
         assert belt is not None
-        assert one.belts == 1 or one.utilisation * belt.factor(one.belts, 2) > belt.factor(one.belts - 1, 2)
+        assert one.belts == 1 or one.utilization * belt.factor(one.belts, 2) > belt.factor(one.belts - 1, 2)
 
 
 @pytest.mark.parametrize("profiles", ["SPA", "SPB", "PK", "PL", "B"])

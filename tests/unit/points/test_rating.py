@@ -63,10 +63,10 @@ def test_power_per_belt_and_number_of_belts(found: Result, fan: Drive) -> None:
     length, belts = (2.0 / 2.654) ** 0.192, 1.0 - 0.05 * 4.0 / 3.0
     rated = 4 * belts * length * factor * float(motor.basic_power + motor.ratio_power)
     assert float(motor.rated_power) == pytest.approx(rated, rel=5e-3)
-    assert float(motor.utilisation) == pytest.approx(1.2 * float(motor.power) / rated, rel=5e-3)
-    assert dataset.largest_utilisation == motor.utilisation
+    assert float(motor.utilization) == pytest.approx(1.2 * float(motor.power) / rated, rel=5e-3)
+    assert dataset.largest_utilization == motor.utilization
     needed = int(dataset.most_belts_needed)
-    assert needed == (3 if float(motor.utilisation) < 0.75 else 4)
+    assert needed == (3 if float(motor.utilization) < 0.75 else 4)
     assert (int(dataset.belts), float(dataset.service_factor)) == (4, 1.2)
     assert "Megadyne" in dataset.attrs["rating_source"]
     assert found.warnings == []
@@ -76,12 +76,12 @@ def test_the_driven_pulley_has_the_losses_less_and_a_larger_rating(found: Result
     dataset = found.dataset
     assert float(dataset.power.sel(pulley="fan")) == pytest.approx(-POWER, rel=0.02)
     assert dataset.rated_power.sel(pulley="fan") > dataset.rated_power.sel(pulley="motor")
-    assert dataset.utilisation.sel(pulley="fan") < dataset.utilisation.sel(pulley="motor")
+    assert dataset.utilization.sel(pulley="fan") < dataset.utilization.sel(pulley="motor")
 
 
 def test_designs_and_sensitivities_may_ask_for_it(fan: Drive, drive: Drive) -> None:
-    assert {"utilisation[motor]", "rated_power[fan]"} <= set(names_of(fan))
-    assert not any(name.startswith(("utilisation", "rated_power")) for name in names_of(drive))
+    assert {"utilization[motor]", "rated_power[fan]"} <= set(names_of(fan))
+    assert not any(name.startswith(("utilization", "rated_power")) for name in names_of(drive))
 
 
 @pytest.mark.parametrize(

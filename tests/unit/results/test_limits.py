@@ -62,12 +62,12 @@ def test_a_traction_curve_goes_on_until_the_belt_slips(drive: Drive) -> None:
     assert key_numbers(Result(xr.Dataset(attrs={"kind": "traction"}), drive)) == ()
 
 
-def test_a_belt_of_a_rated_profile_is_judged_by_its_utilisation(make_run: Callable[..., Run]) -> None:
+def test_a_belt_of_a_rated_profile_is_judged_by_its_utilization(make_run: Callable[..., Run]) -> None:
     run = make_run()
-    assert "largest_utilisation" not in by_key(run)
+    assert "largest_utilization" not in by_key(run)
     rated = run.drive.with_({"belt.profile": "PJ", "belt.ribs": 3, "belt.installed_tension": 60.0})
-    found = by_key(Run(run.dataset, rated.replace(limits={"largest_utilisation": 0.5})))["largest_utilisation"]
-    served = by_key(Run(run.dataset, rated.replace(limits={"service_factor": 1.4})))["largest_utilisation"]
+    found = by_key(Run(run.dataset, rated.replace(limits={"largest_utilization": 0.5})))["largest_utilization"]
+    served = by_key(Run(run.dataset, rated.replace(limits={"service_factor": 1.4})))["largest_utilization"]
     assert found.value > 0.0
     assert found.passes is (found.value <= 0.5)
     assert (found.unit, served.passes) == ("%", None)

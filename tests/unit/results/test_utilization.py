@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from beltdyn.model import Drive, loads
-from beltdyn.results.utilisation import rate, utilisation
+from beltdyn.results.utilization import rate, utilization
 
 RPM = 30.0 / pi
 TEXT = """
@@ -67,14 +67,14 @@ def test_the_back_of_the_belt_has_no_rating_and_an_idler_no_ratio(accessory: Dri
     assert other.power[1] == pytest.approx(found.power[1], rel=0.02)
 
 
-def test_utilisation_is_design_power_over_rated_power(accessory: Drive) -> None:
+def test_utilization_is_design_power_over_rated_power(accessory: Drive) -> None:
     rated = np.array([6000.0, 4000.0, np.nan])
-    plain = utilisation(accessory, rated, POWERS)
+    plain = utilization(accessory, rated, POWERS)
     assert plain[:2] == pytest.approx([0.5, 0.7375])
     assert np.isnan(plain[2])
     served = accessory.replace(limits={"service_factor": 1.2})
-    assert utilisation(served, rated, POWERS)[:2] == pytest.approx(1.2 * plain[:2])
-    assert utilisation(accessory, np.zeros(3), POWERS)[0] == np.inf
+    assert utilization(served, rated, POWERS)[:2] == pytest.approx(1.2 * plain[:2])
+    assert utilization(accessory, np.zeros(3), POWERS)[0] == np.inf
 
 
 def test_without_a_rating_there_is_nothing(drive: Drive) -> None:

@@ -40,7 +40,7 @@ def rate(drive: Drive, speeds: FloatArray, powers: FloatArray, centers: FloatArr
     return found._replace(basic=basic, ratio=ratio, power=power)
 
 
-def utilisation(drive: Drive, rated: FloatArray, powers: FloatArray) -> FloatArray:
+def utilization(drive: Drive, rated: FloatArray, powers: FloatArray) -> FloatArray:
     """Design power over rated power at each pulley, with the drive's service factor; inf where the rated power is 0."""
     with np.errstate(divide="ignore", invalid="ignore"):
         return np.asarray((drive.limits.service_factor or 1.0) * np.abs(powers) / rated)
