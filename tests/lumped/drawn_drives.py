@@ -232,8 +232,12 @@ def _fits(limit: Limit, drive: Drive) -> bool:
     if not np.isfinite(state.use).all():
         return False
     rest = LumpedBalance.of(drive).at(0.0)
+    centers = np.array(drive.centers)
     for q, spring in zip(state.positions, LumpedBalance.of(drive).springs, strict=True):
         if abs(q) > _MOST_SWING * spring.scale:
             return False
+        centers[spring.pulley] = spring.place(float(q))
+    if not are_clear(centers, drive.radii):
+        return False
     small = radians(0.8)
     return bool(min(state.wraps) > small and min(rest.wraps) > small and np.ptp(state.wraps - rest.wraps) < 1.0)

@@ -52,6 +52,27 @@ class _Place(NamedTuple):
         depths = 0.0 if self.stiffness is None else self.tension * stretch / (np.abs(self.radii) * self.stiffness)
         return float((route.length - np.sum(route.wraps * depths)) / stretch)
 
+    @property
+    def carried(self) -> int:
+        """Pulley of the tensioner."""
+        return int(self.tensioner["pulley"].split()[1])
+
+    def others(self, number: int) -> list[int]:
+        return [k for k in range(self.radii.size) if k != number]
+
+    def arm(self, number: int) -> FloatArray:
+        return np.asarray(self.centers[number] - np.array(self.tensioner["pivot"]))
+
+    def swung(self, number: int) -> Callable[[float], FloatArray]:
+        """Center of the pulley at a position of its tensioner, positive where the path gets longer."""
+        given, center = self.tensioner, self.centers[number]
+        if given["kind"] == "sliding":
+            return lambda q: np.asarray(center + q * np.array(given["direction"]))
+        (x, y), pivot = self.arm(number), np.array(given["pivot"])
+        small = np.array([-y, x]) * 1e-6
+        sense = np.sign(self.moved(number, small).route.length - self.moved(number, -small).route.length)
+        return lambda q: np.asarray(pivot + np.cos(q) * np.array([x, y]) + sense * np.sin(q) * np.array([-y, x]))
+
     def span(self, number: int) -> FloatArray:
         """Its ends, shape (2, 2)."""
         x, y = self.route.directions[number]
@@ -150,6 +171,47 @@ def _longer(place: _Place, pulley: int) -> float:
     return float(change if given["kind"] == "sliding" else abs(change))
 
 
+def _unbalanced(place: _Place, _: list[int], __: re.Match[str]) -> bool:
+    """Nowhere on the way of the spring, up to where its pulley meets another one, is a stable balance."""
+    pulley = place.carried
+    swung = place.swung(pulley)
+    return not any(_stable_balance(place, pulley, swung, sign) for sign in (1.0, -1.0))
+
+
+def _stable_balance(place: _Place, pulley: int, swung: Callable[[float], FloatArray], sign: float) -> bool:
+    """Whether the excess of the spring over the belt changes sign, falling along its way at a constant length."""
+    given, size = place.tensioner, float(np.abs(place.radii).min())
+    step = sign * _STEP * size / (1.0 if given["kind"] == "sliding" else float(np.hypot(*(place.arm(pulley)))))
+
+    def at(q: float) -> _Place:
+        return place.moved(pulley, swung(q) - place.centers[pulley])
+
+    def longer(q: float) -> float:
+        small = 1e-4 * abs(step)
+        return float((at(q + small).route.length - at(q - small).route.length) / (2.0 * small))
+
+    def excess(q: float, tension: float) -> float:
+        return float(given["preload"] - given["rate"] * q - tension * longer(q))
+
+    def is_stable(q: float) -> bool:
+        ends = (q - 0.1 * abs(step), q + 0.1 * abs(step))
+        middle, stiffness = at(q).route.length, place.belt["axial_stiffness"] / place.unstretched
+        low, high = (excess(end, place.tension + stiffness * (at(end).route.length - middle)) for end in ends)
+        return high < low
+
+    before = excess(0.0, place.tension)
+    for number in range(1, _MOST_STEPS):
+        q = number * step
+        away = [_away(at(q), pulley, k) - abs(place.radii[pulley]) - abs(place.radii[k]) for k in place.others(pulley)]
+        if min(away) <= 0.0 or not 0.0 < at(q).route.wraps[pulley] < np.pi:
+            return False
+        here = excess(q, place.tension)
+        if here * before <= 0.0 and is_stable(q - 0.5 * step):
+            return True
+        before = here
+    return False
+
+
 def _no_take_up(place: _Place, named: list[int], said: re.Match[str]) -> bool:
     """On the way to where the reason holds, the length for the tension never is the one that is given."""
     way = np.array(place.tensioner["direction"]) * _STEP * float(np.abs(place.radii).min())
@@ -171,6 +233,10 @@ def _leaves(place: _Place, named: list[int], _: re.Match[str]) -> bool:
 
 
 _REASONS: dict[str, Callable[[_Place, list[int], re.Match[str]], bool]] = {
+    r"equilibrium of the tensioner of .* is unstable": _unbalanced,
+    r"the tensioners are in equilibrium only where no belt can run": _unbalanced,
+    r"reaches the end of its travel without balancing": _unbalanced,
+    r"pushes the tensioner of .* back without losing": _unbalanced,
     r"no take-up of .* a tension of \S+ N: (.*)": _no_take_up,
     r"overlap: their centers are": _overlap,
     r"would cross itself: the span": _cross,

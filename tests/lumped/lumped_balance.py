@@ -28,6 +28,8 @@ from beltdyn.model import Drive
 
 _STEP = 0.05
 """Of the load factor on the way to the limit, over the factor at which the tension at rest would be used up."""
+_NEAR = 0.1
+"""Longest movement of a tensioner in a step on the way to a load, over the radius of its pulley."""
 _ROUNDING = 1e-9
 
 
@@ -184,7 +186,7 @@ class LumpedBalance:
             ahead = min(done + step, 1.0)
             try:
                 there = self._solve(ahead * factor, near)
-                if any(np.abs(there.positions - near.positions) > [spring.scale for spring in self.springs]):
+                if any(np.abs(there.positions - near.positions) > [_NEAR * spring.scale for spring in self.springs]):
                     raise ArithmeticError("another balance, far away")
                 near, done = there, ahead
             except ArithmeticError:
@@ -250,7 +252,8 @@ class LumpedBalance:
                 slide = min(abs(log(leaving / entry)) / (self.friction[p] * wrap), 1.0)
                 mean = (1.0 - slide) * entry + slide * (leaving - entry) / log(leaving / entry)
             depth = max(mean, 0.0) / (radius * self.contact)
-            total += (radius - depth) * wrap / (1.0 + (mean + self.lifted) / self.axial)
+            axial = mean + self.lifted - 0.5 * self.bending / radius**2  # an elastica keeps N + EI kappa^2 / 2
+            total += (radius - depth) * wrap / (1.0 + axial / self.axial)
         return total
 
     def _path(self, positions: FloatArray, tensions: FloatArray) -> "Route":

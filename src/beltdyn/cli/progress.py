@@ -10,6 +10,8 @@ from rich.console import Console
 from rich.progress import BarColumn, Progress, Task, TaskID, TextColumn, TimeRemainingColumn
 from rich.text import Text
 
+from beltdyn.kernel import watch_compilation
+
 if TYPE_CHECKING:
     from beltdyn.solvers.progress import BatchProgress
     from beltdyn.solvers.progress import Progress as SolverProgress
@@ -22,7 +24,7 @@ _LONG = 60.0
 _SLOW_RUNS = "Fine meshes, steep friction and small tolerances make runs long; `beltdyn check` names the cause."
 
 _PHASES = {
-    "compiling": "compiling kernels (first run only, about 20 s)",
+    "compiling": "loading kernels",
     "equilibrium": "finding static equilibrium",
     "settling": "settling at the first speed",
     "integrating": "simulating",
@@ -31,6 +33,7 @@ _PHASES = {
     "points": "computing points",
     "no workers": "waiting for workers: the cluster has none",
 }
+_COMPILING = "compiling kernels, once on this machine"
 _COUNTED = "integrating", "operating points", "designs", "points", "no workers"
 """Phases with a known total."""
 
@@ -118,7 +121,7 @@ def runs_bar(at_end: str = "done") -> Iterator[Callable[["BatchProgress"], None]
                 lines[file] = line
                 bar.update(line, completed=done)
             begun = bool(progress.running or progress.done)
-            phase = _PHASES["integrating" if begun else "compiling"]
+            phase = _PHASES["integrating"] if begun else "preparing (kernels are compiled once on this machine)"
             bar.update(
                 whole,
                 description=at_end if progress.done == progress.total else phase,
@@ -142,12 +145,20 @@ class _Remaining(TimeRemainingColumn):
         return Text("-:--:--", style="progress.remaining") if early else super().render(task)
 
 
-def _bar() -> Progress:
-    """A bar with a description, a state in words and the remaining time."""
+@contextmanager
+def _bar() -> Iterator[Progress]:
+    """A bar with a description, a state in words and the remaining time; one more while kernels are compiled."""
     columns = (
         TextColumn("{task.description}"),
         BarColumn(),
         TextColumn("{task.fields[state]}"),
         _Remaining(elapsed_when_finished=True),
     )
-    return Progress(*columns, console=Console(stderr=True))
+    with Progress(*columns, console=Console(stderr=True)) as bar:
+        line = bar.add_task("compiling kernels, once on this machine", total=None, state="", visible=False)
+
+        def show(done: int, total: int) -> None:
+            bar.update(line, completed=done, total=total, state=f"{done} of {total}", visible=done < total)
+
+        with watch_compilation(show):
+            yield bar

@@ -12,11 +12,13 @@ from beltdyn.kernel.cache import (
     source_hash,
 )
 from beltdyn.kernel.decorator import Kernel, choice, interpreted, kernel
+from beltdyn.kernel.progress import CompilationReport, report_compilation, watch_compilation
 
 __all__ = [
     "CACHE_VARIABLE",
     "PACKAGE",
     "PLAIN_VARIABLE",
+    "CompilationReport",
     "Kernel",
     "KernelCacheWarning",
     "by_type",
@@ -26,5 +28,7 @@ __all__ = [
     "interpreted",
     "kernel",
     "kernel_cache",
+    "report_compilation",
     "source_hash",
+    "watch_compilation",
 ]

@@ -2,15 +2,17 @@
 
 import functools
 import warnings
-from collections.abc import Callable
+from collections.abc import Callable, Iterable, Iterator
 from contextlib import suppress
 from typing import Any
 
 import numba
+from numba.core import event
 from numba.extending import overload
 
 from beltdyn.kernel.by_type import ByType
 from beltdyn.kernel.cache import compiles_quickly, holds_kernels, kernel_cache
+from beltdyn.kernel.progress import CompilationCount
 from beltdyn.kernel.seal import SealedFolder, setting
 
 OPTIONS = {"nogil": True, "error_model": "numpy", "fastmath": {"contract", "nsz"}}
@@ -80,3 +82,30 @@ def _say_once() -> None:
         PlainCompilationWarning,
         stacklevel=4,
     )
+
+
+class _Listener(event.Listener):  # type: ignore[misc]
+    """Counts the functions that Numba compiles."""
+
+    def __init__(self) -> None:
+        self._count = CompilationCount()
+
+    def on_start(self, event: event.Event) -> None:
+        """Count a function that is begun."""
+        data = event.data
+        self._count.begin(data["dispatcher"].py_func, frozenset(_classes(data["args"])))
+
+    def on_end(self, event: event.Event) -> None:
+        """Count a function that is compiled."""
+        self._count.end()
+
+
+def _classes(types: Iterable[Any]) -> Iterator[type]:
+    """Classes of named tuples among types of arguments, those within others too."""
+    for one in types:
+        if hasattr(one, "instance_class"):
+            yield one.instance_class
+            yield from _classes(one.types)
+
+
+event.register("numba:compile", _Listener())

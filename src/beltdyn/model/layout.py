@@ -22,7 +22,7 @@ from beltdyn.parts.messages import apart
 
 LARGEST_STRAIN = 0.5
 """Of a belt that is laid on its path."""
-_MOST_STEPS = 60
+_MOST_STEPS = 90
 
 
 class Given(NamedTuple):
@@ -193,15 +193,19 @@ def _tightened(given: Given, path: Path) -> Given:
     lengthens = leverage(path, given.names.index(fixed.pulley), fixed)
     if abs(lengthens) < LEAST_LEVERAGE:
         raise _no_take_up(given, fixed, "moving it along its direction hardly changes the length of the path")
-    here, first = 0.0, excess(0.0)
+    here, first, blocked = 0.0, excess(0.0), False
     step = -float(np.sign(lengthens * first)) * 1e-3 * min(pulley.radius for pulley in given.pulleys)
+    least = 1e-6 * abs(step)
     for _ in range(_MOST_STEPS):
         try:
             if excess(here + step) * first <= 0:
                 return taken_up(float(brentq(excess, here, here + step, xtol=1e-15)))
-        except ValueError as error:
-            raise _no_take_up(given, fixed, str(error)) from error
-        here, step = here + step, 1.3 * step
+        except ValueError as error:  # there is no such layout: the end of the way lies within this step
+            blocked, step = True, 0.5 * step
+            if abs(step) < least:
+                raise _no_take_up(given, fixed, str(error)) from error
+            continue
+        here, step = here + step, step if blocked else 1.3 * step
     raise _no_take_up(given, fixed, f"none was found within {abs(here):.3g} m")
 
 

@@ -11,10 +11,12 @@ import sys
 from collections.abc import Iterator
 from contextlib import contextmanager
 from tempfile import TemporaryFile
+from threading import Thread
+from typing import BinaryIO
 
 import numpy as np
 
-from beltdyn.kernel import CACHE_VARIABLE, holds_kernels, kernel_cache
+from beltdyn.kernel import CACHE_VARIABLE, holds_kernels, kernel_cache, report_compilation, watch_compilation
 from beltdyn.observation.band_limit import compile_filter
 from beltdyn.results.friction_work import ARC_PARTS, Touch, WorkSoFar, add_friction_work
 from beltdyn.results.mid_span import fill_mid_spans
@@ -24,7 +26,7 @@ from beltdyn.system.motion import new_equations, no_multipliers
 from beltdyn.system.observe import observe
 from beltdyn.system.state import State
 
-_SECOND = f"import pickle, sys; from {__name__} import compile_solving; compile_solving(*pickle.load(sys.stdin.buffer))"
+_SECOND = f"import sys; from {__name__} import compile_for_another; compile_for_another(sys.stdin.buffer)"
 
 
 def usable_cores() -> int:
@@ -56,6 +58,24 @@ def compile_solving(system: System, state: State) -> None:
     accelerate(system, motion, no_multipliers(system), new_equations(system))
 
 
+def compile_for_another(arguments: BinaryIO) -> None:
+    """Compile that for pickled arguments in a process of its own, which prints its progress."""
+
+    def report(done: int, total: int) -> None:
+        sys.stdout.write(f"{done} {total}\n")
+        sys.stdout.flush()
+
+    with watch_compilation(report):
+        compile_solving(*pickle.load(arguments))
+
+
+def _report(process: "subprocess.Popen[str]") -> None:
+    """Report the progress that a process prints."""
+    for line in process.stdout or ():
+        done, total = map(int, line.split())
+        report_compilation(process.pid, done, total)
+
+
 @contextmanager
 def _second_process(system: System, state: State) -> Iterator[None]:
     """Compile that part in another process meanwhile, if that is of use; if it fails, this one does it later.
@@ -77,12 +97,16 @@ def _second_process(system: System, state: State) -> Iterator[None]:
                 "PYTHONPATH": os.pathsep.join(filter(None, sys.path)),
             },
             stdin=arguments,
-            stdout=subprocess.DEVNULL,
+            stdout=subprocess.PIPE,
             stderr=subprocess.DEVNULL,
+            text=True,
         )
+    reader = Thread(target=_report, args=(process,), daemon=True)
+    reader.start()
     try:
         yield
         process.wait()
     finally:
         process.kill()
         process.wait()
+        reader.join()

@@ -43,6 +43,8 @@ _MOST_TRIALS = 60
 _LONGEST_CHANGE = 0.02
 """Change of a belt's length from one trial to the next, over its length, at most."""
 _LEAST_CHANGE = 1e-7
+_LEAST_WRAP = np.radians(0.5)
+"""Wrap angle of a pulley that the belt is about to leave, rad."""
 _SHORTER = 1e-5
 """Part of its length by which a belt is shortened for the slope of its tension."""
 
@@ -72,6 +74,11 @@ class Rest(NamedTuple):
         return float(self.seen.span_tension[0].mean())
 
     @property
+    def wraps(self) -> FloatArray:
+        """Wrap angles of the pulleys, rad."""
+        return np.asarray(self.seen.wrap_angle[0])
+
+    @property
     def installation(self) -> Installation:
         """The computed values in place of the estimates of `beltdyn.model.install`."""
         seen = self.seen
@@ -90,6 +97,10 @@ class Tightened(Protocol):
     @property
     def tension(self) -> float:
         """Mean of the span tensions, N."""
+
+    @property
+    def wraps(self) -> FloatArray:
+        """Wrap angles of the pulleys, rad."""
 
 
 At = TypeVar("At", bound=Tightened)
@@ -182,7 +193,7 @@ def tighten(first: At, wanted: float, at_rest: Callable[[Prepared], At]) -> At:
         if len(sides) == 2:
             (low, slack), (high, tight) = sides[True], sides[False]
             if abs(high - low) < _LEAST_CHANGE * length:
-                return _beside_jump(slack, tight, wanted)
+                return _beside_jump(first.prepared, slack, tight, wanted)
             if trial % 2 or not min(low, high) < done + change < max(low, high):
                 change = 0.5 * (low + high) - done
         ahead, change = _shortened(first.prepared, rest, done, change, at_rest)
@@ -202,12 +213,12 @@ def tighten(first: At, wanted: float, at_rest: Callable[[Prepared], At]) -> At:
     )
 
 
-def _beside_jump(slack: At, tight: At, wanted: float) -> At:
+def _beside_jump(given: Prepared, slack: At, tight: At, wanted: float) -> At:
     """Of two states on both sides of a jump, as a node of the mesh meets a pulley, the nearer one."""
     nearer = min(slack, tight, key=lambda one: abs(one.tension - wanted))
     if abs(nearer.tension - wanted) > _JUMP * wanted:
         raise _out_of_reach(
-            nearer.prepared,
+            given,
             f"at rest the tension jumps from {slack.tension:.5g} to {tight.tension:.5g} N at a length of "
             f"{nearer.prepared.belt_length:.6g} m, where nodes of the mesh meet pulleys. Increase belt.elements.",
         )
@@ -240,7 +251,19 @@ def _shortened(
             change *= 0.5
             if abs(change) < _LEAST_CHANGE * prepared.belt_length:
                 slack = _as_long_as_its_path(rest, at_rest) if change < 0.0 else ""
-                raise _out_of_reach(prepared, slack or str(error)) from error
+                raise _out_of_reach(prepared, slack or _lifting_off(rest) or str(error)) from error
+
+
+def _lifting_off(rest: Tightened) -> str:
+    """That the belt is about to leave a pulley, if it is."""
+    least = int(np.argmin(rest.wraps))
+    if rest.wraps[least] > _LEAST_WRAP:
+        return ""
+    name = rest.prepared.drive.pulleys[least].name
+    return (
+        f'at {rest.tension:.5g} N the belt leaves "{name}", which it must touch. Move "{name}" towards the belt, or '
+        "make the tensioner stiffer."
+    )
 
 
 def _as_long_as_its_path(rest: At, at_rest: Callable[[Prepared], At]) -> str:

@@ -13,7 +13,15 @@ from beltdyn.errors import ConvergenceError
 from beltdyn.model import Prepared
 from beltdyn.model.resolution import Arc, graded_mesh
 from beltdyn.state.search import SteadySearch
-from beltdyn.state.staying import FINER, MOST_ELEMENTS, Standing, depths, found_arcs, stand
+from beltdyn.state.staying import (
+    FINER,
+    MOST_ELEMENTS,
+    Standing,
+    depths,
+    found_arcs,
+    require_one_pulley_at_a_time,
+    stand,
+)
 from beltdyn.system.arrays import System
 from beltdyn.system.frame import centreline_places
 from beltdyn.system.observations import Observations
@@ -176,6 +184,7 @@ def _kinks(now: Solution) -> list[float]:
 def _solution(search: SteadySearch) -> Solution:
     """Steady running where the search is."""
     system, state = search.constant, search.state
+    require_one_pulley_at_a_time(search.prepared, system, state)
     speeds = np.abs(state.velocity[system.first_body :][: system.pulleys.size] * system.rims.radius)
     return Solution(system, state, _seen(system, state), 1.0 - speeds / speeds[0])
 

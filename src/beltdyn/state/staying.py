@@ -28,6 +28,8 @@ FIRST_FINENESS = 0.6
 FINER = 1.4
 """Elements of a mesh over those of the one before."""
 MOST_ELEMENTS = 1500
+_MOST_MESHES = 4
+"""Meshes on which equilibrium is sought."""
 _SETTLED = 1e-3
 """Change of the tension at rest from one mesh to the next, relative, with which a mesh is fine enough for it."""
 _MOST = 60
@@ -57,6 +59,11 @@ class Standing(NamedTuple):
         """The drive, with the length, or the take-up, that gives the tension asked for."""
         return self.prepared.drive
 
+    @property
+    def wraps(self) -> FloatArray:
+        """Wrap angles of the pulleys, rad."""
+        return looked_at(self.prepared, self.system, self.state).wraps
+
 
 def laid_state(laid: Laid, system: System, tensioners: FloatArray) -> State:
     """The state of a system whose belt is laid on its path, with its tensioners (m or rad) where they are."""
@@ -78,7 +85,7 @@ def bring_to_stand(prepared: Prepared, elements: int | None = None) -> Standing:
 
     The length for that tension is found on a mesh that is fine enough for it.
     """
-    rest, wanted = stand(prepared, elements), prepared.installed_tension
+    rest, wanted = _stand_on_some_mesh(prepared, elements), prepared.installed_tension
     if wanted is None:
         return rest
     change = np.inf
@@ -86,6 +93,16 @@ def bring_to_stand(prepared: Prepared, elements: int | None = None) -> Standing:
         finer = stand(prepared, fineness=FINER * rest.fineness)
         change, rest = abs(finer.tension / rest.tension - 1.0), finer
     return tighten(rest, wanted, partial(stand_like, like=rest))
+
+
+def _stand_on_some_mesh(prepared: Prepared, elements: int | None) -> Standing:
+    """Equilibrium on the coarsest mesh on which it is found; the reason of the finest where there is none."""
+    for trial in range(_MOST_MESHES if elements is None else 1):
+        try:
+            return stand(prepared, elements, fineness=FIRST_FINENESS * FINER**trial)
+        except ConvergenceError as error:
+            failure = error
+    raise failure
 
 
 def stand(prepared: Prepared, elements: int | None = None, *, fineness: float = FIRST_FINENESS) -> Standing:
@@ -186,12 +203,9 @@ def _lying(prepared: Prepared, system: System, factor: float) -> State:
 
 def found_arcs(system: System, state: State) -> list[Arc]:
     """Where the belt touches pulleys, in the order in which they follow each other along the belt."""
-    ends = np.cumsum(system.length)
-    parts = np.arange(_SAMPLES) / _SAMPLES
-    along = ((ends - system.length)[:, None] + system.length[:, None] * parts).ravel()
-    places = centreline_places(system, state.position, along)
+    along, away = _sampled(system, state)
     found = list[Arc]()
-    for depth, radius in zip(depths(system, state, places), system.rims.radius, strict=True):
+    for depth, radius in zip(away, system.rims.radius, strict=True):
         touching = np.flatnonzero(depth >= 0.0)
         if touching.size:
             first, last = int(touching[0]), int(touching[-1])
@@ -199,6 +213,26 @@ def found_arcs(system: System, state: State) -> list[Arc]:
             end = along[last] - _beyond(along, depth, last, last + 1)
             found.append(Arc(float(start), float(end), float(radius)))
     return sorted(found)
+
+
+def require_one_pulley_at_a_time(prepared: Prepared, system: System, state: State) -> None:
+    """Refuse a state in which the belt around one pulley touches another one."""
+    touched = (_sampled(system, state)[1] >= 0.0).astype(int)
+    pairs = np.argwhere(np.triu(touched @ touched.T, 1))
+    if pairs.size:
+        first, second = (prepared.drive.pulleys[number].name for number in pairs[0].tolist())
+        raise ConvergenceError(
+            f'the belt touches "{first}" and "{second}" at the same place: the forces move them together. Move them '
+            "apart, reduce the load, or limit the travel of the tensioner by stops."
+        )
+
+
+def _sampled(system: System, state: State) -> tuple[FloatArray, FloatArray]:
+    """Places along the belt, m, shape (k,), and how deep they lie within each pulley, m, shape (P, k)."""
+    ends = np.cumsum(system.length)
+    parts = np.arange(_SAMPLES) / _SAMPLES
+    along = ((ends - system.length)[:, None] + system.length[:, None] * parts).ravel()
+    return along, depths(system, state, centreline_places(system, state.position, along))
 
 
 def depths(system: System, state: State, places: FloatArray) -> FloatArray:

@@ -131,3 +131,14 @@ def test_a_finer_mesh_takes_the_curve_over(drive: Drive) -> None:
         for system, state in ((rest.system, rest.state), (finer, moved))
     )
     np.testing.assert_allclose(one, other, atol=1e-12)
+
+
+def test_a_belt_that_touches_two_pulleys_at_once_is_refused(drive: Drive) -> None:
+    prepared = prepare(drive)
+    rest = stand(prepared)
+    staying.require_one_pulley_at_a_time(prepared, rest.system, rest.state)
+    pulleys = rest.system.pulleys.copy()
+    pulleys["center"][1] = pulleys["center"][0] + [0.0, 0.5 * drive.radii[0]]
+    beside = rest.system._replace(pulleys=pulleys)
+    with pytest.raises(ConvergenceError, match='touches "driver" and "driven" at the same place'):
+        staying.require_one_pulley_at_a_time(prepared, beside, rest.state)

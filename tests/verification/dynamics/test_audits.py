@@ -38,7 +38,7 @@ def test_slope_of_the_friction_law(slope: float) -> None:
     """Slip of 20 % at 1e3 kg/(m s); with the law chosen without its keys, friction adds little to creep."""
     soft = simulate(loaded(creep_rate_factor=slope))
     (finding,) = (one for one in soft.findings if "friction builds up too slowly" in one.fault)
-    assert "leave out contact.friction_law and contact.creep_rate_factor" in finding.remedy
+    assert "omit contact.friction_law and contact.creep_rate_factor" in finding.remedy
     steep = simulate(loaded(friction_law="relative_creep", creep_rate_factor=None))
     assert not [warning for warning in steep.warnings if "friction builds up too slowly" in warning]
     before, after = summarize(soft).pulleys[1], summarize(steep).pulleys[1]
@@ -59,6 +59,6 @@ def test_contact_damping_that_takes_power() -> None:
 def test_load_of_the_wrong_sign() -> None:
     """Of a load of the right sign nothing is said but what the published mesh and contact damping do."""
     (finding,) = (one for one in simulate(loaded(torque=2.0)).findings if "a load drives" in one.fault)
-    assert "the sign of its speed: driven with 2 N m at 114.9 rpm, 24" in finding.fault
+    assert "the sign of its speed: driven, 2 N m at 114.9 rpm, 24" in finding.fault
     sound = simulate(loaded(friction_law="relative_creep", creep_rate_factor=None))
     assert {one.kind for one in sound.findings} <= {"flutter", "unresolved_by_mesh", "off_steady_running"}
