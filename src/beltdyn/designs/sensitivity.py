@@ -43,10 +43,15 @@ PART = 0.01
 _MOVE = 1e-3
 """Change of a coordinate, whose zero is arbitrary, to which effects refer, m."""
 _COORDINATES = ("center", "pivot", "point")
-_KEPT = ("simulation", "steady", "limits", "contact.stiffness", "contact.damping")
+_KEPT = (
+    *("simulation", "steady", "limits", "contact.stiffness", "contact.damping"),
+    *("belt.cord_fatigue", "belt.rib_fatigue", "belt.largest_fleeting_angle"),
+)
 """Where numbers stand that have no effect on a state that stays, or are those of the method."""
 _SWITCHES = ("schedule",)
 """Keys of what lies between 0 and 1."""
+_OUT_OF_PLANE = ("axial_offset", "tilt")
+"""Keys of what has no effect on planar drives."""
 
 
 class Number(NamedTuple):
@@ -68,7 +73,7 @@ def numbers_of(part: Part, path: str = "") -> Iterator[Number]:
 def _numbers_in(value: object, path: str) -> Iterator[Number]:
     """The numbers in a value of a drive."""
     key = path.rpartition(".")[2]
-    if path in _KEPT or key in _SWITCHES or isinstance(value, bool | int | str):
+    if path in _KEPT or key in (*_SWITCHES, *_OUT_OF_PLANE) or isinstance(value, bool | int | str):
         return
     if isinstance(value, Part):
         yield from numbers_of(value, path)
@@ -90,6 +95,8 @@ def chosen_numbers(drive: Drive, numbers: str | Sequence[str] | None, tolerances
     """
     known = {one.path: one for one in numbers_of(drive)}
     for path, size in tolerances.items():
+        if path.rpartition(".")[2].partition("[")[0] in _OUT_OF_PLANE:
+            continue
         value = float(value_at(drive, path))
         known.setdefault(path, Number(path, value, PART * value or size))
     if numbers is None:

@@ -31,6 +31,7 @@ from beltdyn.machines import (
     Table,
 )
 from beltdyn.model.advice import advise, describe_time, off_the_stop, unstable_balance
+from beltdyn.model.alignment import Alignment, alignment
 from beltdyn.model.belt import Belt
 from beltdyn.model.catalogue import Entry, read_catalogue
 from beltdyn.model.contact import Contact
@@ -51,6 +52,7 @@ from beltdyn.model.toml_writer import dumps
 
 __all__ = [
     "ERROR_LIMITS",
+    "Alignment",
     "AngleSpeedTable",
     "AngleTable",
     "BandBrake",
@@ -102,6 +104,7 @@ __all__ = [
     "TensionerBalance",
     "WeightEnd",
     "advise",
+    "alignment",
     "describe_time",
     "dumps",
     "elements_needed",

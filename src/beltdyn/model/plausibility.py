@@ -8,6 +8,7 @@ import numpy as np
 from beltdyn.arrays import FloatArray
 from beltdyn.errors import BeltdynError
 from beltdyn.machines.loads.load import Load
+from beltdyn.model.alignment import judge_alignment
 from beltdyn.model.drive import Drive
 from beltdyn.model.installation import Installation
 from beltdyn.model.prepared import install
@@ -36,6 +37,7 @@ def judge_plausibility(drive: Drive, installation: Installation) -> Iterator[Fin
     yield from _sides(drive)
     yield from _tight_side(drive, installation)
     yield from _sudden_start(drive, installation)
+    yield from judge_alignment(drive, installation.path)
 
 
 def _tension(drive: Drive, installation: Installation) -> Iterator[Finding]:

@@ -20,7 +20,7 @@ from beltdyn.machines.profiles.registry import SpeedProfile, TorqueProfile
 from beltdyn.model.belt import Belt, Side
 from beltdyn.model.contact import Contact
 from beltdyn.parts.part import Part
-from beltdyn.parts.quantity import Coordinate, Inertia, Length, Mass, Name, Ratio, quantity
+from beltdyn.parts.quantity import Angle, Coordinate, Inertia, Length, Mass, Name, Ratio, quantity
 
 # Surfaces of pulleys other than smooth circles, a part for each kind
 
@@ -90,6 +90,9 @@ def _describe_diameter(schema: dict[str, Any]) -> None:
     schema["anyOf"] = [{"required": ["radius"]}, {"required": ["diameter"]}]
 
 
+Tilt = Annotated[Angle, Field(gt=-0.5, lt=0.5)]
+
+
 class Pulley(Part):
     """A round pulley with a fixed center, unless a tensioner carries it.
 
@@ -123,6 +126,13 @@ class Pulley(Part):
     harmonics: SpeedHarmonics = Field(
         (),
         description="the harmonics of the prescribed speed over the angle of its mean, or a table of a measured speed",
+    )
+    axial_offset: Coordinate = Field(
+        0.0,
+        description="the offset of the pulley along its shaft, out of the plane of the drive, for `alignment`, in m",
+    )
+    tilt: tuple[Tilt, Tilt] = Field(
+        (0.0, 0.0), description="the tilts of its shaft about the x and the y axis, for `alignment`, in rad"
     )
     mass: Mass = Field(0.0, ge=0, description="the mass of the pulley, used if a tensioner moves it, in kg")
     inertia: Inertia = Field(0.0, ge=0, description="the moment of inertia of the rim about the shaft, in kg*m^2")

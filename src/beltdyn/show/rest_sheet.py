@@ -2,7 +2,8 @@
 
 import math
 
-from beltdyn.model import Drive, Installation, describe_time, prepare, tensioner_balances
+from beltdyn.model import Drive, Installation, Path, alignment, describe_time, prepare, tensioner_balances
+from beltdyn.model.alignment import is_given
 from beltdyn.model.hysteresis import bending_resistance, compression_losses
 from beltdyn.model.plausibility import other_diameters
 from beltdyn.model.simulation import unused_settings
@@ -44,6 +45,8 @@ def rest_sheet(given: Drive, drive: Drive, installation: Installation) -> Sheet:
         parts.append(Table("Tensioners at rest", _TENSIONER_HEADINGS, tuple(_tensioners(drive, installation))))
     if drive.belt.entry is not None and (told := instruction(drive, installation)) is not None:
         parts.append(told.table)
+    if is_given(given) and not given.ends:
+        parts.append(alignment_table(given, installation.path))
     if given.completed.choices:
         parts.append(Facts(tuple(_choices(given)), "Chosen values (not given in the file)"))
     return Sheet("", tuple(parts))
@@ -170,6 +173,25 @@ def _tensioners(drive: Drive, installation: Installation) -> list[tuple[str, ...
             )
         )
     return rows
+
+
+def alignment_table(given: Drive, path: Path) -> Table:
+    """Fleeting angles of the spans, with tolerances, against the limit of the belt."""
+    found = alignment(given, path)
+    headings = ["", "leaving", "reaching"]
+    columns = [[f"{math.degrees(angle):z.3f}°" for angle in side] for side in found.angles.T.tolist()]
+    if (found.worst > abs(found.angles) + 1e-12).any():
+        headings.append("worst, with\ntolerances")
+        columns.append([f"{math.degrees(angle):.3f}°" for angle in found.worst.max(axis=1).tolist()])
+    if not math.isnan(found.limit):
+        headings += ["allowed", "offset still\nallowed mm"]
+        columns += [
+            [f"{math.degrees(found.limit):.3g}°"] * len(found.worst),
+            aligned((1e3 * found.allowed_offset).tolist(), 3),
+        ]
+    names = [f"{start} to {end}" for start, end in given.spans]
+    title = "Fleeting angles (geometry only: the dynamics are planar)"
+    return Table(title, tuple(headings), tuple(zip(names, *columns, strict=True)))
 
 
 def _choices(drive: Drive) -> list[tuple[str, str]]:

@@ -148,6 +148,26 @@ def test_check_of_a_belt_as_sold(run_main: RunMain, tmp_path: Path) -> None:
     assert "drum free cw" in words
 
 
+def test_check_of_pulleys_out_of_line(run_main: RunMain, tmp_path: Path) -> None:
+    """Fleeting angles with tolerances, the offset that the belt still allows, and a warning beyond the limit."""
+    file = tmp_path / "drive.toml"
+    text = (
+        '[belt]\nprofile = "PJ"\nribs = 5\ninstalled_tension = 200\n'
+        '[[pulley]]\nname = "motor"\ncenter = [0, 0]\ndiameter = "100 mm"\nspeed = "600 rpm"\n'
+        '[[pulley]]\nname = "drum"\ncenter = ["0.4 m", 0]\ndiameter = "100 mm"\ninertia = 0.3\n'
+        'axial_offset = "OFFSET"\n[simulation]\nduration = 1.0\nstart = "steady"\n'
+    )
+    file.write_text(text.replace("OFFSET", "2 ± 0.5 mm"), encoding="utf-8")
+    code, output, _ = run_main(["check", str(file)])
+    assert code == 0
+    assert "Fleeting angles (geometry only: the dynamics are planar)" in output
+    row = f"motor to drum {np.degrees(0.005):.3f}° {np.degrees(0.005):.3f}° {np.degrees(0.00625):.3f}° 0.5° 0.991"
+    assert row in " ".join(output.split())
+    file.write_text(text.replace("OFFSET", "4 mm"), encoding="utf-8")
+    _, output, errors = run_main(["check", str(file)])
+    assert "at a fleeting angle of 0.573°, but the belt allows 0.5°" in " ".join((output + errors).split())
+
+
 def test_check_tells_where_a_take_up_puts_its_pulley(run_main: RunMain, drive_file: Path, drive_text: str) -> None:
     fixed = '\n[[tensioner]]\nkind = "fixed"\npulley = "driven"\ndirection = [1, 0]\n'
     text = drive_text.replace("length = 1.2727", "length = 1.2727\ninstalled_tension = 50") + fixed

@@ -11,6 +11,7 @@ from jinja2 import ChoiceLoader, Environment, FunctionLoader, PackageLoader, Str
 from matplotlib.colors import to_hex
 
 from beltdyn.errors import ModelError
+from beltdyn.model.alignment import is_given
 from beltdyn.parts.messages import listing
 from beltdyn.results import KeyNumber, Result, Run, StaticResult, key_numbers
 from beltdyn.results.atomic import MARK, atomic_path, is_marked, require_replaceable
@@ -21,6 +22,7 @@ from beltdyn.show.plot.style import tension_colors
 from beltdyn.show.report.chart import charted
 from beltdyn.show.report.motion import motion, swinging
 from beltdyn.show.report.page_parts import analysis_of, differing_keys, embedded, library, origin
+from beltdyn.show.rest_sheet import alignment_table
 from beltdyn.show.sheet import Table, sheet
 from beltdyn.show.tensioning import tensioning
 
@@ -237,6 +239,8 @@ def _moving(result: Result, results: int) -> dict[str, Any]:
 def _part(name: str, number: int, result: Result, moving: Mapping[str, Any]) -> dict[str, Any]:
     """What the page shows of one result."""
     tables = [part for part in sheet(result).parts if isinstance(part, Table)]
+    if isinstance(result, Run | StaticResult) and not result.drive.ends and is_given(result.drive):
+        tables.append(alignment_table(result.drive, result.drive.path))
     facts = [fact for part in sheet(result).parts if not isinstance(part, Table) for fact in part.facts]
     target = f"motion-{number}"
     return {
