@@ -16,6 +16,7 @@ from beltdyn.machines.loads.load import Load
 from beltdyn.machines.profiles.harmonic import CrankSpeed
 from beltdyn.model import Belt, Contact, FixedEnd, Harmonic, Limits, PulledEnd, Pulley, Simulation, Steady, WeightEnd
 from beltdyn.model.belt_form import Nominal, Sold, Stiffnesses
+from beltdyn.model.fatigue import CordFatigue, RibFatigue
 from beltdyn.model.pulley import SURFACES, Diameter
 from beltdyn.model.stretch_curve import StretchCurve
 from beltdyn.model.study import (
@@ -123,6 +124,8 @@ KEYS: dict[str, Any] = {
     "belt": table(Belt, Nominal),
     "sold": table(Stiffnesses, Sold, without=("width", "thickness")),
     "stretch_curve": table(StretchCurve),
+    "cord_fatigue": table(CordFatigue),
+    "rib_fatigue": table(RibFatigue),
     "pulley": table(Pulley, Diameter),
     "surface": family(SURFACES),
     "contact": table(Contact),
