@@ -114,6 +114,9 @@ def _show(profile: str, entry: "Entry") -> None:
     size = {"ribs": "ribs = 1", "width": 'width = "50 mm"', "diameter": 'diameter = "8 mm"'}[entry.sold_by]
     show(f'\nIn a drive file\n  [belt]\n  profile = "{profile}"\n  {size}\n\nSources')
     show_paragraphs(entry.source.strip().splitlines())
+    for name, data in (("Cord fatigue", entry.cord_fatigue), ("Rib fatigue", entry.rib_fatigue)):
+        if data is not None:
+            show_paragraphs([f"{name}: {data.source.strip()}"])
 
 
 def _values(entry: "Entry") -> Iterator[tuple[str, str]]:
@@ -138,6 +141,14 @@ def _values(entry: "Entry") -> Iterator[tuple[str, str]]:
         yield "measuring_force", f"{entry.measuring_force:.4g} N, half in each strand"
     if entry.largest_tension is not None:
         yield "largest_tension", f"{entry.largest_tension:.4g} N"
+    if entry.largest_fleeting_angle is not None:
+        yield "largest_fleeting_angle", f"{degrees(entry.largest_fleeting_angle):.3g}°"
+    if line := entry.cord_fatigue:
+        points = zip(line.forces, line.cycles, strict=True)
+        yield "cord_fatigue", ", ".join(f"{force:.4g} N at {cycles:.3g} cycles" for force, cycles in points)
+    if law := entry.rib_fatigue:
+        exponents = f"diameter^-{law.diameter_exponent:g}, tension^{law.tension_exponent:g}"
+        yield "rib_fatigue", f"{exponents}, twice for {law.halving_difference:g} K, {law.back_factor:g} at the back"
     for name in LOSSES:
         if getattr(entry, name) > 0:
             yield name, f"{getattr(entry, name):.3g}{' s' if name in DAMPING_TIMES else ''}"

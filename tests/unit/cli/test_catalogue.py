@@ -21,6 +21,29 @@ source = "our rig"
 """
 
 
+@pytest.mark.parametrize(
+    ("profile", "words"),
+    [
+        (
+            "A",
+            (
+                "cord_fatigue 569.4 N at 1e+08 cycles",
+                "largest_fleeting_angle 0.5°",
+                "Cord fatigue: Durability parameters",
+            ),
+        ),
+        (
+            "PK",
+            ("rib_fatigue diameter^-5.6, tension^1.13, twice for 23 K, 0.3 at the back", "Rib fatigue: The life grows"),
+        ),
+    ],
+)
+def test_fatigue_data_with_their_source(run_main: RunMain, profile: str, words: tuple[str, ...]) -> None:
+    _, output, _ = run_main(["catalogue", profile])
+    shown = " ".join(output.split())
+    assert [one for one in words if one not in shown] == []
+
+
 def test_lists_every_profile_below_its_kind(run_main: RunMain) -> None:
     code, output, error = run_main(["catalogue"])
     assert (code, error) == (0, "")
