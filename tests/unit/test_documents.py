@@ -139,15 +139,15 @@ def test_every_key_of_a_profile_is_documented(profile: type[Part]) -> None:
 
 
 def test_the_catalogue_of_the_document_has_every_key(new_drive: str, tmp_path: Path) -> None:
-    machine, own, catalogue, rating, curve = blocks(CATALOGUE, "toml")
+    machine, own, catalogue, rating, curve, fatigue = blocks(CATALOGUE, "toml")
     (entry,) = tomllib.loads(catalogue).values()
-    others = [tomllib.loads(one)["my-belt"] for one in (rating, curve)]
+    others = [tomllib.loads(one)["my-belt"] for one in (rating, curve, fatigue)]
     assert entry.keys() | {key for one in others for key in one} == Entry.model_fields.keys()
     assert others[0]["rating"].keys() == Rating.model_fields.keys()
     without = "".join(line for line in catalogue.splitlines(keepends=True) if not line.startswith("axial_stiffness"))
     (tmp_path / "measured.toml").write_text(without + curve, encoding="utf-8")
     assert read_catalogue("measured.toml", tmp_path)["my-belt"].axial_stiffness == pytest.approx(1700.0)
-    (tmp_path / "belts.toml").write_text(catalogue + rating, encoding="utf-8")
+    (tmp_path / "belts.toml").write_text(catalogue + rating + fatigue, encoding="utf-8")
     data = tomllib.loads(new_drive)
     for form in (*blocks(DRIVE_FILE, "toml")[:2], machine, own):
         belt = {
@@ -359,7 +359,7 @@ def test_the_page_on_figures_names_every_one() -> None:
 
 def test_the_commands_page_has_every_analysis() -> None:
     text = (ROOT / "docs" / "commands.md").read_text(encoding="utf-8")
-    assert [name for name in ANALYSES if f"| `beltdyn {name} FILE" not in text] == []
+    assert [one.command for one in ANALYSES.values() if f"| `beltdyn {one.command} FILE" not in text] == []
 
 
 def test_files_named_by_the_page_on_theory_exist() -> None:
