@@ -14,7 +14,7 @@ from scipy.optimize import brentq, curve_fit
 
 import beltdyn as bd
 from beltdyn.arrays import FloatArray
-from beltdyn.model import Path
+from beltdyn.model import Path, prepare
 from beltdyn.model.carrier import moved
 from beltdyn.results import summarize
 from beltdyn.results.derived import slip_safety
@@ -39,7 +39,7 @@ class Arm:
 
     def path(self, position: float) -> Path:
         """The path with the tensioner at a position, rad."""
-        return moved(self.drive.path, self.drive.carriers, np.array([position]))
+        return moved(self.drive.path, prepare(self.drive).carriers, np.array([position]))
 
     def lengthening(self, position: float) -> float:
         """Change of path length with the position, dL/dq, m/rad."""
@@ -56,7 +56,7 @@ class Arm:
         It goes by moment and leverage over those at rest, so that what bending takes from the leverage, 1 %, drops
         out. Far beyond the stop, where no moment would be left, a hundredth of that at rest counts.
         """
-        (arm,) = self.drive.carriers
+        (arm,) = prepare(self.drive).carriers
         moment = max(arm.force(position) / arm.force(self.resting), 0.01)
         return self.tension * moment * self.lengthening(self.resting) / self.lengthening(position) + self.lifted
 
@@ -200,7 +200,7 @@ def natural_frequencies(arm: Arm, position: float, slack: float, tight: float) -
     drive, path = arm.drive, arm.path(position)
     (spring,), radii = drive.tensioners, path.radii
     ahead, behind = (path.span_directions[k] for k in (0, 1))
-    _, moving = drive.carriers[0].place(position)
+    _, moving = prepare(drive).carriers[0].place(position)
     sliding = slip_arc(tight - arm.lifted, slack - arm.lifted, float(drive.frictions[0]))
     lengths = path.span_lengths + sliding * np.array([radii[0], 0.0, radii[2]])
     stretches = np.array(

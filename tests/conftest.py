@@ -14,7 +14,7 @@ import pytest
 from numpy.typing import ArrayLike, NDArray
 
 from beltdyn.arrays import FloatArray
-from beltdyn.model import Drive
+from beltdyn.model import Drive, prepare
 from beltdyn.results import Layout, MemoryRecorder, Run, provenance
 from beltdyn.results.friction_work import FrictionWork, Touch
 from beltdyn.results.mechanics import cells
@@ -223,11 +223,11 @@ def _summed_up(drive: Drive, layout: Layout, outputs: Arrays) -> Arrays:
     """What contact along the belt amounts to; with fields at every output."""
     names = ("contact_pulley", "normal_force", "slip_velocity", "contact_position", "pulley_center")
     touched, normal, slip, places, centers = (outputs[name] for name in names)
-    work = FrictionWork(drive, cells(layout.belt_coordinate, drive.belt_length), layout.elements)
+    work = FrictionWork(prepare(drive), cells(layout.belt_coordinate, drive.belt_length), layout.elements)
     touch = Touch(outputs["time"], centers, places, touched, np.abs(outputs["friction_force"] * slip))
     done = work.take(touch, np.ones(len(touched), dtype=bool))
-    scalars = sliding_of_pulleys(drive, layout.belt_coordinate, touched, normal, slip, outputs["pulley_speed"])
-    scalars["mid_span_displacement"] = mid_span_displacements(drive, centers, places, touched)
+    scalars = sliding_of_pulleys(prepare(drive), layout.belt_coordinate, touched, normal, slip, outputs["pulley_speed"])
+    scalars["mid_span_displacement"] = mid_span_displacements(prepare(drive), centers, places, touched)
     seen = outputs | scalars
     return {
         **scalars,

@@ -13,7 +13,7 @@ from examples_accessory_drive import rotor_swing
 from make_examples import simulated
 
 from beltdyn import Run
-from beltdyn.model import Resistance, RotaryTensioner
+from beltdyn.model import Resistance, RotaryTensioner, prepare
 from beltdyn.results import derived
 from beltdyn.results.mechanics import cells, centerline, element_lengths, recorded_kind
 
@@ -134,7 +134,7 @@ def test_the_tensioner_takes_up_what_the_belt_stretches() -> None:
     paths, belts, stretched, bent = [], [], [], []
     for instant in (0.0, 0.3, 0.47, 0.7, 1.19, 1.27, 2.0):
         output = run().fields_at(instant)
-        curves = centerline(recorded_kind(dataset, drive), output["nodal_coordinates"].values, lengths, 129)
+        curves = centerline(recorded_kind(dataset, prepare(drive)), output["nodal_coordinates"].values, lengths, 129)
         path = replace(drive.path, centers=output["pulley_center"].values)
         touched = output["contact_pulley"].values.astype(int)
         sunk = np.where(

@@ -7,9 +7,8 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from beltdyn.app.draft import Draft
-from beltdyn.model import Drive, Path
+from beltdyn.model import Drive, Path, prepare
 from beltdyn.model.belt import read_side
-from beltdyn.model.carrier import moved
 from beltdyn.parts.quantity import to_si
 from beltdyn.show.notebook import outline
 
@@ -106,17 +105,16 @@ def sketched(found: Sequence[Circle]) -> Path | None:
 
 def _rest(drive: Drive) -> Path | None:
     """The path with tensioners where their springs hold them, if that is to be told apart from the given one."""
-    if not drive.carriers:
+    if not drive.moving_tensioners:
         return None
-    _, positions = drive.balance
-    path = moved(drive.path, drive.carriers, positions)
+    path = prepare(drive).installation.path
     way = float(np.abs(path.centers - drive.path.centers).max())
     return path if way > _SEEN * float(np.ptp(path.centers, axis=0).max()) else None
 
 
 def _ghosts(drive: Drive, rest: Path) -> list[dict[str, float]]:
     """Pulleys of tensioners at rest."""
-    places = [(rest.centers[one.pulley].tolist(), drive.pulleys[one.pulley].radius) for one in drive.carriers]
+    places = [(rest.centers[one.pulley].tolist(), drive.pulleys[one.pulley].radius) for one in prepare(drive).carriers]
     return [dict(zip("xyr", (*_place(*center), MILLIMETRES * radius), strict=True)) for center, radius in places]
 
 

@@ -13,7 +13,7 @@ from beltdyn.arrays import FloatArray
 from beltdyn.designs.found_state import FoundState
 from beltdyn.designs.named_results import unit_of
 from beltdyn.errors import ModelError
-from beltdyn.model import Drive
+from beltdyn.model import Drive, prepare
 from beltdyn.model.carrier import moved
 from beltdyn.model.path import Surroundings, distance_from_belt
 from beltdyn.model.study import Obstacle, Order, Points
@@ -124,7 +124,7 @@ def clearance(one: Obstacle, count: int) -> Watched:
     def read(state: FoundState) -> float:
         drive = state.drive
         positions = np.array([state.value(f"tensioner_position[{one.pulley}]") for one in drive.moving_tensioners])
-        path, belt = moved(drive.path, drive.carriers, positions), drive.belt
+        path, belt = moved(drive.path, prepare(drive).carriers, positions), drive.belt
         radii = np.array([pulley.radius for pulley in drive.pulleys])
         around = Surroundings(radii, belt.pitch_offset, belt.back_offset)
         return distance_from_belt(path, around, one.center, one.radius)

@@ -11,7 +11,7 @@ from beltdyn.model.defaults import CREEP_LENGTHS, DAMPING_RATIO
 from beltdyn.model.drive import Drive
 from beltdyn.model.installation import Installation
 from beltdyn.model.plausibility import judge_plausibility
-from beltdyn.model.prepared import tensioner_balances
+from beltdyn.model.prepared import Prepared, prepare, tensioner_balances
 from beltdyn.model.pulley import fastest_rim
 from beltdyn.model.resolution import Running, elements_needed, mesh_errors, unresolved
 from beltdyn.parts.messages import Finding, listing
@@ -76,7 +76,7 @@ def _stiffness(drive: Drive, chosen: Drive, installation: Installation) -> Itera
 
 
 def _damping(drive: Drive) -> Iterator[Finding]:
-    given, critical = drive.contact.damping, drive.critical_damping
+    given, critical = drive.contact.damping, prepare(drive).critical_damping
     if given is None:
         return
     remedy = f"Omit contact.damping: the default is {DAMPING_RATIO:.0%} of critical, {DAMPING_RATIO * critical:.2g}."
@@ -361,11 +361,11 @@ def _mesh(drive: Drive, installation: Installation) -> list[Finding]:
     return unresolved(errors, needed, pressures=drive.belt.elements is not None)
 
 
-def other_creep(drive: Drive, factor: float) -> str:
+def other_creep(prepared: Prepared, factor: float) -> str:
     """The setting for friction that saturates at a slip velocity larger or smaller by a factor."""
-    chosen = LAWS[drive.contact.friction_law]
+    chosen = LAWS[prepared.contact.friction_law]
     if any(parameter.found for parameter in chosen.parameters):
-        ratio = drive.completed.contact.given("creep_ratio")
+        ratio = prepared.contact.given("creep_ratio")
         verb = "increase" if factor > 1.0 else "reduce"
         return f"{verb} contact.creep_ratio from {ratio:.1e} to {factor * ratio:.0e}"
     keys = " and ".join(f"contact.{key}" for key in ("friction_law", *(one.name for one in chosen.parameters)))

@@ -71,7 +71,7 @@ class Contact(_Laws, Penalty):
     """Penalty contact with friction, the same on every pulley.
 
     Stiffness, damping and the creep ratio of friction are numerical parameters. If omitted they are None, and chosen by
-    the drive (`Drive.completed`); see `beltdyn.model.defaults`.
+    the drive (`prepare`); see `beltdyn.model.defaults`.
 
     Each law of normal force and friction has its own parameters: the friction law ``"relative_creep"`` has
     `creep_ratio`, the slip velocity at saturation over the rim speed; ``"coefficient_slope"`` has `creep_velocity`, the
@@ -148,9 +148,7 @@ class Contact(_Laws, Penalty):
         """
         number: float | None = getattr(self, key)
         if number is None:
-            raise ModelError(
-                f"contact.{key} is open; the drive chooses it. Use drive.completed.contact, or give {key}."
-            )
+            raise ModelError(f"contact.{key} is open; the drive chooses it. Use prepare(drive).contact, or give {key}.")
         return number
 
     @property

@@ -16,19 +16,15 @@ from beltdyn.errors import ModelError
 from beltdyn.machines import FunctionLoad, MovingTensioner, Tensioner
 from beltdyn.machines.tensioners.registry import AnyTensioner
 from beltdyn.model.belt import Belt
-from beltdyn.model.carrier import Carrier, carriers_of
-from beltdyn.model.completion import Completed, complete, take_up
+from beltdyn.model.completion import Completed, complete
 from beltdyn.model.contact import Contact
-from beltdyn.model.defaults import critical_damping
 from beltdyn.model.end import AnyEnd, PathEnd, ends_on_path
-from beltdyn.model.layout import Given, Layout, lay_out, loaded
+from beltdyn.model.layout import Given, Layout, lay_out
 from beltdyn.model.path import Path
 from beltdyn.model.pulley import Pulley, friction_on
 from beltdyn.model.rating import RatedBelt
 from beltdyn.model.routing import radii, span_names
 from beltdyn.model.simulation import Frame, Limits, Simulation, Steady, choose_frame, element_of
-from beltdyn.model.static_estimate import StaticEstimate
-from beltdyn.model.tensioner_balance import balance_tensioners
 from beltdyn.parts.change import changed_arguments
 from beltdyn.parts.part import Part
 from beltdyn.parts.quantity import Acceleration, Title, Words
@@ -48,7 +44,7 @@ class Drive(Part):
     The parts hold only the given values, from which copies (`replace`) and files are made. Derived values are
     attributes of the drive: `belt_length`, also if the tension is given instead; `path` and `centers`, with pulleys of
     fixed tensioners in place; `elements`, `contact_stiffness`, `contact_damping` and `friction_parameters`, also if the
-    file omits these numerical parameters. `completed.choices` lists the chosen values and the reasons.
+    file omits these numerical parameters. `prepare` gives all of it at once, with the reasons.
 
     Examples
     --------
@@ -204,11 +200,6 @@ class Drive(Part):
         """Names of the pulleys or ends at both ends of each span; the last span leads to the first pulley."""
         return tuple(span_names(self.pulleys, self.ends))
 
-    @property
-    def loaded_belt(self) -> Belt:
-        """The belt, with its tension at rest if a pulled end sets it."""
-        return loaded(self.completed.belt, self.path_ends)
-
     @cached_property
     def frame(self) -> Frame:
         """The mesh of runs over time, with the reason."""
@@ -255,11 +246,6 @@ class Drive(Part):
         return self.completed.contact.given("damping")
 
     @property
-    def critical_damping(self) -> float:
-        """Critical contact damping of the belt pressed on a pulley, N s/m^2."""
-        return critical_damping(self.contact_stiffness, self.belt.mass_per_length)
-
-    @property
     def friction_parameters(self) -> FrictionParameters:
         """Parameters of the friction law, given or chosen."""
         return self.completed.contact.friction_parameters
@@ -301,21 +287,6 @@ class Drive(Part):
     def moving_tensioners(self) -> tuple[MovingTensioner, ...]:
         """The spring-loaded tensioners."""
         return tuple(one for one in self.tensioners if isinstance(one, MovingTensioner))
-
-    @cached_property
-    def carriers(self) -> list[Carrier]:
-        """The spring-loaded tensioners with their pulleys."""
-        return carriers_of(self.tensioners, [pulley.name for pulley in self.pulleys], self.path)
-
-    @cached_property
-    def balance(self) -> tuple[StaticEstimate, FloatArray]:
-        """Estimate of the belt and the tensioners at rest; see `balance_tensioners`."""
-        return balance_tensioners(self.path, self.loaded_belt, self.completed.contact, self.carriers)
-
-    @property
-    def tension_at_rest(self) -> float:
-        """Estimate of the tension of the belt at rest, without weight and bending, N; see `balance`."""
-        return self.balance[0].tension
 
     def carried(self, tensioner: Tensioner) -> int:
         """Number of the pulley of a tensioner."""
@@ -360,33 +331,6 @@ class Drive(Part):
         (40.0, 0.2)
         """
         return Drive(**changed_arguments(self, changes))
-
-    def tightened(self, distance: float) -> "Drive":
-        """Compute the length for an installed tension, or the take-up if the length is given.
-
-        Parameters
-        ----------
-        distance : float
-            Shortening of the estimated belt, or lengthening of its path, m; negative to loosen it.
-
-        Returns
-        -------
-        Drive
-            With this length or take-up instead of the tension, and with its contact stiffness.
-
-        Raises
-        ------
-        ModelError
-            If no such belt fits around the pulleys.
-        """
-        completed = self.completed
-        belt, tensioners = completed.belt, self.tensioners
-        if self.belt.length is None:
-            belt = belt.replace(length=self.belt_length - distance)
-        else:
-            tensioners = take_up(completed, distance)
-        belt = belt.replace(discretization=self.belt.discretization)
-        return self.replace(belt=belt, contact=completed.contact, tensioner=tensioners)
 
     @cached_property
     def text(self) -> str:

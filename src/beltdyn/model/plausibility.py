@@ -101,7 +101,7 @@ def other_diameters(drive: Drive) -> str:
     if drive.belt.length is None:
         return f"belt length {meant.belt_length:.5g} m instead of {drive.belt_length:.5g} m"
     try:
-        return f"tension at rest {meant.tension_at_rest:.5g} N instead of {drive.tension_at_rest:.5g} N"
+        return f"tension at rest {install(meant).tension:.5g} N instead of {install(drive).tension:.5g} N"
     except BeltdynError:
         return ""
 

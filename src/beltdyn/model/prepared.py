@@ -10,7 +10,7 @@ import numpy as np
 from beltdyn.arrays import FloatArray
 from beltdyn.contact.friction import FrictionParameters
 from beltdyn.elements import ElementKind
-from beltdyn.machines import Tensioner
+from beltdyn.machines import MovingTensioner, Tensioner
 from beltdyn.model.belt import Belt
 from beltdyn.model.carrier import Carrier, carriers_of, moved
 from beltdyn.model.completion import take_up
@@ -107,6 +107,16 @@ class Prepared:
     def spans(self) -> tuple[tuple[str, str], ...]:
         """Names of the pulleys or ends at both ends of each span."""
         return self.drive.spans
+
+    @property
+    def moving_tensioners(self) -> tuple[MovingTensioner, ...]:
+        """The spring-loaded tensioners."""
+        return tuple(one.tensioner for one in self.carriers)
+
+    @property
+    def reference(self) -> int:
+        """Number of the reference pulley of slip: the driver, or the first pulley without a driver."""
+        return self.drive.reference
 
     @property
     def breakpoints(self) -> tuple[float, ...]:

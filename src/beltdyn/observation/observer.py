@@ -7,7 +7,7 @@ from numpy.typing import NDArray
 
 from beltdyn.arrays import BoolArray, FloatArray
 from beltdyn.errors import ConvergenceError, SlipError
-from beltdyn.model import Drive, Prepared
+from beltdyn.model import Prepared
 from beltdyn.parts.quantity import RPM
 from beltdyn.results.checks.sliding import SWEEP_REMEDY
 from beltdyn.results.friction_work import FrictionWork, MaterialWork, Touch
@@ -109,9 +109,7 @@ class Observer:
         self._prepared, self._system, self._belt_coordinate = prepared, system, belt_coordinate
         lengths = curve_lengths(system)
         self._shares = lengths / np.sum(lengths)
-        self._friction_work = FrictionWork(
-            prepared.drive, np.outer(lengths, system.contact.weights).ravel(), len(lengths)
-        )
+        self._friction_work = FrictionWork(prepared, np.outer(lengths, system.contact.weights).ravel(), len(lengths))
         self._material_work = MaterialWork(lengths)
         self._energy = EnergyAccount()
         self._flutter = None if isinstance(system.frame, Flowing) else FlutterWatch(system)
@@ -133,7 +131,7 @@ class Observer:
         """
         seen = observe_motion(self._system, states.position, states.velocity, states.forces, shown)
         touched, centers, places = seen.contact_pulley, seen.pulley_center, seen.contact_position
-        aside = mid_span_displacements(self._prepared.drive, centers, places, touched)
+        aside = mid_span_displacements(self._prepared, centers, places, touched)
         lost = np.abs(seen.friction_force * seen.slip_velocity)
         on_arc, on_belt = self._works(Touch(states.time, centers, places, touched, lost), states, shown)
         potential = np.stack([seen.spring_energy, seen.potential_energy], axis=1)
@@ -147,7 +145,7 @@ class Observer:
         at_outputs = {
             **rows,
             **sliding_of_pulleys(
-                self._prepared.drive,
+                self._prepared,
                 self._belt_coordinate,
                 rows["contact_pulley"],
                 rows["normal_force"],
@@ -203,17 +201,17 @@ class SlipThrough:
 
     Parameters
     ----------
-    drive : Drive
+    prepared : Prepared
         What is simulated.
     swept : int
         Number of the pulley whose speed rises.
     """
 
-    def __init__(self, drive: Drive, swept: int) -> None:
-        self._drive, self._swept, self._radius = drive, swept, float(drive.radii[swept])
-        self._since = np.full(len(drive.pulleys), np.inf)
-        self._load = np.zeros(len(drive.pulleys))
-        self._speed = np.zeros(len(drive.pulleys))
+    def __init__(self, prepared: Prepared, swept: int) -> None:
+        self._prepared, self._swept, self._radius = prepared, swept, float(prepared.radii[swept])
+        self._since = np.full(len(prepared.pulleys), np.inf)
+        self._load = np.zeros(len(prepared.pulleys))
+        self._speed = np.zeros(len(prepared.pulleys))
 
     def __call__(self, outputs: Arrays) -> None:
         """Look at further outputs."""
@@ -226,12 +224,12 @@ class SlipThrough:
             self._since = np.where(fast, np.where(begins, time, self._since), np.inf)
             self._load = np.where(begins, np.abs(outputs["pulley_torque"][row]), self._load)
             self._speed = np.where(begins, speed, self._speed)
-            for number in np.flatnonzero(time - self._since > self._drive.belt_length / max(rim, 1e-9)):
+            for number in np.flatnonzero(time - self._since > self._prepared.belt_length / max(rim, 1e-9)):
                 raise SlipError(self._message(int(number), time, speed, outputs, row), SWEEP_REMEDY)
 
     def _message(self, number: int, time: float, speed: float, outputs: Arrays, row: int) -> str:
-        name, swept = (self._drive.pulleys[one].name for one in (number, self._swept))
-        before, after = (float(side[number]) for side in across(outputs["span_tension"][row], self._drive))
+        name, swept = (self._prepared.pulleys[one].name for one in (number, self._swept))
+        before, after = (float(side[number]) for side in across(outputs["span_tension"][row], self._prepared))
         sliding = abs(float(outputs["sliding_speed"][row, number]))
         share = sliding / (abs(speed) * self._radius)
         return (

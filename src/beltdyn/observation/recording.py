@@ -49,7 +49,7 @@ def step_bound(prepared: Prepared, statistics: Statistics, reached: float) -> st
     if share > _MANY:
         return (
             f"{share:.0%} of the time steps are rejected because friction builds up within a small slip "
-            f"or contact is stiff. For a faster run, {other_creep(prepared.drive, _GENTLER)}, which adds to the "
+            f"or contact is stiff. For a faster run, {other_creep(prepared, _GENTLER)}, which adds to the "
             f"slip; or reduce contact.stiffness = {prepared.contact_stiffness:.2g} N/m^2, which reduces "
             "the tension."
         )

@@ -6,7 +6,7 @@ from typing import Any
 import numpy as np
 
 from beltdyn.errors import ModelError
-from beltdyn.model import Drive
+from beltdyn.model import Drive, prepare
 from beltdyn.model.rating import PowerRating, RatedBelt
 from beltdyn.parts.messages import listing
 from beltdyn.points.changed_drive import held_at
@@ -91,7 +91,7 @@ def rating(
     run = steady_state(held, progress=progress)
     means, centers = means_of(run).pulleys, run.dataset["pulley_center"].values[-1]
     speeds, powers = (np.array([getattr(one, name) for one in means]) for name in ("speed", "power"))
-    found = rate(held, speeds, powers, centers)
+    found = rate(prepare(held), speeds, powers, centers)
     assert found is not None
     used = utilization(held, found.power, powers)
     pulleys = len(held.pulleys)

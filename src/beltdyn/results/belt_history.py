@@ -6,7 +6,7 @@ import numpy as np
 
 from beltdyn.arrays import FloatArray, IntArray
 from beltdyn.errors import ModelError
-from beltdyn.model import Drive
+from beltdyn.model import Prepared
 from beltdyn.results.mechanics import element_lengths, mean_curvature, recorded_kind
 from beltdyn.results.run import Run
 
@@ -59,11 +59,11 @@ def turn_history(run: Run) -> BeltHistory:
     run : Run
         Steady running of a closed belt.
     """
-    fields, drive = _fields(run, slice(-1, None)), run.drive
+    fields, prepared = _fields(run, slice(-1, None)), run.prepared
     speed = float(np.squeeze(run.dataset.attrs["belt_parameter"]))
     along = run.dataset["element_coordinate"].values
     way = slice(None) if speed > 0.0 else slice(None, None, -1)
-    passed = along if speed > 0.0 else drive.belt_length - along[::-1]
+    passed = along if speed > 0.0 else prepared.belt_length - along[::-1]
     tension, curvature, pulley = fields.tension[0, way], fields.curvature[0, way], fields.pulley[0, way]
     return BeltHistory(passed, passed / abs(speed), tension[:, None], curvature[:, None], pulley[:, None])
 
@@ -80,10 +80,10 @@ def belt_history(run: Run, points: int = 8) -> BeltHistory:
     points : int, default 8
         Number of material points.
     """
-    fields, drive = _fields(run, slice(None)), run.drive
+    fields, prepared = _fields(run, slice(None)), run.prepared
     if len(fields.time) < 2:
         raise ModelError("the run has one output along the belt, which is no history. Choose a shorter field_interval.")
-    along, length = run.dataset["element_coordinate"].values, drive.belt_length
+    along, length = run.dataset["element_coordinate"].values, prepared.belt_length
     passed = np.interp(fields.time, run.dataset["time"].values, _passed(run))
     marks, parts = np.arange(points) * length / points, list[BeltHistory]()
     for output in range(len(fields.time) - 1):
@@ -91,7 +91,7 @@ def belt_history(run: Run, points: int = 8) -> BeltHistory:
         steps = max(int(np.ceil(_STEPS * abs(way[1] - way[0]) / length * along.size)), 1)
         part = np.arange(steps + (output == len(fields.time) - 2)) / steps
         now = way[0] + part * (way[1] - way[0])
-        origin = np.zeros(2) if drive.frame.stays else way
+        origin = np.zeros(2) if prepared.frame.stays else way
         before, after = (np.mod(now[:, None] - origin[side] + marks, length) for side in (0, 1))
         mixed = [
             (1.0 - part[:, None]) * np.interp(before, along, field[output], period=length)
@@ -114,27 +114,27 @@ def _nearest_element(along: FloatArray, length: float, places: FloatArray) -> In
 def _passed(run: Run) -> FloatArray:
     """Length of unstretched belt that has passed at every output, m."""
     time, speed = run.dataset["time"].values, run.dataset["belt_speed"].values.mean(axis=1)
-    speed = speed * run.drive.belt_length / run.drive.path.length
+    speed = speed * run.prepared.belt_length / run.prepared.path.length
     return np.concatenate([[0.0], np.cumsum(0.5 * (speed[1:] + speed[:-1]) * np.diff(time))])
 
 
 def _fields(run: Run, outputs: slice) -> _Fields:
     """The fields at some outputs along the belt."""
     run.require_output()
-    drive = run.drive
-    if drive.ends:
+    prepared = run.prepared
+    if prepared.ends:
         raise ModelError("an open belt has no turns, and so no history of tension and bending over them.")
     dataset = run.dataset.isel(field_time=outputs)
     nodes = dataset["nodal_coordinates"].values
-    lengths = element_lengths(dataset, drive.belt_length)
-    curvature = mean_curvature(recorded_kind(dataset, drive), nodes, lengths)
+    lengths = element_lengths(dataset, prepared.belt_length)
+    curvature = mean_curvature(recorded_kind(dataset, prepared), nodes, lengths)
     times = dataset["field_time"].values
-    return _Fields(times, dataset["belt_tension"].values, curvature, _nearest_pulley(dataset, drive, nodes[..., :2]))
+    return _Fields(times, dataset["belt_tension"].values, curvature, _nearest_pulley(dataset, prepared, nodes[..., :2]))
 
 
-def _nearest_pulley(dataset: "xr.Dataset", drive: Drive, nodes: FloatArray) -> IntArray:
+def _nearest_pulley(dataset: "xr.Dataset", prepared: Prepared, nodes: FloatArray) -> IntArray:
     """Number of the pulley whose circle is nearest to the middle of each element, shape (outputs, elements)."""
     middles = 0.5 * (nodes + np.roll(nodes, -1, axis=1))
     centers = dataset["pulley_center"].sel(time=dataset["field_time"].values).values
-    distance = np.linalg.norm(middles[:, :, None] - centers[:, None], axis=-1) - np.abs(drive.radii)
+    distance = np.linalg.norm(middles[:, :, None] - centers[:, None], axis=-1) - np.abs(prepared.radii)
     return np.asarray(np.abs(distance).argmin(axis=-1))

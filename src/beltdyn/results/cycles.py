@@ -10,7 +10,7 @@ import numpy as np
 
 from beltdyn.arrays import FloatArray
 from beltdyn.machines import Profile, Table
-from beltdyn.model import Drive
+from beltdyn.model import Prepared
 from beltdyn.results.schema import Recorded
 
 # Means over whole cycles of what repeats: the one window over which a run is summed up
@@ -205,14 +205,14 @@ _FINEST = 64
 """Largest denominator of the order of a harmonic."""
 
 
-def mean_window(recorded: Recorded, drive: Drive) -> Window:
+def mean_window(recorded: Recorded, prepared: Prepared) -> Window:
     """Choose the averaging window of a run.
 
     Whole turns of the belt and whole periods of prescribed harmonics and repeating tables: at least a tenth of the
     recorded time, and at most half of it or the time since the last prescribed change. If no turn of the belt fits, the
     window covers whole element passings within a tenth of the time. If nothing turns, it is the last tenth.
     """
-    shortest = turn_window(recorded, drive)
+    shortest = turn_window(recorded, prepared)
     time, least = shortest.time, SHORTEST * float(np.ptp(shortest.time))
     if not shortest.cycles:
         return plain_window(time, float(time[-1]) - least)
@@ -221,18 +221,18 @@ def mean_window(recorded: Recorded, drive: Drive) -> Window:
     return Window(time, cycles, shortest.turns * times)
 
 
-def turn_window(recorded: Recorded, drive: Drive) -> Window:
+def turn_window(recorded: Recorded, prepared: Prepared) -> Window:
     """Give the shortest window of whole cycles, a turn of the belt if it fits, for running means."""
     time = np.asarray(recorded["time"], dtype=float)
     elapsed = float(np.ptp(time))
     if elapsed > 0.0:
-        since_change = max(SHORTEST * elapsed, float(time[-1]) - _last_change(drive, time))
+        since_change = max(SHORTEST * elapsed, float(time[-1]) - _last_change(prepared, time))
         longest = min(LONGEST * elapsed, since_change)
-        turn = _belt_turns(recorded, drive, time)
-        element = Cycle(turn.phase * (drive.element_kind.curves * drive.elements), 1)
-        waves = tuple(_waves(recorded, drive, turn))
+        turn = _belt_turns(recorded, prepared, time)
+        element = Cycle(turn.phase * (prepared.element_kind.curves * prepared.elements), 1)
+        waves = tuple(_waves(recorded, prepared, turn))
         repeats = [((turn, *waves), 1), ((element, *waves), 0), ((turn,), 1), ((element,), 0)]
-        if drive.frame.stays:
+        if prepared.frame.stays:
             repeats = [*repeats[::2], (waves, 0)] if waves else repeats[::2]
         for cycles, turns in repeats:
             window = Window(time, cycles, turns)
@@ -242,24 +242,24 @@ def turn_window(recorded: Recorded, drive: Drive) -> Window:
     return Window(time, ())
 
 
-def _belt_turns(recorded: Recorded, drive: Drive, time: FloatArray) -> Cycle:
+def _belt_turns(recorded: Recorded, prepared: Prepared, time: FloatArray) -> Cycle:
     """Turns of the belt: the way that it goes, by the mean speed in its spans, over its length."""
     speed = np.asarray(recorded["belt_speed"]).mean(axis=1)
     way = np.concatenate([[0.0], np.cumsum(0.5 * (speed[1:] + speed[:-1]) * np.diff(time))])
-    return Cycle(np.sign(way[-1] - way[0]) * way / drive.belt_length, 1)
+    return Cycle(np.sign(way[-1] - way[0]) * way / prepared.belt_length, 1)
 
 
-def _waves(recorded: Recorded, drive: Drive, turn: Cycle) -> Iterator[Cycle]:
+def _waves(recorded: Recorded, prepared: Prepared, turn: Cycle) -> Iterator[Cycle]:
     """Whole waves of harmonics over the angles of shafts, and periods of tables."""
     time = np.asarray(recorded["time"], dtype=float)
-    for number, pulley in enumerate(drive.pulleys):
+    for number, pulley in enumerate(prepared.pulleys):
         orders = [wave.order for wave in pulley.harmonics] + [one for load in pulley.load for one in load.orders]
         if orders:
             angle = np.asarray(recorded["shaft_angle"][:, number])
             forward = np.sign(angle[-1] - angle[0])
             phase = forward * angle * _common_order(orders) / (2.0 * np.pi)
             yield Cycle(_without_rest(phase, turn.phase), 1)
-    periods = {_repeats(profile, time) for profile in _profiles(drive)}
+    periods = {_repeats(profile, time) for profile in _profiles(prepared)}
     for period in sorted(periods - {0.0}):
         yield Cycle(time / period, 1)
 
@@ -280,14 +280,14 @@ def _common_order(orders: Sequence[float]) -> float:
     return top / reduce(lcm, (one.denominator for one in fractions))
 
 
-def _profiles(drive: Drive) -> list[Profile]:
-    return [profile for pulley in drive.pulleys for profile in pulley.profiles]
+def _profiles(prepared: Prepared) -> list[Profile]:
+    return [profile for pulley in prepared.pulleys for profile in pulley.profiles]
 
 
-def _last_change(drive: Drive, time: FloatArray) -> float:
+def _last_change(prepared: Prepared, time: FloatArray) -> float:
     """When something prescribed over time last changed, other than in what repeats, s."""
     changes = [float(time[0])]
-    for profile in _profiles(drive):
+    for profile in _profiles(prepared):
         if not isinstance(profile, Table):
             changes += [instant for instant in profile.breakpoints() if instant < time[-1]]
         elif _repeats(profile, time) == 0.0:

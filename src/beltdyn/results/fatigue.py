@@ -6,7 +6,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from beltdyn.arrays import FloatArray, IntArray
-from beltdyn.model import Drive
+from beltdyn.model import Drive, Prepared
 from beltdyn.model.fatigue import CordFatigue
 from beltdyn.results.belt_history import BeltHistory, belt_history, turn_history
 from beltdyn.results.mechanics import across
@@ -72,9 +72,9 @@ class Damage(NamedTuple):
 def hourly_damage(run: Run) -> Damage:
     """Damage in an hour of steady running of a closed belt."""
     speed = abs(float(np.squeeze(run.dataset.attrs["belt_parameter"])))
-    turns = HOUR * speed / run.drive.belt_length
+    turns = HOUR * speed / run.prepared.belt_length
     cord, force = _cord_damage(run.drive, turn_history(run), rainflow_of_turn)
-    rib = _rib_passages(run.drive, run.dataset["span_tension"].values[-1])
+    rib = _rib_passages(run.prepared, run.dataset["span_tension"].values[-1])
     return Damage(cord, rib, 1.0, force).times(turns)
 
 
@@ -85,8 +85,8 @@ def damage_of_run(run: Run) -> Damage:
     history = belt_history(run)
     cord, force = _cord_damage(run.drive, history, rainflow)
     time, dataset = run.dataset["time"].values, run.dataset
-    rate = np.abs(dataset["belt_speed"].values.mean(axis=1)) / run.drive.path.length
-    passages = _rib_passages(run.drive, dataset["span_tension"].values)
+    rate = np.abs(dataset["belt_speed"].values.mean(axis=1)) / run.prepared.path.length
+    passages = _rib_passages(run.prepared, dataset["span_tension"].values)
     turns = float(np.trapezoid(rate, time))
     return Damage(cord, np.trapezoid(passages * rate[:, None], time, axis=0), turns, force)
 
@@ -178,11 +178,11 @@ def miner(line: CordFatigue, cycles: Cycles, pulley: IntArray, pulleys: int) -> 
     return np.asarray(damage, dtype=float), float(force.max(initial=0.0))
 
 
-def _rib_passages(drive: Drive, span_tension: FloatArray) -> FloatArray:
+def _rib_passages(prepared: Prepared, span_tension: FloatArray) -> FloatArray:
     """Reference passages for which one passage over each pulley counts, shape (..., pulleys)."""
-    law = drive.belt.rib_fatigue
+    law = prepared.belt.rib_fatigue
     if law is None:
-        return np.full((*span_tension.shape[:-1], len(drive.pulleys)), np.nan)
-    tension = np.maximum(*across(span_tension, drive))
-    diameters, sides = [2.0 * one.radius for one in drive.pulleys], [one.side for one in drive.pulleys]
-    return law.passages_at(tension, diameters, drive.belt.temperature, sides)
+        return np.full((*span_tension.shape[:-1], len(prepared.pulleys)), np.nan)
+    tension = np.maximum(*across(span_tension, prepared))
+    diameters, sides = [2.0 * one.radius for one in prepared.pulleys], [one.side for one in prepared.pulleys]
+    return law.passages_at(tension, diameters, prepared.belt.temperature, sides)

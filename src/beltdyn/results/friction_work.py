@@ -7,7 +7,7 @@ import numpy as np
 
 from beltdyn.arrays import BoolArray, FloatArray, IntArray
 from beltdyn.kernel import kernel
-from beltdyn.model import Drive
+from beltdyn.model import Prepared
 from beltdyn.results.mechanics import arc_ends
 
 # Work of friction by place on the belt, where the belt flows through the mesh
@@ -152,7 +152,7 @@ class FrictionWork:
 
     Parameters
     ----------
-    drive : Drive
+    prepared : Prepared
         The drive.
     cell : ndarray, shape (points,)
         Length of belt that each contact point stands for, m.
@@ -160,10 +160,10 @@ class FrictionWork:
         Number of pieces of the belt, each with as many contact points.
     """
 
-    def __init__(self, drive: Drive, cell: FloatArray, elements: int) -> None:
-        pulleys = len(drive.pulleys)
-        self._drive, self._cell, self._elements = drive, np.ascontiguousarray(cell, dtype=float), elements
-        self._turning = np.array([float(pulley.turning) for pulley in drive.pulleys])
+    def __init__(self, prepared: Prepared, cell: FloatArray, elements: int) -> None:
+        pulleys = len(prepared.pulleys)
+        self._prepared, self._cell, self._elements = prepared, np.ascontiguousarray(cell, dtype=float), elements
+        self._turning = np.array([float(pulley.turning) for pulley in prepared.pulleys])
         self._time = np.inf
         parts = pulleys, ARC_PARTS + elements
         self._done = WorkSoFar(np.zeros((2, *parts)), np.zeros(parts))
@@ -185,7 +185,7 @@ class FrictionWork:
         by_belt : ndarray, shape (m, pulleys, elements)
             The same by place on the belt.
         """
-        inlet, wrap = arc_ends(self._drive, touch.center)
+        inlet, wrap = arc_ends(self._prepared, touch.center)
         arcs = np.stack([inlet, wrap, np.broadcast_to(self._turning, wrap.shape)], axis=-1)
         work = np.empty((np.count_nonzero(shown), *self._done.total.shape))
         passed = np.diff(touch.time, prepend=min(self._time, touch.time[0]))

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from beltdyn.arrays import BoolArray
-from beltdyn.model import Drive
+from beltdyn.model import Prepared
 from beltdyn.results.mechanics import rim_speeds
 from beltdyn.results.schema import Recorded, names
 
@@ -55,25 +55,25 @@ class Incident:
         return f"{words} {when}{often}"
 
 
-def incidents(recorded: Recorded, drive: Drive) -> tuple[Incident, ...]:
+def incidents(recorded: Recorded, prepared: Prepared) -> tuple[Incident, ...]:
     """Find the events of a run."""
     found = [
-        (GROSS_SLIP, name, "", on) for name, on in _each(names(recorded, "pulley"), slides_through(recorded, drive))
+        (GROSS_SLIP, name, "", on) for name, on in _each(names(recorded, "pulley"), slides_through(recorded, prepared))
     ]
     found += [(SLACK, name, "", on) for name, on in _each(names(recorded, "span"), is_slack(recorded))]
-    for side, stopped in zip(("lower", "upper"), on_stops(recorded, drive), strict=True):
+    for side, stopped in zip(("lower", "upper"), on_stops(recorded, prepared), strict=True):
         found += [
-            (STOP, name, side, on) for name, on in _each([one.pulley for one in drive.moving_tensioners], stopped)
+            (STOP, name, side, on) for name, on in _each([one.pulley for one in prepared.moving_tensioners], stopped)
         ]
     time = np.asarray(recorded["time"])
     return tuple(Incident(kind, name, _periods(time, on), side) for kind, name, side, on in found)
 
 
-def slides_through(recorded: Recorded, drive: Drive) -> BoolArray:
+def slides_through(recorded: Recorded, prepared: Prepared) -> BoolArray:
     """Whether the belt slides on whole arcs, at two or more outputs in a row, shape (outputs, pulleys)."""
     sliding, speed = (np.asarray(recorded[name]) for name in ("sliding_speed", "pulley_speed"))
-    slid = np.abs(sliding) > SLIDING_LIMIT * np.nanmax(np.abs(rim_speeds(speed, drive)[:, drive.reference]))
-    if drive.ends:
+    slid = np.abs(sliding) > SLIDING_LIMIT * np.nanmax(np.abs(rim_speeds(speed, prepared)[:, prepared.reference]))
+    if prepared.ends:
         return np.zeros_like(slid)
     beside = np.pad(slid, ((1, 1), (0, 0)))
     return np.asarray(slid & (beside[:-2] | beside[2:])) if len(slid) > 1 else slid
@@ -85,9 +85,9 @@ def is_slack(recorded: Recorded) -> BoolArray:
     return np.asarray(np.isfinite(tension) & (tension <= 0.0))
 
 
-def on_stops(recorded: Recorded, drive: Drive) -> tuple[BoolArray, BoolArray]:
+def on_stops(recorded: Recorded, prepared: Prepared) -> tuple[BoolArray, BoolArray]:
     """Whether tensioners lie on their lower and on their upper stop, shape (outputs, tensioners) each."""
-    moving = drive.moving_tensioners
+    moving = prepared.moving_tensioners
     if not moving:
         none = np.zeros((len(np.asarray(recorded["time"])), 0), dtype=bool)
         return none, none

@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 
 from beltdyn.arrays import FloatArray
 from beltdyn.errors import ModelError
-from beltdyn.model import Drive
+from beltdyn.model import Prepared
 from beltdyn.results.friction_work import ARC_PARTS, arc_shares
 from beltdyn.results.schema import AXIS_NAMES, COORDINATES, RECORDED, Variable
 
@@ -129,9 +129,9 @@ def chunk_rows(row: tuple[int, ...], dtype: str) -> int:
     return min(max(_CHUNK_BYTES // _row_bytes(row, dtype), 1), _CHUNK_ROWS)
 
 
-def expected_bytes(drive: Drive) -> int:
+def expected_bytes(prepared: Prepared) -> int:
     """Give the expected size of the results of a run."""
-    instants, sizes = drive.simulation.instants, _sizes(drive)
+    instants, sizes = prepared.simulation.instants, _sizes(prepared)
     counts = {"time": instants.count, "field_time": instants.fields, "filtered_time": instants.count}
     return _HEADER + sum(
         _variable_bytes(variable, tuple(sizes[dim] for dim in variable.dims[1:]), counts[variable.dims[0]])
@@ -140,18 +140,18 @@ def expected_bytes(drive: Drive) -> int:
     )
 
 
-def describe_size(drive: Drive) -> str:
+def describe_size(prepared: Prepared) -> str:
     """Describe the number, interval and size of outputs."""
-    instants = drive.simulation.instants
+    instants = prepared.simulation.instants
     return (
-        f"{_in_words(expected_bytes(drive))}: {instants.count} outputs every {instants.interval:.4g} s, "
+        f"{_in_words(expected_bytes(prepared))}: {instants.count} outputs every {instants.interval:.4g} s, "
         f"{instants.fields} along the belt every {instants.stride * instants.interval:.4g} s"
     )
 
 
-def require_room(drive: Drive, path: Path | None) -> None:
+def require_room(prepared: Prepared, path: Path | None) -> None:
     """Check that the results of a run fit on the disk or in memory."""
-    expected = expected_bytes(drive)
+    expected = expected_bytes(prepared)
     if path is None:
         needed, free, place = _COPIES * expected, float(psutil.virtual_memory().available), "memory"
         remedy = "Write them to a file (output=...)"
@@ -162,38 +162,39 @@ def require_room(drive: Drive, path: Path | None) -> None:
         needed, free, place = float(expected), float(shutil.disk_usage(folder).free), f"the disk of {folder}"
         remedy = "Write them to another disk"
     if needed > free:
-        settings = drive.simulation
+        settings = prepared.simulation
         raise ModelError(
             f"the results need {_in_words(needed)} of {place}, but only {_in_words(free)} are free: "
-            f"{describe_size(drive)}. {remedy}, increase simulation.output_interval = {settings.output_interval:g} s "
-            "or simulation.field_interval, or simulate a shorter time."
+            f"{describe_size(prepared)}. {remedy}, increase simulation.output_interval = {settings.output_interval:g} "
+            "s or simulation.field_interval, or simulate a shorter time."
         )
 
 
-def _sizes(drive: Drive) -> dict[str, int]:
+def _sizes(prepared: Prepared) -> dict[str, int]:
     """Size of every dimension but times."""
-    belt, pulleys = drive.completed.belt, len(drive.pulleys)
+    belt, pulleys = prepared.belt, len(prepared.pulleys)
     kind, curves = belt.element_kind, belt.element_kind.curves * belt.given_elements
-    points = 2 if drive.contact.sampling == "nodal" else drive.contact.quadrature_points
+    points = 2 if prepared.contact.sampling == "nodal" else prepared.contact.quadrature_points
     return {
         "pulley": pulleys,
-        "span": drive.path.spans,
-        "tensioner": len(drive.moving_tensioners),
-        "body": _bodies(drive),
+        "span": prepared.path.spans,
+        "tensioner": len(prepared.moving_tensioners),
+        "body": _bodies(prepared),
         "axis": len(AXIS_NAMES),
         "coordinate": len(kind.coordinates),
-        "node": kind.points * (belt.given_elements + (bool(drive.ends) or drive.simulation.joint == "multipliers")),
+        "node": kind.points
+        * (belt.given_elements + (bool(prepared.ends) or prepared.simulation.joint == "multipliers")),
         "element": curves,
         "contact_point": points * curves,
         "arc_part": ARC_PARTS,
     }
 
 
-def _bodies(drive: Drive) -> int:
+def _bodies(prepared: Prepared) -> int:
     """Number of what has a coordinate beside the belt: rims, hub chains, controllers, belt, tensioners."""
-    behind = sum(len(one.hub) + sum(load.state_lag is not None for load in one.load) for one in drive.pulleys)
-    flows = drive.frame.stays
-    return len(drive.pulleys) + behind + flows + len(drive.moving_tensioners)
+    behind = sum(len(one.hub) + sum(load.state_lag is not None for load in one.load) for one in prepared.pulleys)
+    flows = prepared.frame.stays
+    return len(prepared.pulleys) + behind + flows + len(prepared.moving_tensioners)
 
 
 def _variable_bytes(variable: Variable, row: tuple[int, ...], count: int) -> int:

@@ -82,7 +82,7 @@ def _of_run(run: Result) -> Iterator[Found]:
     assert isinstance(run, Run)
     run.require_output()
     with run.recorded() as recorded:
-        means = pulley_means(recorded, run.drive)
+        means = pulley_means(recorded, run.prepared)
         hub_load = np.linalg.norm(np.asarray(recorded["hub_force"]), axis=2)
         tension = np.asarray(recorded["span_tension"])
         pulleys, spans = names(recorded, "pulley"), names(recorded, "span")

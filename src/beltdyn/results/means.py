@@ -4,7 +4,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from beltdyn.model import Drive
+from beltdyn.model import Prepared
 from beltdyn.results.cycles import Window, mean_window
 from beltdyn.results.mechanics import rim_speeds
 from beltdyn.results.schema import Recorded, names
@@ -139,9 +139,9 @@ class SpanSummary:
     belt_speed: float
 
 
-def pulley_means(recorded: Recorded, drive: Drive, window: Window | None = None) -> tuple[PulleySummary, ...]:
+def pulley_means(recorded: Recorded, prepared: Prepared, window: Window | None = None) -> tuple[PulleySummary, ...]:
     """Average the pulleys over a window."""
-    window = mean_window(recorded, drive) if window is None else window
+    window = mean_window(recorded, prepared) if window is None else window
     belt_torque, shaft_torque, wrap_angle, hub_force, tension, belt_speed, centers = (
         window.mean(recorded, name)
         for name in (
@@ -152,9 +152,9 @@ def pulley_means(recorded: Recorded, drive: Drive, window: Window | None = None)
     single = len(window.time) == 1
     speed = window.mean(recorded, "pulley_speed") if single else window.rate(recorded, "pulley_angle")
     gross, share = (window.mean(recorded, name) for name in ("sliding_speed", "sliding_share"))
-    parts = slip_parts(rim_speeds(speed, drive), tension, gross, window.end - window.start, drive)
+    parts = slip_parts(rim_speeds(speed, prepared), tension, gross, window.end - window.start, prepared)
     power = window.product(recorded, "shaft_torque", "shaft_speed")
-    rating = rate(drive, speed, power, centers)
+    rating = rate(prepared, speed, power, centers)
     rated = np.full(speed.size, np.nan) if rating is None else rating.power
     columns = (
         speed,
@@ -164,23 +164,25 @@ def pulley_means(recorded: Recorded, drive: Drive, window: Window | None = None)
         *parts,
         gross,
         share * wrap_angle,
-        slip_safety_of_states(tension, belt_speed, centers, drive),
+        slip_safety_of_states(tension, belt_speed, centers, prepared),
         wrap_angle,
         np.hypot(hub_force[:, 0], hub_force[:, 1]),
         rated,
-        utilization(drive, rated, power),
+        utilization(prepared.drive, rated, power),
     )
     return tuple(
         PulleySummary(name, *map(float, row)) for name, *row in zip(names(recorded, "pulley"), *columns, strict=True)
     )
 
 
-def tensioner_means(recorded: Recorded, drive: Drive, window: Window | None = None) -> tuple[TensionerSummary, ...]:
+def tensioner_means(
+    recorded: Recorded, prepared: Prepared, window: Window | None = None
+) -> tuple[TensionerSummary, ...]:
     """Average the moving tensioners over a window."""
-    moving = drive.moving_tensioners
+    moving = prepared.moving_tensioners
     if not moving:
         return ()
-    window = mean_window(recorded, drive) if window is None else window
+    window = mean_window(recorded, prepared) if window is None else window
     place = np.asarray(recorded["tensioner_position"][window.first :])
     columns = (window.mean(recorded, "tensioner_position"), place.min(axis=0), place.max(axis=0))
     return tuple(
@@ -188,12 +190,12 @@ def tensioner_means(recorded: Recorded, drive: Drive, window: Window | None = No
     )
 
 
-def span_means(recorded: Recorded, drive: Drive, window: Window | None = None) -> tuple[SpanSummary, ...]:
+def span_means(recorded: Recorded, prepared: Prepared, window: Window | None = None) -> tuple[SpanSummary, ...]:
     """Average the spans over a window."""
-    window = mean_window(recorded, drive) if window is None else window
+    window = mean_window(recorded, prepared) if window is None else window
     tension = np.asarray(recorded["span_tension"][window.first :])
     mean, belt_speed, speed = (window.mean(recorded, name) for name in ("span_tension", "belt_speed", "pulley_speed"))
-    backward = speed[drive.reference] * drive.pulleys[drive.reference].turning < 0.0
+    backward = speed[prepared.reference] * prepared.pulleys[prepared.reference].turning < 0.0
     columns = (mean, tension.min(axis=0), tension.max(axis=0), -belt_speed if backward else belt_speed)
     return tuple(
         SpanSummary(name, *map(float, row)) for name, *row in zip(names(recorded, "span"), *columns, strict=True)

@@ -12,7 +12,7 @@ from numpy.typing import ArrayLike
 from beltdyn.arrays import BoolArray, FloatArray, IntArray
 from beltdyn.contact.bezier import BINOMIALS
 from beltdyn.elements import ELEMENTS, ElementKind
-from beltdyn.model import Drive
+from beltdyn.model import Prepared
 from beltdyn.model.path import span_directions, span_points, wrap_angles
 
 if TYPE_CHECKING:
@@ -21,12 +21,12 @@ if TYPE_CHECKING:
 # Places on the arcs of pulleys, from circles alone
 
 
-def arc_ends(drive: Drive, centers: FloatArray) -> tuple[FloatArray, FloatArray]:
+def arc_ends(prepared: Prepared, centers: FloatArray) -> tuple[FloatArray, FloatArray]:
     """Give the angles at which the belt's path reaches pulleys and the wrap angles.
 
     Parameters
     ----------
-    drive : Drive
+    prepared : Prepared
         Effective radii and sides.
     centers : ndarray, shape (..., pulleys, 2)
         Where the pulleys are, m.
@@ -36,7 +36,7 @@ def arc_ends(drive: Drive, centers: FloatArray) -> tuple[FloatArray, FloatArray]
     inlet, wrap : ndarray, shape (..., pulleys)
         Angle of the tangent point where the span before each pulley ends, from the x axis; wrap angle; rad.
     """
-    radii, ends = drive.path.radii, drive.path.ends
+    radii, ends = prepared.path.radii, prepared.path.ends
     reached = np.roll(span_points(centers, radii, ends)[..., 1, :], 1, axis=-2)[..., : len(radii), :] - centers
     return np.arctan2(reached[..., 1], reached[..., 0]), wrap_angles(span_directions(centers, radii, ends), radii)
 
@@ -67,18 +67,18 @@ UNLOADED = 1e-4
 """Difference of the tensions at a pulley, over their sum, up to which it counts as unloaded."""
 
 
-def rim_speeds(speed: FloatArray, drive: Drive) -> FloatArray:
+def rim_speeds(speed: FloatArray, prepared: Prepared) -> FloatArray:
     """Speeds at which a belt without tension rolls on the rims, in the direction of ascending belt coordinate, m/s.
 
     Parameters
     ----------
     speed : ndarray, shape (..., pulleys)
         Pulley speeds, rad/s, counter-clockwise positive.
-    drive : Drive
+    prepared : Prepared
         A pulley at the belt's back turns clockwise where the others turn counter-clockwise.
     """
-    turning = np.array([pulley.turning for pulley in drive.pulleys])
-    return np.asarray(speed * drive.rolling_radii * turning)
+    turning = np.array([pulley.turning for pulley in prepared.pulleys])
+    return np.asarray(speed * prepared.rolling_radii * turning)
 
 
 def relative_loss(values: FloatArray, rim: FloatArray, reference: int) -> FloatArray:
@@ -97,14 +97,14 @@ def relative_loss(values: FloatArray, rim: FloatArray, reference: int) -> FloatA
     return np.asarray(np.divide(lost, speed, out=unknown, where=speed != 0.0))
 
 
-def across(spans: FloatArray, drive: Drive) -> tuple[FloatArray, FloatArray]:
+def across(spans: FloatArray, prepared: Prepared) -> tuple[FloatArray, FloatArray]:
     """Values of the spans before and after every pulley.
 
     Parameters
     ----------
     spans : ndarray, shape (..., spans)
         A value of every span.
-    drive : Drive
+    prepared : Prepared
         The drive.
 
     Returns
@@ -112,7 +112,7 @@ def across(spans: FloatArray, drive: Drive) -> tuple[FloatArray, FloatArray]:
     before, after : ndarray, shape (..., pulleys)
         Of the spans that reach and leave each pulley, in the direction of ascending belt coordinate.
     """
-    pulleys = len(drive.pulleys)
+    pulleys = len(prepared.pulleys)
     return np.roll(spans, 1, axis=-1)[..., :pulleys], spans[..., :pulleys]
 
 
@@ -149,14 +149,14 @@ def element_lengths(dataset: "xr.Dataset", belt_length: float) -> FloatArray:
     return np.diff(nodes, append=nodes[0] + belt_length)[: dataset.sizes["element"]]
 
 
-def recorded_kind(dataset: "xr.Dataset", drive: Drive) -> ElementKind:
+def recorded_kind(dataset: "xr.Dataset", prepared: Prepared) -> ElementKind:
     """Give the kind of the elements whose nodal coordinates a result holds."""
-    given, names = drive.element_kind, tuple(dataset["coordinate"].values.tolist())
+    given, names = prepared.element_kind, tuple(dataset["coordinate"].values.tolist())
     return next(kind for kind in (given, *ELEMENTS.values()) if kind.coordinates == names)
 
 
 def sliding_velocity(
-    slip_velocity: FloatArray, normal: FloatArray, touched: IntArray, pulley_speed: FloatArray, drive: Drive
+    slip_velocity: FloatArray, normal: FloatArray, touched: IntArray, pulley_speed: FloatArray, prepared: Prepared
 ) -> FloatArray:
     """Slip velocity beyond creep: what is left of it when the friction law's creep v_c is taken away.
 
@@ -171,11 +171,11 @@ def sliding_velocity(
         Number of the pulley that a point touches, -1 where it is free.
     pulley_speed : ndarray, shape (..., pulleys)
         rad/s.
-    drive : Drive
+    prepared : Prepared
         Friction.
     """
-    rim = np.take_along_axis(pulley_speed * drive.radii, touched, axis=-1)
-    creep = drive.friction_parameters.saturation(normal, drive.frictions[touched], rim)
+    rim = np.take_along_axis(pulley_speed * prepared.radii, touched, axis=-1)
+    creep = prepared.friction_parameters.saturation(normal, prepared.frictions[touched], rim)
     beyond = slip_velocity - np.clip(slip_velocity, -creep, creep)
     return np.where((touched >= 0) & (normal > 0.0), beyond, 0.0)
 
@@ -207,7 +207,7 @@ def pressing(normal: FloatArray, touched: IntArray, pulleys: int) -> BoolArray:
     return np.asarray((touched[:, None] == np.arange(pulleys)[:, None]) & (normal > 0.0)[:, None])
 
 
-def gross_sliding(sliding: FloatArray, pressed: BoolArray, drive: Drive) -> FloatArray:
+def gross_sliding(sliding: FloatArray, pressed: BoolArray, prepared: Prepared) -> FloatArray:
     """Velocity at which the belt slides on the whole arc of each pulley, m/s along the belt.
 
     The sliding velocity nearest to zero of all points that press; zero as soon as one of them only creeps, or slides
@@ -219,7 +219,7 @@ def gross_sliding(sliding: FloatArray, pressed: BoolArray, drive: Drive) -> Floa
         Result of `sliding_velocity`.
     pressed : ndarray of bool, shape (k, points, pulleys)
         Result of `pressing`.
-    drive : Drive
+    prepared : Prepared
         Sides of the pulleys.
 
     Returns
@@ -229,7 +229,7 @@ def gross_sliding(sliding: FloatArray, pressed: BoolArray, drive: Drive) -> Floa
     """
     lowest = np.where(pressed, sliding[:, None], np.inf).min(axis=-1)
     highest = np.where(pressed, sliding[:, None], -np.inf).max(axis=-1)
-    turning = np.array([pulley.turning for pulley in drive.pulleys])
+    turning = np.array([pulley.turning for pulley in prepared.pulleys])
     nearest = np.where(lowest > 0.0, lowest, np.minimum(highest, 0.0))
     return np.asarray(turning * np.where(np.any(pressed, axis=-1), nearest, 0.0))
 

@@ -6,16 +6,18 @@ import numpy as np
 
 from beltdyn.arrays import FloatArray, IntArray
 from beltdyn.kernel import kernel
-from beltdyn.model import Drive
+from beltdyn.model import Prepared
 from beltdyn.model.path import span_points
 
 
-def mid_span_displacements(drive: Drive, centers: FloatArray, places: FloatArray, touched: IntArray) -> FloatArray:
+def mid_span_displacements(
+    prepared: Prepared, centers: FloatArray, places: FloatArray, touched: IntArray
+) -> FloatArray:
     """Distance of the belt from the middles of the straight lines between tangent points.
 
     Parameters
     ----------
-    drive : Drive
+    prepared : Prepared
         Effective radii and sides.
     centers : ndarray, shape (k, pulleys, 2)
         Where the pulleys are, m.
@@ -29,7 +31,7 @@ def mid_span_displacements(drive: Drive, centers: FloatArray, places: FloatArray
     ndarray, shape (k, spans)
         m, to the left of the direction of ascending belt coordinate; NaN where the belt has left a pulley.
     """
-    lines = span_points(centers, drive.path.radii, drive.path.ends)
+    lines = span_points(centers, prepared.path.radii, prepared.path.ends)
     result = np.full(lines.shape[:2], np.nan)
     fill_mid_spans(lines, np.ascontiguousarray(places), touched, centers.shape[1], result)
     return result

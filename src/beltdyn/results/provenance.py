@@ -14,7 +14,7 @@ import numpy as np
 from beltdyn.analyses import RUN
 from beltdyn.arrays import FloatArray
 from beltdyn.elements import ANCF, QUINTIC
-from beltdyn.model import ERROR_LIMITS, Drive, Running, elements_needed, install, layer_lengths, mesh_errors
+from beltdyn.model import ERROR_LIMITS, Drive, Prepared, Running, elements_needed, layer_lengths, mesh_errors
 from beltdyn.model.simulation import Frame, unused_settings
 from beltdyn.results.schema import FORMAT, Recorded
 
@@ -55,7 +55,7 @@ class Resolution:
         return not self.errors[quantity] > ERROR_LIMITS[quantity]
 
 
-def estimate_resolution(recorded: Recorded, drive: Drive) -> Resolution:
+def estimate_resolution(recorded: Recorded, prepared: Prepared) -> Resolution:
     """Estimate the mesh error of a run.
 
     The errors are estimated from the tension, which a coarse mesh raises; therefore the tension at rest of the drive is
@@ -63,10 +63,10 @@ def estimate_resolution(recorded: Recorded, drive: Drive) -> Resolution:
     """
     found = found_errors(recorded)
     if found:
-        return Resolution(found, {}, layer_lengths(drive, float(np.mean(_last(recorded, "span_tension", "time")))))
+        return Resolution(found, {}, layer_lengths(prepared, float(np.mean(_last(recorded, "span_tension", "time")))))
     speeds = _last(recorded, "belt_speed", "time")
     square = float(np.mean(speeds[np.isfinite(speeds)] ** 2)) if np.any(np.isfinite(speeds)) else 0.0
-    return mesh_resolution(drive, float(np.mean(_last(recorded, "belt_tension", "field_time"))), square)
+    return mesh_resolution(prepared, float(np.mean(_last(recorded, "belt_tension", "field_time"))), square)
 
 
 def mesh_error_attribute(quantity: str) -> str:
@@ -81,18 +81,18 @@ def found_errors(recorded: Recorded) -> dict[str, float]:
     return dict.fromkeys(ERROR_LIMITS, math.nan) | known if known else {}
 
 
-def mesh_resolution(drive: Drive, tension: float, square: float) -> Resolution:
+def mesh_resolution(prepared: Prepared, tension: float, square: float) -> Resolution:
     """Estimate the mesh error at a tension and speed of the belt."""
-    tension = min(tension, install(drive).tension)
-    running = Running(tension, drive.belt.mass_per_length * square)
+    tension = min(tension, prepared.installation.tension)
+    running = Running(tension, prepared.belt.mass_per_length * square)
     if not running.tension > running.lifted:
         return Resolution(dict.fromkeys(ERROR_LIMITS, math.nan), {}, (math.nan, math.nan))
     still = _MOVING if square == 0.0 else frozenset[str]()
     errors = {
         name: math.nan if name in still else error
-        for name, error in mesh_errors(drive, running, drive.elements).items()
+        for name, error in mesh_errors(prepared, running, prepared.elements).items()
     }
-    return Resolution(errors, elements_needed(drive, running), layer_lengths(drive, tension))
+    return Resolution(errors, elements_needed(prepared, running), layer_lengths(prepared, tension))
 
 
 def _last(recorded: Recorded, name: str, clock: str) -> FloatArray:

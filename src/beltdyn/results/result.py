@@ -1,6 +1,7 @@
 """The result of an analysis: a labeled dataset, its drive, and its file."""
 
 from collections.abc import Mapping, Sequence
+from functools import cached_property
 from importlib import import_module
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -9,7 +10,7 @@ from numpy.typing import ArrayLike
 
 from beltdyn.analyses import STEADY_KINDS
 from beltdyn.errors import ModelError
-from beltdyn.model import Drive, loads
+from beltdyn.model import Drive, Prepared, loads, prepare
 from beltdyn.results.atomic import atomic_path, unreadable
 from beltdyn.results.dataset import is_result, kind_of
 from beltdyn.results.netcdf import write_dataset
@@ -64,6 +65,11 @@ class Result:
         """Show the result in a notebook: presentation lies above, and is found by its name."""
         html: str = import_module("beltdyn.show.notebook").result_html(self)
         return html
+
+    @cached_property
+    def prepared(self) -> Prepared:
+        """The drive with all that it leaves open; see `prepare`."""
+        return prepare(self.drive)
 
     @property
     def dataset(self) -> "xr.Dataset":

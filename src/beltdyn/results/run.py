@@ -12,7 +12,7 @@ import numpy as np
 
 from beltdyn.analyses import EQUILIBRIUM, RUN
 from beltdyn.errors import ModelError
-from beltdyn.model import ERROR_LIMITS, Drive, Prepared, layer_lengths, prepare
+from beltdyn.model import ERROR_LIMITS, Drive, layer_lengths
 from beltdyn.results.atomic import stamp, unreadable
 from beltdyn.results.checks import Finding, find
 from beltdyn.results.dataset import complete_dataset, kind_of, open_dataset, read_dataset
@@ -76,8 +76,8 @@ class StaticResult(Result):
         """The mesh error: found with a finer mesh, or else estimated."""
         found, tension = found_errors(self.dataset), float(self.dataset["belt_tension"].mean())
         if found:
-            return Resolution(found, {}, layer_lengths(self.drive, tension))
-        return mesh_resolution(self.drive, tension, 0.0)
+            return Resolution(found, {}, layer_lengths(self.prepared, tension))
+        return mesh_resolution(self.prepared, tension, 0.0)
 
 
 def static_result(run: "Run") -> StaticResult:
@@ -88,7 +88,11 @@ def static_result(run: "Run") -> StaticResult:
         for name, variable in VARIABLES.items()
         if variable.at_rest and name in instant
     }
-    own = (run.drive.belt_length, float(instant["span_tension"].mean()), np.linalg.norm(instant["hub_force"], axis=1))
+    own = (
+        run.prepared.belt_length,
+        float(instant["span_tension"].mean()),
+        np.linalg.norm(instant["hub_force"], axis=1),
+    )
     variables = {name: (OWN[name], values) for name, values in zip(OWN, own, strict=True)} | seen
     used = {dim for variable, _ in variables.values() for dim in variable.dims}
     coordinates = {
@@ -214,16 +218,11 @@ class Run(Result):
             return len(recorded["time"])
 
     @cached_property
-    def prepared(self) -> Prepared:
-        """The drive with all that it leaves open; see `prepare`."""
-        return prepare(self.drive)
-
-    @cached_property
     def findings(self) -> list[Finding]:
         """The findings: faults, the values they affect, and remedies; empty for a sound run."""
         resolution = self.resolution if self.outputs else None
         with self.recorded() as recorded:
-            return find(recorded, self.drive, resolution)
+            return find(recorded, self.prepared, resolution)
 
     @cached_property
     def warnings(self) -> list[str]:
@@ -241,7 +240,7 @@ class Run(Result):
         """
         self.require_output()
         with self.recorded() as recorded:
-            return estimate_resolution(recorded, self.drive)
+            return estimate_resolution(recorded, self.prepared)
 
     def require(self, name: str) -> None:
         """Check that an optional variable was recorded.

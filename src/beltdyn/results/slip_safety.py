@@ -23,7 +23,7 @@ from numpy.typing import NDArray
 
 from beltdyn.arrays import BoolArray, FloatArray, IntArray
 from beltdyn.machines.tensioners.tensioner import MovingTensioner
-from beltdyn.model import Drive
+from beltdyn.model import Prepared
 from beltdyn.model.path import span_directions, span_points, wrap_angles
 from beltdyn.results.mechanics import UNLOADED, across
 
@@ -45,7 +45,9 @@ _LONGEST = 0.2
 """Step of Newton's method for the place of a tensioner, over the way on which it moves by the smallest radius."""
 
 
-def slip_safety_of_states(tension: FloatArray, belt_speed: FloatArray, centers: FloatArray, drive: Drive) -> FloatArray:
+def slip_safety_of_states(
+    tension: FloatArray, belt_speed: FloatArray, centers: FloatArray, prepared: Prepared
+) -> FloatArray:
     """Slip safety of each pulley: the factor on all loads at its gross slip, if the others hold.
 
     Parameters
@@ -54,7 +56,7 @@ def slip_safety_of_states(tension: FloatArray, belt_speed: FloatArray, centers: 
         N and m/s.
     centers : ndarray, shape (..., pulleys, 2)
         Where the pulleys are, m.
-    drive : Drive
+    prepared : Prepared
         Friction, mass per length, radii, stretch, and tensioners.
 
     Returns
@@ -63,24 +65,24 @@ def slip_safety_of_states(tension: FloatArray, belt_speed: FloatArray, centers: 
         1 on the edge of gross slip; the least one is that of the drive. NaN without a load, where the difference of
         tensions at a pulley, over their sum, is below `UNLOADED`, and where the belt does not touch.
     """
-    pulleys = len(drive.pulleys)
+    pulleys = len(prepared.pulleys)
     shape = tension.shape[:-1]
     flat = (tension.reshape(-1, tension.shape[-1]), belt_speed.reshape(-1, tension.shape[-1]))
     with np.errstate(invalid="ignore", divide="ignore", over="ignore"):
-        balance = _Balance(drive, *flat, centers.reshape(-1, pulleys, 2))
+        balance = _Balance(prepared, *flat, centers.reshape(-1, pulleys, 2))
         return _safeties(balance).reshape(*shape, pulleys)
 
 
-def friction_used(tension: FloatArray, belt_speed: FloatArray, centers: FloatArray, drive: Drive) -> FloatArray:
+def friction_used(tension: FloatArray, belt_speed: FloatArray, centers: FloatArray, prepared: Prepared) -> FloatArray:
     """Share of friction used by each pulley, ln((T1 - m v^2) / (T2 - m v^2)) / mu theta.
 
     Parameters and shape of the result are those of `slip_safety_of_states`; 1 or more where the whole arc slides.
     """
-    wrap = wrap_angles(span_directions(centers, drive.path.radii, drive.path.ends), drive.path.radii)
-    before, after = across(tension - drive.belt.mass_per_length * belt_speed**2, drive)
+    wrap = wrap_angles(span_directions(centers, prepared.path.radii, prepared.path.ends), prepared.path.radii)
+    before, after = across(tension - prepared.belt.mass_per_length * belt_speed**2, prepared)
     with np.errstate(invalid="ignore", divide="ignore"):
         ratio = np.log(np.maximum(before, after) / np.maximum(np.minimum(before, after), 0.0))
-        return np.asarray(ratio / (drive.frictions * wrap))
+        return np.asarray(ratio / (prepared.frictions * wrap))
 
 
 class _Geometry(NamedTuple):
@@ -102,20 +104,20 @@ class _Balance:
     Unknowns are the mean tension, and how far each tensioner moves.
     """
 
-    def __init__(self, drive: Drive, tension: FloatArray, speed: FloatArray, centers: FloatArray) -> None:
-        self._drive, self._centers = drive, centers
+    def __init__(self, prepared: Prepared, tension: FloatArray, speed: FloatArray, centers: FloatArray) -> None:
+        self._prepared, self._centers = prepared, centers
         self.mean = tension.mean(axis=1)
         self.differences = tension - self.mean[:, None]
-        self._lifted = drive.belt.mass_per_length * speed**2
+        self._lifted = prepared.belt.mass_per_length * speed**2
         self._backward = speed.mean(axis=1) < 0.0
-        self._carriers = drive.carriers
-        self._pulled = _pulled_span(drive)
-        smallest = float(np.min(drive.radii))
+        self._carriers = prepared.carriers
+        self._pulled = _pulled_span(prepared)
+        smallest = float(np.min(prepared.radii))
         reaches = [float(np.linalg.norm(one.place(0.0)[1])) for one in self._carriers]
         self._scales = np.array(
             [max(float(np.nanmax(np.abs(tension), initial=0.0)), 1e-9), *(smallest / one for one in reaches)]
         )
-        self._places = _places(drive, centers)
+        self._places = _places(prepared, centers)
         self._held = np.zeros((len(tension), self._scales.size))
         rows, still = np.arange(len(tension)), self.start
         self._held = self._residual(rows, np.ones(len(rows)), still)
@@ -128,13 +130,13 @@ class _Balance:
     def use(self, rows: IntArray, factor: FloatArray, unknowns: FloatArray) -> FloatArray:
         """What s is at each pulley, shape (n, pulleys); inf where the belt lifts off."""
         tension, wrap = self._tension(rows, factor, unknowns), self._geometry(rows, unknowns).wrap
-        before, after = across(tension - self._lifted[rows], self._drive)
-        held = (before + after) * np.tanh(0.5 * self._drive.frictions * wrap)
+        before, after = across(tension - self._lifted[rows], self._prepared)
+        held = (before + after) * np.tanh(0.5 * self._prepared.frictions * wrap)
         return np.where(held > 0.0, np.abs(before - after) / held, np.where(np.isnan(held), np.nan, np.inf))
 
     def loaded(self) -> BoolArray:
         """Whether a pulley has a load, shape (n, pulleys)."""
-        before, after = across(self.differences + self.mean[:, None], self._drive)
+        before, after = across(self.differences + self.mean[:, None], self._prepared)
         return np.asarray(np.abs(before - after) > UNLOADED * np.abs(before + after))
 
     def solve(self, rows: IntArray, factor: FloatArray, unknowns: FloatArray) -> FloatArray:
@@ -181,10 +183,10 @@ class _Balance:
 
     def _belt_on(self, rows: IntArray, tension: FloatArray, shape: _Geometry) -> FloatArray:
         """Unstretched length of the belt on its path, m."""
-        drive = self._drive
-        law, radii, friction = drive.belt.stretch_parameters, np.abs(drive.path.radii), drive.frictions
-        lifted = across(self._lifted[rows], drive)[1]
-        before, after = across(tension, drive)
+        prepared = self._prepared
+        law, radii, friction = prepared.belt.stretch_parameters, np.abs(prepared.path.radii), prepared.frictions
+        lifted = across(self._lifted[rows], prepared)[1]
+        before, after = across(tension, prepared)
         reaching = np.where(self._backward[rows, None], after, before)
         least = 1e-9 * self._scales[0]
         tight, slack = (np.maximum(choice(before, after) - lifted, least) for choice in (np.maximum, np.minimum))
@@ -193,7 +195,7 @@ class _Balance:
         sliding = lifted + np.where(ratio > 1e-9, (tight - slack) / np.maximum(ratio, 1e-9), tight)
         part = np.divide(slid, shape.wrap, out=np.zeros_like(slid), where=shape.wrap > 0.0)
         mean = (1.0 - part) * reaching + part * sliding
-        sunk = np.maximum(mean - lifted, 0.0) / (radii * drive.contact_stiffness)
+        sunk = np.maximum(mean - lifted, 0.0) / (radii * prepared.contact_stiffness)
         arcs = shape.wrap * (radii - sunk) * ((1.0 - part) / law.stretch(reaching) + part / law.stretch(sliding))
         spans = shape.lengths / law.stretch(tension)
         return np.asarray(spans.sum(axis=1) + arcs.sum(axis=1))
@@ -214,7 +216,7 @@ class _Balance:
             arm = cosine * arm + sine * _turned(arm)
             centers[:, one.pulley] = pivot + arm
             slopes[:, number] = sense * _turned(arm)
-        radii, ends = self._drive.path.radii, self._drive.path.ends
+        radii, ends = self._prepared.path.radii, self._prepared.path.ends
         directions, points = span_directions(centers, radii, ends), span_points(centers, radii, ends)
         lengths = np.linalg.norm(points[:, :, 1] - points[:, :, 0], axis=-1)
         return _Geometry(directions, lengths, wrap_angles(directions, radii), slopes)
@@ -299,16 +301,16 @@ def _between(balance: _Balance, rows: IntArray, pulley: IntArray, low: _Point, h
     return np.asarray(1.0 / root)
 
 
-def _pulled_span(drive: Drive) -> int | None:
+def _pulled_span(prepared: Prepared) -> int | None:
     """Number of a span at an end that is pulled; None where nothing pulls."""
     spans = (-1, -2)  # the last span comes from the first end, and the one before reaches the second one
-    return next((span for span, end in zip(spans, drive.ends, strict=False) if not end.held), None)
+    return next((span for span, end in zip(spans, prepared.ends, strict=False) if not end.held), None)
 
 
-def _places(drive: Drive, centers: FloatArray) -> FloatArray:
+def _places(prepared: Prepared, centers: FloatArray) -> FloatArray:
     """Where tensioners stand that carry pulleys, m or rad, shape (n, K)."""
-    found = np.empty((len(centers), len(drive.carriers)))
-    for number, one in enumerate(drive.carriers):
+    found = np.empty((len(centers), len(prepared.carriers)))
+    for number, one in enumerate(prepared.carriers):
         (nominal, along), pivot = one.place(0.0), one.tensioner.anchor
         if pivot is None:
             found[:, number] = (centers[:, one.pulley] - nominal) @ along

@@ -5,7 +5,7 @@ from typing import NamedTuple
 import numpy as np
 
 from beltdyn.arrays import FloatArray, IntArray
-from beltdyn.model import Drive
+from beltdyn.model import Prepared
 from beltdyn.results.mechanics import (
     across,
     cells,
@@ -21,7 +21,7 @@ from beltdyn.theory.elastic_creep import entry_strain
 
 
 def sliding_of_pulleys(
-    drive: Drive,
+    prepared: Prepared,
     belt_coordinate: FloatArray,
     touched: IntArray,
     normal: FloatArray,
@@ -32,7 +32,7 @@ def sliding_of_pulleys(
 
     Parameters
     ----------
-    drive : Drive
+    prepared : Prepared
         The drive.
     belt_coordinate : ndarray, shape (points,)
         Of the contact points, m.
@@ -48,11 +48,11 @@ def sliding_of_pulleys(
     dict
         ``sliding_speed`` (m/s, see `mechanics.gross_sliding`) and ``sliding_share``, shape (k, pulleys).
     """
-    sliding = sliding_velocity(slip_velocity, normal, touched, pulley_speed, drive)
-    pressed = pressing(normal, touched, len(drive.pulleys))
+    sliding = sliding_velocity(slip_velocity, normal, touched, pulley_speed, prepared)
+    pressed = pressing(normal, touched, len(prepared.pulleys))
     return {
-        "sliding_speed": gross_sliding(sliding, pressed, drive),
-        "sliding_share": sliding_shares(sliding, pressed, cells(belt_coordinate, drive.belt_length)),
+        "sliding_speed": gross_sliding(sliding, pressed, prepared),
+        "sliding_share": sliding_shares(sliding, pressed, cells(belt_coordinate, prepared.belt_length)),
     }
 
 
@@ -72,7 +72,7 @@ class SlipParts(NamedTuple):
 
 
 def slip_parts(
-    rim: FloatArray, tension: FloatArray, gross: FloatArray, elapsed: FloatArray | float, drive: Drive
+    rim: FloatArray, tension: FloatArray, gross: FloatArray, elapsed: FloatArray | float, prepared: Prepared
 ) -> SlipParts:
     """Take slip apart into elastic creep, bending, what the slope of the friction law makes, and sliding.
 
@@ -93,7 +93,7 @@ def slip_parts(
         Mean velocities at which whole arcs slide, m/s; see `mechanics.gross_sliding`.
     elapsed : float or ndarray, shape (...)
         Time that means are taken over, s.
-    drive : Drive
+    prepared : Prepared
         The drive.
 
     Returns
@@ -101,32 +101,32 @@ def slip_parts(
     SlipParts
         NaN while the driver stands still: while its rim goes no further than the belt is stretched.
     """
-    law = drive.belt.stretch_parameters
-    stretched = (law.stretch(np.max(tension, axis=-1)) - 1.0) * drive.belt_length
-    driver = drive.reference
+    law = prepared.belt.stretch_parameters
+    stretched = (law.stretch(np.max(tension, axis=-1)) - 1.0) * prepared.belt_length
+    driver = prepared.reference
     runs = np.abs(rim[..., driver]) * elapsed > np.maximum(stretched, 0.0)
     rim = np.where(runs[..., None], rim, 0.0)
-    before, after = across(tension, drive)
+    before, after = across(tension, prepared)
     reaching = np.where(rim[..., driver, None] > 0.0, before, after)
-    reached, lost = law.stretch(reaching), _entry_loss(reaching, drive)
+    reached, lost = law.stretch(reaching), _entry_loss(reaching, prepared)
     total, sliding = relative_loss(-rim, rim, driver), relative_loss(gross, rim, driver)
     elastic = np.where(runs[..., None], 1.0 - reached / reached[..., driver, None], np.nan)
     bending = np.where(runs[..., None], lost - lost[..., driver, None], np.nan)
     return SlipParts(total, elastic, bending, total - elastic - bending - sliding, sliding)
 
 
-def _entry_loss(reaching: FloatArray, drive: Drive) -> FloatArray:
+def _entry_loss(reaching: FloatArray, prepared: Prepared) -> FloatArray:
     """Strain lost where the belt first touches, beyond that of the rolling radii; none of elements that do not bend."""
-    belt = drive.belt
+    belt = prepared.belt
     if belt.element_kind.bent_strain == 0.0:
         return np.zeros_like(reaching)
     lost = entry_strain(
         reaching,
-        drive.radii,
+        prepared.radii,
         bending_stiffness=belt.bending_stiffness,
         axial_stiffness=belt.axial_stiffness,
-        contact_stiffness=drive.contact_stiffness,
+        contact_stiffness=prepared.contact_stiffness,
         bent_strain=belt.element_kind.bent_strain,
         loss_factor=belt.bending_loss_factor,
     )
-    return np.asarray(lost + belt.bent_strain(drive.radii))
+    return np.asarray(lost + belt.bent_strain(prepared.radii))

@@ -141,20 +141,20 @@ def summarize(run: Run) -> Summary:
 def means_of(run: Run) -> Means:
     """Means over the averaging window of a run, without findings."""
     with run.recorded() as recorded:
-        return _means(run, recorded, mean_window(recorded, run.drive))
+        return _means(run, recorded, mean_window(recorded, run.prepared))
 
 
 def _means(run: Run, recorded: Recorded, window: Window) -> Means:
     return Means(
-        pulleys=pulley_means(recorded, run.drive, window),
-        spans=span_means(recorded, run.drive, window),
-        tensioners=tensioner_means(recorded, run.drive, window),
+        pulleys=pulley_means(recorded, run.prepared, window),
+        spans=span_means(recorded, run.prepared, window),
+        tensioners=tensioner_means(recorded, run.prepared, window),
         balance=power_balance(recorded, window),
     )
 
 
 def _summarize(run: Run, recorded: Recorded) -> Summary:
-    window = mean_window(recorded, run.drive)
+    window = mean_window(recorded, run.prepared)
     return Summary(
         status=run.status,
         start=window.start,
@@ -265,7 +265,7 @@ def ends_steadily(run: Run) -> bool:
     if run.outputs == 0 or any(one.harmonics or any(load.orders for load in one.load) for one in pulleys):
         return False
     with run.recorded() as recorded:
-        window = mean_window(recorded, run.drive)
+        window = mean_window(recorded, run.prepared)
         balance = power_balance(recorded, window)
     return bool(window.turns and balance.power_in > 0.0 and abs(balance.stored) < _CHANGING * balance.lost)
 

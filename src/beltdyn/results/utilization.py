@@ -3,7 +3,7 @@
 import numpy as np
 
 from beltdyn.arrays import FloatArray
-from beltdyn.model import Drive
+from beltdyn.model import Drive, Prepared
 from beltdyn.model.path import span_directions, wrap_angles
 from beltdyn.model.rating import PowerRating
 
@@ -11,12 +11,12 @@ _LOADED = 0.01
 """Share of the largest power from which a pulley transmits power; idlers take less by friction."""
 
 
-def rate(drive: Drive, speeds: FloatArray, powers: FloatArray, centers: FloatArray) -> PowerRating | None:
+def rate(prepared: Prepared, speeds: FloatArray, powers: FloatArray, centers: FloatArray) -> PowerRating | None:
     """Rate the belt of a drive on its pulleys; None where its profile has no rating.
 
     Parameters
     ----------
-    drive : Drive
+    prepared : Prepared
     speeds, powers : ndarray, shape (n,)
         Speeds of the pulleys, rad/s, and powers into the drive, W.
     centers : ndarray, shape (n, 2)
@@ -27,15 +27,15 @@ def rate(drive: Drive, speeds: FloatArray, powers: FloatArray, centers: FloatArr
     PowerRating or None
         NaN for pulleys on the back of the belt, for which catalogues have no rating.
     """
-    belt = drive.rated_belt
+    belt = prepared.drive.rated_belt
     if belt is None:
         return None
     sizes = np.abs(powers)
     loaded = sizes > _LOADED * np.nanmax(sizes, initial=0.0)
-    speed = float(abs(speeds[drive.reference] * drive.radii[drive.reference]))
-    wraps = wrap_angles(span_directions(centers, drive.path.radii, drive.path.ends), drive.path.radii)
-    found = belt.on(2.0 * drive.radii, wraps, speed, loaded)
-    grooved = np.array([pulley.side == "inside" for pulley in drive.pulleys])
+    speed = float(abs(speeds[prepared.reference] * prepared.radii[prepared.reference]))
+    wraps = wrap_angles(span_directions(centers, prepared.path.radii, prepared.path.ends), prepared.path.radii)
+    found = belt.on(2.0 * prepared.radii, wraps, speed, loaded)
+    grooved = np.array([pulley.side == "inside" for pulley in prepared.pulleys])
     basic, ratio, power = (np.where(grooved, one, np.nan) for one in (found.basic, found.ratio, found.power))
     return found._replace(basic=basic, ratio=ratio, power=power)
 

@@ -87,16 +87,16 @@ class Ribbon:
 
     def __init__(self, run: Run) -> None:
         dataset, self._width = run.dataset, run.drive.belt.width
-        self._kind = recorded_kind(dataset, run.drive)
-        self._lengths = element_lengths(dataset, run.drive.belt_length)
-        closed = run.drive.path.ends is None
+        self._kind = recorded_kind(dataset, run.prepared)
+        self._lengths = element_lengths(dataset, run.prepared.belt_length)
+        closed = run.prepared.path.ends is None
         start = float(dataset["node_coordinate"][0])
         contact = dataset["belt_coordinate"].values
         self._curve, self._xi = _stations(self._lengths, contact - start, closed)
         ends = start + np.cumsum(self._lengths)
         self.coordinate: FloatArray = (ends - self._lengths)[self._curve] + self._xi * self._lengths[self._curve]
         """Belt coordinates of the pairs of points, m."""
-        period = run.drive.belt_length if closed else None
+        period = run.prepared.belt_length if closed else None
         self._before, self._after, self._share = _between(contact, self.coordinate, period)
         first = np.arange(len(self._curve) if closed else len(self._curve) - 1)
         after = (first + 1) % len(self._curve)

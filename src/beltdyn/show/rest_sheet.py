@@ -47,8 +47,9 @@ def rest_sheet(given: Drive, drive: Drive, installation: Installation) -> Sheet:
         parts.append(told.table)
     if is_given(given) and not given.ends:
         parts.append(alignment_table(given, installation.path))
-    if given.completed.choices:
-        parts.append(Facts(tuple(_choices(given)), "Chosen values (not given in the file)"))
+    choices = tuple((choice.key, choice.words) for choice in prepare(given).choices)
+    if choices:
+        parts.append(Facts(choices, "Chosen values (not given in the file)"))
     return Sheet("", tuple(parts))
 
 
@@ -69,7 +70,7 @@ def _facts(given: Drive, drive: Drive, installation: Installation) -> list[tuple
         ("element length", f"{1e3 * length / drive.elements:.3g} mm{_in_the_mean(drive)}"),
         *([("not used", f"{', '.join(unused)} (only for a travelling mesh)")] if unused else []),
         *_lost_in_the_belt(drive),
-        ("result size", f"about {describe_size(drive)}"),
+        ("result size", f"about {describe_size(prepare(drive))}"),
         *([("computing time", time)] if (time := describe_time(drive)) else []),
     ]
 
@@ -192,11 +193,6 @@ def alignment_table(given: Drive, path: Path) -> Table:
     names = [f"{start} to {end}" for start, end in given.spans]
     title = "Fleeting angles (geometry only: the dynamics are planar)"
     return Table(title, tuple(headings), tuple(zip(names, *columns, strict=True)))
-
-
-def _choices(drive: Drive) -> list[tuple[str, str]]:
-    """Chosen values with their reasons."""
-    return [(choice.key, choice.words) for choice in drive.completed.choices]
 
 
 def _others(drive: Drive, installation: Installation) -> list[str]:

@@ -175,7 +175,7 @@ def _require_same_mesh(system: System, run: Run) -> None:
     if mine.shape != theirs.shape or not np.allclose(mine, theirs, rtol=0.0, atol=1e-9 * float(theirs[-1])):
         raise ModelError(
             f"this drive has {mine.size} nodes, but that of {run.path} has {theirs.size}, or at other "
-            f"positions. Set belt.elements = {run.drive.elements} in both."
+            f"positions. Set belt.elements = {run.prepared.elements} in both."
         )
     if system.bodies.size != run.dataset.sizes["body"]:
         raise ModelError(

@@ -107,13 +107,13 @@ def record_run(
     **attributes: str,
 ) -> Run:
     """Simulate a drive over time, for an analysis that says something of its own about the run."""
-    require_room(drive, Path(output) if output is not None else None)
     given = drive
     if compare_steady:
         require_steady(drive)
     integrator = integrator or choose_integrator(drive)
     drive, frame = settled(drive, integrator)
     prepared = prepare(drive)
+    require_room(prepared, Path(output) if output is not None else None)
     mesh = mesh_of(prepared, integrator, progress)
     title = f"{drive.title}, {drive.simulation.duration:g} s"
     about = {**attributes, **mesh.attributes, "mesh_frame_reason": frame.reason}

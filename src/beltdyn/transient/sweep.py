@@ -6,7 +6,7 @@ from typing import Any, TypeVar
 
 from beltdyn.errors import ModelError
 from beltdyn.machines import Constant, FunctionLoad, Load, Profile
-from beltdyn.model import Drive
+from beltdyn.model import Drive, prepare
 from beltdyn.observation.observer import SlipThrough
 from beltdyn.parts.part import Part
 from beltdyn.parts.quantity import number_in
@@ -98,7 +98,7 @@ def sweep(
         progress,
         overwrite,
         begin=Settling(number, start, _LEAD * length, longest) if start != 0.0 else None,
-        watch=None if drive.ends else SlipThrough(raised, number),
+        watch=None if drive.ends else SlipThrough(prepare(raised), number),
         drive_as_given=drive.text,
         swept_pulley=pulley,
         held=", ".join(one for one in held if not one.startswith(f"{pulley}.speed = ")),

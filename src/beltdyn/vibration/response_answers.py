@@ -86,7 +86,7 @@ class ForcedMotion:
         rubbed = np.abs(tensions).sum(axis=0)
         if dry_tensioners(prepared).size:
             rubbed = np.abs(self._rubbed(excitations)).sum(axis=0)
-        return range_of(prepared.drive, values, [one.frequency for one in excitations], tensions, positions, rubbed)
+        return range_of(prepared, values, [one.frequency for one in excitations], tensions, positions, rubbed)
 
     def _rubbed(self, excitations: Sequence[Excited]) -> ComplexArray:
         """Amplitudes of span tensions with dry friction of tensioners, as dashpots that take the same work."""
@@ -174,7 +174,7 @@ class ForcedMotion:
         """What is observed at states, a row each."""
         seen: Observations = observe(self._motions.system, np.zeros(len(position)), position, velocity)
         aside = mid_span_displacements(
-            self._motions.drive, seen.pulley_center, seen.contact_position, seen.contact_pulley
+            self._motions.prepared, seen.pulley_center, seen.contact_position, seen.contact_pulley
         )
         return {name: getattr(seen, name) for name in _OBSERVED} | {"mid_span_displacement": aside}
 

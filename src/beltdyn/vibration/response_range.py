@@ -21,7 +21,7 @@ from typing import NamedTuple
 import numpy as np
 
 from beltdyn.arrays import ComplexArray, FloatArray
-from beltdyn.model import Drive
+from beltdyn.model import Prepared
 from beltdyn.results.mechanics import across
 from beltdyn.results.slip_safety import friction_used
 
@@ -72,7 +72,7 @@ class Range(NamedTuple):
 
 
 def range_of(
-    drive: Drive,
+    prepared: Prepared,
     still: SteadyValues,
     frequencies: Sequence[float],
     tensions: ComplexArray,
@@ -83,7 +83,7 @@ def range_of(
 
     Parameters
     ----------
-    drive
+    prepared
         The drive.
     still
         Steady running.
@@ -101,11 +101,11 @@ def range_of(
     swing, sums = (waves @ tensions).real, np.abs(tensions).sum(axis=0)
     largest = float(np.nanmax(sums, initial=0.0))
     ripple = np.divide(sums, still.tension, out=np.full_like(sums, np.nan), where=still.tension > 0.0)
-    used = np.array([_most_used(drive, still, scale * swing) for scale in _SCALES])
-    stop_used = _stop_used(drive, still.positions, np.abs(positions).sum(axis=0))
+    used = np.array([_most_used(prepared, still, scale * swing) for scale in _SCALES])
+    stop_used = _stop_used(prepared, still.positions, np.abs(positions).sum(axis=0))
     change = float(np.nanmax(np.abs(rubbed - sums), initial=0.0)) / largest if largest > 0.0 else 0.0
-    begins = _most_used(drive, still, np.zeros((1, sums.size)))
-    before, after = across(swing, drive)
+    begins = _most_used(prepared, still, np.zeros((1, sums.size)))
+    before, after = across(swing, prepared)
     shares = np.abs(before - after).max(axis=0) / (largest or 1.0)
     slides = max(
         (
@@ -148,11 +148,11 @@ def instants(frequencies: Sequence[float]) -> FloatArray:
     return np.asarray(periods * tau / slowest * parts)
 
 
-def _most_used(drive: Drive, still: SteadyValues, swing: FloatArray) -> FloatArray:
+def _most_used(prepared: Prepared, still: SteadyValues, swing: FloatArray) -> FloatArray:
     """Largest part of its friction that each pulley uses in a vibration of the tensions, shape (instants, spans)."""
     tension, shape = still.tension + swing, (len(swing), 1)
-    used = friction_used(tension, np.tile(still.speed, shape), np.tile(still.centers, (*shape, 1)), drive)
-    before, after = across(tension, drive)
+    used = friction_used(tension, np.tile(still.speed, shape), np.tile(still.centers, (*shape, 1)), prepared)
+    before, after = across(tension, prepared)
     slack = np.minimum(before, after) <= 0.0
     return np.asarray(np.where(slack, np.inf, used).max(axis=0))
 
@@ -163,10 +163,10 @@ def _scale_of_sliding(used: FloatArray) -> FloatArray:
     return np.where(slides.any(axis=0), _SCALES[np.argmax(slides, axis=0)], 1.0)
 
 
-def _stop_used(drive: Drive, positions: FloatArray, amplitudes: FloatArray) -> FloatArray:
+def _stop_used(prepared: Prepared, positions: FloatArray, amplitudes: FloatArray) -> FloatArray:
     """Amplitudes of tensioners over their ways to the nearer stop, NaN without stops."""
     found = np.full(amplitudes.size, np.nan)
-    for number, one in enumerate(drive.moving_tensioners):
+    for number, one in enumerate(prepared.moving_tensioners):
         if one.stops is not None:
             way = min(abs(positions[number] - stop) for stop in one.stops)
             found[number] = amplitudes[number] / way if way > 0.0 else np.inf

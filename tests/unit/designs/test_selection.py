@@ -8,7 +8,7 @@ import pytest
 
 from beltdyn.designs.selection import DIAMETERS, RUN_IN, Proposal, select
 from beltdyn.errors import ModelError
-from beltdyn.model import install, loads, read_catalogue
+from beltdyn.model import install, loads, prepare, read_catalogue
 from beltdyn.results.utilization import rate
 from beltdyn.theory.path import open_belt
 
@@ -62,7 +62,7 @@ def test_the_drive_file_is_that_drive(profiles: str) -> None:
     assert rest.span_frequencies[0] == pytest.approx(one.frequency, rel=0.03)
     assert abs(drive.centers[1, 0] - one.distance) < 0.02 * one.distance
     speeds = np.array([1450.0 / RPM, one.driven_speed])
-    rated = rate(drive, speeds, np.array([7.5e3, -7.5e3]), drive.centers)
+    rated = rate(prepare(drive), speeds, np.array([7.5e3, -7.5e3]), drive.centers)
     assert rated is not None
     assert rated.power.min() == pytest.approx(one.rated_power, rel=0.01)
     torque = drive.pulleys[1].torque

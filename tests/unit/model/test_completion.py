@@ -220,7 +220,7 @@ def test_what_is_open_has_no_value_before_the_drive(make_drive: MakeDrive) -> No
     drive = make_drive("flat", contact={"allowed_penetration": 1e-5}, installed_tension=200.0)
     with pytest.raises(ModelError, match=r"belt\.length is open.* installed_tension = 200 N\. Use drive.belt_length"):
         _ = drive.belt.given_length
-    with pytest.raises(ModelError, match=r"contact\.stiffness is open; the drive chooses it\. Use drive\.completed"):
+    with pytest.raises(ModelError, match=r"contact\.stiffness is open; .* Use prepare\(drive\)\.contact"):
         _ = drive.contact.given("stiffness")
 
 

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from beltdyn.errors import SlipError
-from beltdyn.model import Drive
+from beltdyn.model import Drive, prepare
 from beltdyn.observation.observer import SlipThrough
 
 
@@ -23,7 +23,7 @@ def outputs(drive: Drive, times: list[float], sliding: float) -> dict[str, np.nd
 def test_sliding_for_a_turn_of_the_belt_ends_it(drive: Drive) -> None:
     rim = 20.0 * float(drive.radii[0])
     turn = drive.belt_length / rim
-    watch = SlipThrough(drive, 0)
+    watch = SlipThrough(prepare(drive), 0)
     watch(outputs(drive, [0.0, 0.9 * turn], 0.1 * rim))
     with pytest.raises(SlipError, match=r"driven is in gross slip.*10% of the rim speed of driver.*3 N m.*80 and 40 N"):
         watch(outputs(drive, [1.1 * turn], 0.1 * rim))
@@ -32,7 +32,7 @@ def test_sliding_for_a_turn_of_the_belt_ends_it(drive: Drive) -> None:
 def test_short_or_slow_sliding_does_not(drive: Drive) -> None:
     rim = 20.0 * float(drive.radii[0])
     turn = drive.belt_length / rim
-    watch = SlipThrough(drive, 0)
+    watch = SlipThrough(prepare(drive), 0)
     for number in range(4):
         watch(outputs(drive, [number * 0.9 * turn], 0.1 * rim))
         watch(outputs(drive, [(number + 0.5) * 0.9 * turn], 0.0))

@@ -8,7 +8,7 @@ import pytest
 
 import beltdyn as bd
 from beltdyn.errors import ModelError
-from beltdyn.model import Drive, load, loads
+from beltdyn.model import Drive, load, loads, prepare
 from beltdyn.model.carrier import moved
 from beltdyn.points.tensioner_sheet import tensioner_sheet
 
@@ -90,7 +90,7 @@ def test_an_arm_balances_the_belt_by_virtual_work() -> None:
     """Moment of the spring over the change of the path's length, from the path alone, for belts of all lengths."""
     drive = load(Path(str(files("beltdyn"))) / "examples" / "alternator_drive.toml")
     result = tensioner_sheet(drive)
-    sheet, path, carrier = result.dataset, drive.path, drive.carriers[0]
+    sheet, path, carrier = result.dataset, drive.path, prepare(drive).carriers[0]
     bending = drive.belt.bending_stiffness / float(drive.radii.min()) ** 2  # what the closed form leaves out, N
     assert result.warnings == []
     assert list(sheet.state.values) == ["free arm", "worn belt", "longest belt", "nominal belt", "shortest belt"]

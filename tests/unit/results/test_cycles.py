@@ -34,7 +34,7 @@ def steady(drive_text: str, extra: str = "", speed: str = '{ kind = "constant", 
 def test_whole_turns_that_fit(make_run: MakeRun, drive_text: str, turn: float, turns: int, taken: float) -> None:
     """As many as fit into a tenth, at least one if that is at most half of the run; else whole elements, of 20."""
     run = running(make_run, steady(drive_text), turn)
-    window = mean_window(run.dataset, run.drive)
+    window = mean_window(run.dataset, run.prepared)
     assert window.turns == turns
     assert window.end - window.start == pytest.approx(taken, rel=1e-6)
 
@@ -56,7 +56,7 @@ def test_harmonics_and_turns_that_are_no_multiples_of_each_other(make_run: MakeR
     run = running(
         make_run, steady(drive_text, HARMONICS), 0.21, shaft_angle=angle, shaft_torque=np.column_stack([wave, wave])
     )
-    window = mean_window(run.dataset, run.drive)
+    window = mean_window(run.dataset, run.prepared)
     assert window.end - window.start == pytest.approx(2.0 * np.pi / 40.0 + 0.21, rel=1e-4)
     assert summarize(run).pulleys[0].shaft_torque == pytest.approx(1.0, abs=1e-3)
 
@@ -69,9 +69,9 @@ def test_tables_that_repeat(make_run: MakeRun, drive_text: str, shape: str) -> N
     times = (starts[:, None] + np.array(parts)).ravel()
     table = f'{{ kind = "table", times = {times.tolist()}, values = {list(map(float, np.tile(values, 21)))} }}'
     run = running(make_run, steady(drive_text, speed=table), 1e9)
-    assert mean_window(run.dataset, run.drive).end == 1.0
+    assert mean_window(run.dataset, run.prepared).end == 1.0
     run = running(make_run, steady(drive_text, speed=table), 0.1)
-    window = mean_window(run.dataset, run.drive)
+    window = mean_window(run.dataset, run.prepared)
     assert window.end - window.start == pytest.approx(0.15, rel=2e-3)
 
 
@@ -79,10 +79,10 @@ def test_tables_that_repeat(make_run: MakeRun, drive_text: str, shape: str) -> N
 def test_tables_that_do_not_repeat(make_run: MakeRun, drive_text: str, values: list[float]) -> None:
     table = f'{{ kind = "table", times = [0.0, 0.4, 0.8], values = {values} }}'
     run = running(make_run, steady(drive_text, speed=table), 0.15)
-    window = mean_window(run.dataset, run.drive)
+    window = mean_window(run.dataset, run.prepared)
     assert window.start == pytest.approx(0.85)
     run = running(make_run, steady(drive_text, speed=table), 0.25)
-    assert mean_window(run.dataset, run.drive).start > 0.89, "a turn would reach back to before the last change"
+    assert mean_window(run.dataset, run.prepared).start > 0.89, "a turn would reach back to before the last change"
 
 
 def test_the_line_ends_in_the_number_of_the_summary(make_run: MakeRun, drive_text: str) -> None:
@@ -90,7 +90,7 @@ def test_the_line_ends_in_the_number_of_the_summary(make_run: MakeRun, drive_tex
     time = np.linspace(0.0, 1.0, OUTPUTS)
     torque = np.random.default_rng(3).uniform(size=(OUTPUTS, 2)) + time[:, None]
     run = running(make_run, steady(drive_text), 0.2, shaft_torque=torque)
-    line = turn_window(run.dataset, run.drive).running_means(torque)
+    line = turn_window(run.dataset, run.prepared).running_means(torque)
     np.testing.assert_allclose(line[-1], [one.shaft_torque for one in summarize(run).pulleys], rtol=1e-12)
 
 
@@ -107,6 +107,6 @@ def test_a_shaft_that_stands_at_first_keeps_nothing_unknown(make_run: MakeRun, d
     time = np.linspace(0.0, 1.0, OUTPUTS)
     angle = np.column_stack([40.0 * np.maximum(time - 0.6, 0.0), 40.0 * time])
     run = running(make_run, steady(drive_text, HARMONICS), 0.1, shaft_angle=angle)
-    line = turn_window(run.dataset, run.drive).running_means(angle)
+    line = turn_window(run.dataset, run.prepared).running_means(angle)
     assert np.isfinite(line[time > 0.13]).all()
     assert line[time < 0.4][-1, 0] == 0.0

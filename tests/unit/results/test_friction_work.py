@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from beltdyn.model import Drive
+from beltdyn.model import Drive, prepare
 from beltdyn.results.friction_work import ARC_PARTS, BEYOND, FrictionWork, Touch, arc_shares, part_of_arc
 from beltdyn.results.mechanics import arc_ends
 
@@ -14,7 +14,7 @@ CELL = np.full(POINTS, 0.05)
 def touch(drive: Drive, times: list[float], power: np.ndarray, share: float = 0.5, pulley: int = 0) -> Touch:
     """The third point touches a pulley at a share of its arc; powers of shape (k,), W/m."""
     centers = np.broadcast_to(drive.centers, (len(times), 2, 2))
-    inlet, wrap = arc_ends(drive, drive.centers)
+    inlet, wrap = arc_ends(prepare(drive), drive.centers)
     angle = inlet[pulley] + drive.pulleys[pulley].turning * share * wrap[pulley]
     place = np.zeros((len(times), POINTS, 2))
     place[:, 2] = drive.centers[pulley] + drive.radii[pulley] * np.array([np.cos(angle), np.sin(angle)])
@@ -51,7 +51,7 @@ def test_what_lies_further_off_counts_at_the_ends() -> None:
 @pytest.mark.parametrize("share", [0.0, 0.3, 1.0])
 def test_a_steady_power_does_its_work_in_its_place(drive: Drive, share: float, pulley: int) -> None:
     """40 W/m on 0.05 m for half a second: 1 J, all in one part of an arc and in the second of four elements."""
-    work = FrictionWork(drive, CELL, ELEMENTS)
+    work = FrictionWork(prepare(drive), CELL, ELEMENTS)
     by_arc, by_belt = work.take(
         touch(drive, [0.0, 0.1, 0.5], np.full(3, 40.0), share + 1e-6, pulley), np.ones(3, dtype=bool)
     )
@@ -65,7 +65,9 @@ def test_a_steady_power_does_its_work_in_its_place(drive: Drive, share: float, p
 def test_a_power_that_grows_is_integrated_by_trapezoids(drive: Drive) -> None:
     times = np.array([0.0, 0.2, 0.3, 0.7])
     power = np.array([0.0, 10.0, 40.0, 20.0])
-    by_arc, _ = FrictionWork(drive, CELL, ELEMENTS).take(touch(drive, list(times), power), np.ones(4, dtype=bool))
+    by_arc, _ = FrictionWork(prepare(drive), CELL, ELEMENTS).take(
+        touch(drive, list(times), power), np.ones(4, dtype=bool)
+    )
     expected = 0.05 * np.append(0.0, np.cumsum(0.5 * (power[1:] + power[:-1]) * np.diff(times)))
     np.testing.assert_allclose(by_arc.sum(axis=(1, 2)), expected, rtol=1e-12)
 
@@ -74,8 +76,8 @@ def test_a_power_that_grows_is_integrated_by_trapezoids(drive: Drive) -> None:
 def test_how_states_are_handed_over_makes_no_difference(drive: Drive, cut: int) -> None:
     times, power = [0.3, 0.4, 0.7, 0.9], np.array([5.0, 10.0, 40.0, 20.0])
     shown = np.array([False, True, False, True])
-    whole = FrictionWork(drive, CELL, ELEMENTS).take(touch(drive, times, power), shown)
-    parts = FrictionWork(drive, CELL, ELEMENTS)
+    whole = FrictionWork(prepare(drive), CELL, ELEMENTS).take(touch(drive, times, power), shown)
+    parts = FrictionWork(prepare(drive), CELL, ELEMENTS)
     pieces = [
         parts.take(touch(drive, times[some], power[some]), shown[some]) for some in (slice(cut), slice(cut, None))
     ]

@@ -14,7 +14,7 @@ MakeRun = Callable[..., Run]
 
 def found(run: Run) -> list[str]:
     with run.recorded() as recorded:
-        return [str(one) for one in incidents(recorded, run.drive)]
+        return [str(one) for one in incidents(recorded, run.prepared)]
 
 
 def test_a_sound_run_has_none(run: Run) -> None:

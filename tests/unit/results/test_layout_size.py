@@ -10,7 +10,7 @@ import psutil
 import pytest
 
 from beltdyn.errors import ModelError
-from beltdyn.model import Drive
+from beltdyn.model import Drive, prepare
 from beltdyn.results.layout import chunk_rows, describe_size, expected_bytes, require_room
 from beltdyn.results.schema import RECORDED
 
@@ -38,20 +38,20 @@ def test_what_a_file_keeps_together_is_about_32_kilobytes(row: tuple[int, ...], 
 
 def test_a_run_of_twice_the_time_takes_twice_the_room(lasting: Lasting) -> None:
     """Beside a header, and what whole chunks of up to 32 kB hold more than the outputs."""
-    one, two = (expected_bytes(lasting(duration)) for duration in (50.0, 100.0))
+    one, two = (expected_bytes(prepare(lasting(duration))) for duration in (50.0, 100.0))
     assert abs(two - 2 * one) < 64_000 + 32_768 * 2 * len(RECORDED)
     assert two > 1.9 * one
 
 
 def test_seldom_fields_save_most_of_the_room(lasting: Lasting) -> None:
     """Fields take the room of the mesh, all else that of a few numbers."""
-    always, seldom = (expected_bytes(lasting(10.0, field_interval=interval)) for interval in (1e-3, 1e-2))
+    always, seldom = (expected_bytes(prepare(lasting(10.0, field_interval=interval))) for interval in (1e-3, 1e-2))
     assert 0.1 * always < seldom < 0.2 * always
 
 
 @pytest.mark.parametrize(("duration", "outputs"), [(1.0, 1001), (10.0, 10001)])
 def test_in_words(lasting: Lasting, duration: float, outputs: int) -> None:
-    said = describe_size(lasting(duration, field_interval=0.01))
+    said = describe_size(prepare(lasting(duration, field_interval=0.01)))
     assert f"MB: {outputs} outputs every 0.001 s, {1 + 100 * int(duration)} along the belt every 0.01 s" in said
 
 
@@ -60,13 +60,13 @@ def test_a_disk_must_hold_the_results(
     lasting: Lasting, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, free: float, fits: bool
 ) -> None:
     drive = lasting(1.0)
-    room = int(free * expected_bytes(drive))
+    room = int(free * expected_bytes(prepare(drive)))
     monkeypatch.setattr(shutil, "disk_usage", lambda _: SimpleNamespace(free=room))
     if fits:
-        require_room(drive, tmp_path / "run.nc")
+        require_room(prepare(drive), tmp_path / "run.nc")
     else:
         with pytest.raises(ModelError, match=r"of the disk of .* Write them to another disk, increase simulation"):
-            require_room(drive, tmp_path / "run.nc")
+            require_room(prepare(drive), tmp_path / "run.nc")
 
 
 @pytest.mark.parametrize(("free", "fits"), [(2.001, True), (1.999, False)])
@@ -75,17 +75,17 @@ def test_memory_must_hold_them_twice(
 ) -> None:
     """While they are put together."""
     drive = lasting(1.0)
-    room = free * expected_bytes(drive)
+    room = free * expected_bytes(prepare(drive))
     monkeypatch.setattr(psutil, "virtual_memory", lambda: SimpleNamespace(available=room))
     if fits:
-        require_room(drive, None)
+        require_room(prepare(drive), None)
     else:
         with pytest.raises(ModelError, match=r"of memory, .* Write them to a file \(output=...\), increase"):
-            require_room(drive, None)
+            require_room(prepare(drive), None)
 
 
 def test_a_folder_that_is_missing_is_told_of_by_who_writes(
     drive: Drive, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr(shutil, "disk_usage", lambda _: SimpleNamespace(free=0))
-    require_room(drive, tmp_path / "nowhere" / "run.nc")
+    require_room(prepare(drive), tmp_path / "nowhere" / "run.nc")

@@ -18,8 +18,8 @@ def test_arcs_follow_pulleys_that_move(run: Run) -> None:
     turn = 0.3
     rotation = np.array([[np.cos(turn), -np.sin(turn)], [np.sin(turn), np.cos(turn)]])
     centers = run.drive.centers
-    inlet, wrap = arc_ends(run.drive, centers)
-    turned, same = arc_ends(run.drive, centers @ rotation.T)
+    inlet, wrap = arc_ends(run.prepared, centers)
+    turned, same = arc_ends(run.prepared, centers @ rotation.T)
     np.testing.assert_allclose(np.mod(turned - inlet, 2.0 * np.pi), turn)
     np.testing.assert_allclose(same, wrap)
     np.testing.assert_allclose(np.abs(inlet), 0.5 * np.pi)

@@ -10,7 +10,7 @@ from hypothesis import strategies as st
 from scipy.optimize import brentq
 
 from beltdyn.arrays import FloatArray
-from beltdyn.model import Drive, loads
+from beltdyn.model import Drive, loads, prepare
 from beltdyn.results.slip_safety import friction_used, slip_safety_of_states
 from beltdyn.theory.capstan import tight_tension
 
@@ -36,7 +36,7 @@ def sliding(drive: Drive, slack: float, speed: float) -> FloatArray:
 
 
 def safeties(drive: Drive, tension: FloatArray, speed: float = 0.0) -> FloatArray:
-    return slip_safety_of_states(tension, np.full(tension.shape, speed), drive.centers, drive)
+    return slip_safety_of_states(tension, np.full(tension.shape, speed), drive.centers, prepare(drive))
 
 
 @pytest.mark.parametrize("speed", [0.0, 12.0, -12.0])
@@ -51,7 +51,7 @@ def test_a_slide_along_the_spans_holds_the_sum(slid: Drive, factor: float, speed
 @given(slack=st.floats(20.0, 500.0), speed=st.floats(-8.0, 8.0))
 def test_a_belt_that_slides_on_the_whole_arc_has_the_slip_safety_one(drive: Drive, slack: float, speed: float) -> None:
     np.testing.assert_allclose(safeties(drive, sliding(drive, slack, speed), speed), 1.0, rtol=EXACT)
-    used = friction_used(sliding(drive, slack, speed), np.full(2, speed), drive.centers, drive)
+    used = friction_used(sliding(drive, slack, speed), np.full(2, speed), drive.centers, prepare(drive))
     np.testing.assert_allclose(used, 1.0, rtol=EXACT)
 
 
@@ -101,7 +101,7 @@ def test_a_spring_on_the_slack_side_holds_its_tension() -> None:
     """Its arm hardly turns: Euler's largest difference at the present slack tension, over the present one."""
     drive = example("alternator_drive").replace(contact={"friction": 0.1})
     tension = np.array([300.0, 300.0, 540.0])
-    found = slip_safety_of_states(tension, np.zeros(3), drive.centers, drive)
+    found = slip_safety_of_states(tension, np.zeros(3), drive.centers, prepare(drive))
     grip = np.exp(drive.frictions * drive.path.wrap_angles)[[0, 2]]
     held_sum = (840.0 * np.tanh(0.5 * np.log(grip)) / 240.0).min()
     assert np.isnan(found[1])
@@ -113,10 +113,10 @@ def test_safeties_of_many_instants_are_those_of_each() -> None:
     drive = example("alternator_drive").replace(contact={"friction": 0.1})
     tension = np.array([[300.0, 300.0, 540.0], [200.0, 201.0, 260.0], [100.0, 100.0, 900.0], [np.nan, 1.0, 2.0]])
     speed, centers = np.full((4, 3), 11.0), np.tile(drive.centers, (4, 1, 1))
-    found = slip_safety_of_states(tension, speed, centers, drive)
+    found = slip_safety_of_states(tension, speed, centers, prepare(drive))
     for row in range(4):
         np.testing.assert_allclose(
-            found[row], slip_safety_of_states(tension[row], speed[row], centers[row], drive), rtol=EXACT
+            found[row], slip_safety_of_states(tension[row], speed[row], centers[row], prepare(drive)), rtol=EXACT
         )
     assert found[2, 2] < 1.0
     assert np.isnan(found[3]).all()

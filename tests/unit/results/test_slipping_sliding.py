@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from beltdyn.model import Drive
+from beltdyn.model import Drive, prepare
 from beltdyn.results.slipping import sliding_of_pulleys
 
 POINTS = 8
@@ -17,7 +17,7 @@ def summed(drive: Drive, beyond: list[float], normal: np.ndarray = PRESSED) -> t
     creep = drive.friction_parameters.saturation(normal, drive.frictions[TOUCHED], 0.0)
     velocity = np.sign(beyond) * creep + np.array([beyond])
     coordinate = (np.arange(POINTS) + 0.5) * drive.belt_length / POINTS
-    found = sliding_of_pulleys(drive, coordinate, TOUCHED, normal, velocity, np.zeros((1, 2)))
+    found = sliding_of_pulleys(prepare(drive), coordinate, TOUCHED, normal, velocity, np.zeros((1, 2)))
     speed, share = found["sliding_speed"][0], found["sliding_share"][0]
     return speed.tolist(), share.tolist()
 

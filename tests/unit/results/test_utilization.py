@@ -5,7 +5,7 @@ from math import pi
 import numpy as np
 import pytest
 
-from beltdyn.model import Drive, loads
+from beltdyn.model import Drive, loads, prepare
 from beltdyn.results.utilization import rate, utilization
 
 RPM = 30.0 / pi
@@ -43,7 +43,7 @@ def accessory() -> Drive:
 
 
 def test_the_small_pulley_is_rated_by_its_diameter_ratio_and_wrap(accessory: Drive) -> None:
-    found = rate(accessory, SPEEDS, POWERS, accessory.centers)
+    found = rate(prepare(accessory), SPEEDS, POWERS, accessory.centers)
     entry = accessory.belt.entry
     assert found is not None
     assert entry is not None
@@ -58,11 +58,11 @@ def test_the_small_pulley_is_rated_by_its_diameter_ratio_and_wrap(accessory: Dri
 
 
 def test_the_back_of_the_belt_has_no_rating_and_an_idler_no_ratio(accessory: Drive) -> None:
-    found = rate(accessory, SPEEDS, POWERS, accessory.centers)
+    found = rate(prepare(accessory), SPEEDS, POWERS, accessory.centers)
     assert found is not None
     assert np.isnan(found.power[2])
     grown = accessory.with_({"pulley[idler].diameter": 0.07})
-    other = rate(grown, SPEEDS, POWERS, grown.centers)
+    other = rate(prepare(grown), SPEEDS, POWERS, grown.centers)
     assert other is not None
     assert other.power[1] == pytest.approx(found.power[1], rel=0.02)
 
@@ -78,4 +78,4 @@ def test_utilization_is_design_power_over_rated_power(accessory: Drive) -> None:
 
 
 def test_without_a_rating_there_is_nothing(drive: Drive) -> None:
-    assert rate(drive, SPEEDS[:2], POWERS[:2], np.zeros((2, 2))) is None
+    assert rate(prepare(drive), SPEEDS[:2], POWERS[:2], np.zeros((2, 2))) is None

@@ -8,7 +8,7 @@ import pytest
 
 import beltdyn as bd
 from beltdyn.errors import ConvergenceError, ModelError
-from beltdyn.model import Drive, Pulley
+from beltdyn.model import Drive, Pulley, prepare
 from beltdyn.results import summarize
 from beltdyn.results.derived import wear_by_arc, wear_by_belt
 from beltdyn.results.mechanics import centerline, element_lengths, recorded_kind
@@ -86,7 +86,7 @@ def test_the_belt_is_drawn_by_the_elements_that_stay(short: Drive) -> None:
     """Cubic curves through the nodes would leave the arcs, whose radius is theirs less the penetration."""
     run = bd.simulate(short)
     last, drive = run.fields_at(), run.drive
-    kind, lengths = recorded_kind(run.dataset, drive), element_lengths(run.dataset, drive.belt_length)
+    kind, lengths = recorded_kind(run.dataset, prepare(drive)), element_lengths(run.dataset, drive.belt_length)
     points = centerline(kind, last["nodal_coordinates"].values, lengths).reshape(-1, 2)
     depths = drive.radii[0] - np.linalg.norm(points - drive.centers[0], axis=1)
     touching = last["contact_pulley"].values == 0

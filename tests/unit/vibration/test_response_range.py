@@ -7,7 +7,7 @@ import pytest
 
 import beltdyn as bd
 from beltdyn.arrays import ComplexArray, FloatArray
-from beltdyn.model import Drive
+from beltdyn.model import Drive, prepare
 from beltdyn.vibration.response_range import (
     RIPPLE_ERROR,
     Range,
@@ -31,7 +31,7 @@ def looked_at(drive: Drive, tensions: Any, frequencies: Any = (100.0,), **others
     still = SteadyValues(np.array([TIGHT, SLACK]), np.full(2, SPEED), drive.path.centers, np.zeros(0))
     amplitudes: ComplexArray = np.atleast_2d(np.asarray(tensions, dtype=complex))
     rubbed: FloatArray = others.get("rubbed", np.abs(amplitudes).sum(axis=0))
-    return range_of(drive, still, frequencies, amplitudes, np.zeros((len(amplitudes), 0), complex), rubbed)
+    return range_of(prepare(drive), still, frequencies, amplitudes, np.zeros((len(amplitudes), 0), complex), rubbed)
 
 
 def used_by(drive: Drive, tight: float | FloatArray, slack: float | FloatArray) -> FloatArray:
@@ -120,7 +120,7 @@ def test_stops_of_a_tensioner() -> None:
         np.full(spans, 300.0), np.full(spans, SPEED), drive.path.centers, np.array([0.25 * tensioner.stops[1]])
     )
     tensions, places = np.full((1, spans), 3.0, complex), np.array([[2.0j * way]])
-    found = range_of(drive, still, [100.0], tensions, places, np.full(spans, 3.0))
+    found = range_of(prepare(drive), still, [100.0], tensions, places, np.full(spans, 3.0))
     nearer = min(way, 0.25 * tensioner.stops[1] - tensioner.stops[0])
     np.testing.assert_allclose(found.stop_used, [2.0 * way / nearer])
     assert found.friction_used.size == pulleys

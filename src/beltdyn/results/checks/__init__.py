@@ -6,7 +6,7 @@ them; to add one, write it there and enter it in `CHECKS`.
 
 from dataclasses import replace
 
-from beltdyn.model import Drive
+from beltdyn.model import Prepared
 from beltdyn.parts.messages import Finding
 from beltdyn.results.checks.contact import (
     deep_penetration,
@@ -68,11 +68,11 @@ CHECKS: tuple[Check, ...] = (
 """All checks, in the order in which their findings are shown."""
 
 
-def find(recorded: Recorded, drive: Drive, resolution: Resolution | None) -> list[Finding]:
+def find(recorded: Recorded, prepared: Prepared, resolution: Resolution | None) -> list[Finding]:
     """Check a result."""
     if resolution is None:
         return [NOTHING_RECORDED]
-    evidence = Evidence(recorded, drive, resolution)
+    evidence = Evidence(recorded, prepared, resolution)
     if "slips_through" in recorded.attrs:
         return list(ended_by_slip(evidence))  # the other checks would repeat this
     return [replace(finding, kind=check.__name__) for check in CHECKS for finding in check(evidence)]

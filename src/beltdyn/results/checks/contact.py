@@ -45,10 +45,10 @@ def slack_spans(evidence: Evidence) -> Iterator[Finding]:
 def leaves_pulley(evidence: Evidence) -> Iterator[Finding]:
     """Pulleys that lose all contact with the belt."""
     free = np.asarray(evidence.recorded["wrap_angle"]) <= 0.0
-    left = free & (evidence.drive.path.wrap_angles > 0.0)
+    left = free & (evidence.prepared.path.wrap_angles > 0.0)
     lost = [
         f"{pulley.name} at t = {evidence.time[int(when.argmax())]:.4g} s"
-        for pulley, when in zip(evidence.drive.pulleys, left.T, strict=True)
+        for pulley, when in zip(evidence.prepared.pulleys, left.T, strict=True)
         if when.any()
     ]
     if lost:
@@ -62,17 +62,19 @@ def leaves_pulley(evidence: Evidence) -> Iterator[Finding]:
 
 def lifted_by_speed(evidence: Evidence) -> Iterator[Finding]:
     """Pulleys on which the moving belt barely presses because m v^2 approaches the tension of the adjacent spans."""
-    drive = evidence.drive
-    if drive.ends:
+    prepared = evidence.prepared
+    if prepared.ends:
         return
     tension, speed = (np.asarray(evidence.recorded[name]) for name in ("span_tension", "belt_speed"))
     with np.errstate(invalid="ignore"):
-        bending = drive.belt.mass_per_length * speed**2 / np.asarray(drive.belt.stretch_parameters.stretch(tension))
+        bending = (
+            prepared.belt.mass_per_length * speed**2 / np.asarray(prepared.belt.stretch_parameters.stretch(tension))
+        )
         mean, taken = (0.5 * (np.roll(one, 1, axis=1) + one) for one in (tension, bending))
         lifted = (mean > 0.0) & (taken > LIFTED * mean)
     times = [
         f"{pulley.name} at t = {evidence.time[int(when.argmax())]:.4g} s"
-        for pulley, when in zip(drive.pulleys, lifted.T, strict=True)
+        for pulley, when in zip(prepared.pulleys, lifted.T, strict=True)
         if when.any()
     ]
     if times:
@@ -80,7 +82,7 @@ def lifted_by_speed(evidence: Evidence) -> Iterator[Finding]:
         fastest, held = float(np.nanmax(np.abs(speed[row]))), float(mean[row, number])
         yield Finding(
             f"centrifugal force lifts the belt off {listing(times)}: at {fastest:.4g} m/s it is "
-            f"{taken[row, number]:.4g} N on {drive.pulleys[number].name}, of a tension of {held:.4g} N.",
+            f"{taken[row, number]:.4g} N on {prepared.pulleys[number].name}, of a tension of {held:.4g} N.",
             f"Less than {1.0 - LIFTED:.0%} of the tension presses the belt on the pulley, so it transmits almost no "
             f"torque: torques and slip are affected in {lifted.any(axis=1).mean():.0%} of the results.",
             "Raise the installed tension, reduce the speed, choose a lighter belt, or add a spring-loaded tensioner, "
@@ -90,41 +92,43 @@ def lifted_by_speed(evidence: Evidence) -> Iterator[Finding]:
 
 def deep_penetration(evidence: Evidence) -> Iterator[Finding]:
     """Pulleys into which the belt sinks so far that the contact stiffness affects the result."""
-    drive = evidence.drive
+    prepared = evidence.prepared
     depths, times = _deepest(evidence)
-    most = np.minimum(DEEPEST_OF_RADIUS * drive.radii, DEEPEST_OF_THICKNESS * drive.belt.thickness)
+    most = np.minimum(DEEPEST_OF_RADIUS * prepared.radii, DEEPEST_OF_THICKNESS * prepared.belt.thickness)
     deep = [
         f"{1e3 * depth:.2g} mm into {pulley.name} at t = {time:.4g} s ({depth / radius:.1%} of its radius, "
-        f"{depth / drive.belt.thickness:.0%} of the belt's thickness)"
-        for pulley, radius, depth, time, limit in zip(drive.pulleys, drive.radii, depths, times, most, strict=True)
+        f"{depth / prepared.belt.thickness:.0%} of the belt's thickness)"
+        for pulley, radius, depth, time, limit in zip(
+            prepared.pulleys, prepared.radii, depths, times, most, strict=True
+        )
         if depth > limit
     ]
     if deep:
         yield Finding(
             f"the belt sinks {listing(deep)}.",
             "Torque arms, wrap angles and tensions are those of pulleys up to "
-            f"{(depths / drive.radii).max():.1%} smaller.",
-            f"Increase contact.stiffness from {drive.contact_stiffness:g} N/m^2 to "
-            f"{drive.contact_stiffness * (depths / most).max():.1e}.",
+            f"{(depths / prepared.radii).max():.1%} smaller.",
+            f"Increase contact.stiffness from {prepared.contact_stiffness:g} N/m^2 to "
+            f"{prepared.contact_stiffness * (depths / most).max():.1e}.",
         )
 
 
 def _deepest(evidence: Evidence) -> tuple[FloatArray, FloatArray]:
     """Largest penetration into each pulley, m, and when that was, s."""
-    drive, recorded = evidence.drive, evidence.recorded
+    prepared, recorded = evidence.prepared, evidence.recorded
     instants = np.asarray(recorded["field_time"])
     rows = np.unique(np.linspace(0, len(instants) - 1, _INSTANTS).round().astype(int))
     place, touched = (np.asarray(recorded[name][rows]) for name in ("contact_position", "contact_pulley"))
     centers = np.asarray(recorded["pulley_center"][np.searchsorted(evidence.time, instants[rows])])
     away = np.hypot(*np.moveaxis(place[:, None] - centers[:, :, None], -1, 0))
-    on = touched[:, None] == np.arange(len(drive.radii))[:, None]
-    depths = np.where(on, drive.radii[:, None] - away, 0.0).max(axis=2)
+    on = touched[:, None] == np.arange(len(prepared.radii))[:, None]
+    depths = np.where(on, prepared.radii[:, None] - away, 0.0).max(axis=2)
     return depths.max(axis=0), instants[rows][depths.argmax(axis=0)]
 
 
 def large_tension(evidence: Evidence) -> Iterator[Finding]:
     """Spans whose tension exceeds the rating of the belt."""
-    most, tension = evidence.drive.belt.largest_tension, np.nan_to_num(np.asarray(evidence.recorded["span_tension"]))
+    most, tension = evidence.prepared.belt.largest_tension, np.nan_to_num(np.asarray(evidence.recorded["span_tension"]))
     if most is not None and tension.max() >= most:
         row, span = np.unravel_index(int(tension.argmax()), tension.shape)
         yield Finding(
@@ -139,7 +143,7 @@ def large_strain(evidence: Evidence) -> Iterator[Finding]:
     """Spans with an unrealistic strain."""
     tension = np.nan_to_num(np.asarray(evidence.recorded["span_tension"]))
     row, span = np.unravel_index(int(tension.argmax()), tension.shape)
-    belt, most = evidence.drive.belt, float(tension[row, span])
+    belt, most = evidence.prepared.belt, float(tension[row, span])
     strain = float(belt.stretch_parameters.stretch(most)) - 1.0
     where = f"the span {names(evidence.recorded, 'span')[span]} at t = {evidence.time[row]:.4g} s"
     if belt.stretch_curve is not None:

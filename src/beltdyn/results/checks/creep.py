@@ -54,7 +54,7 @@ def impossible_slip(evidence: Evidence) -> Iterator[Finding]:
             f"{listing(faults)}, which is physically impossible.",
             f"Speeds, speed ratios and slip are wrong by at least {worst:.2%} of the speed; tensions and torques are "
             "not affected.",
-            f"The mesh is too coarse: set belt.elements = {2 * evidence.drive.elements} and compare.",
+            f"The mesh is too coarse: set belt.elements = {2 * evidence.prepared.elements} and compare.",
         )
 
 
@@ -71,23 +71,23 @@ def regularized_slip(evidence: Evidence) -> Iterator[Finding]:
     ]
     worst = max(led, key=lambda pulley: abs(pulley.regularization), default=None)
     if worst is not None and (evidence.window.turns or _exceeds_stretch(evidence, worst.regularization)):
-        radii = dict(zip((one.name for one in evidence.pulleys), evidence.drive.radii.tolist(), strict=True))
-        driver = evidence.drive.reference
-        rim = abs(evidence.pulleys[driver].speed) * float(evidence.drive.radii[driver])
+        radii = dict(zip((one.name for one in evidence.pulleys), evidence.prepared.radii.tolist(), strict=True))
+        driver = evidence.prepared.reference
+        rim = abs(evidence.pulleys[driver].speed) * float(evidence.prepared.radii[driver])
         parts = [f"{one.regularization:.2%} of {one.slip:.2%} on {one.name}" for one in led]
         losses = sum(abs(one.regularization * one.belt_torque) / radii[one.name] for one in led) * rim
         yield Finding(
             "friction builds up too slowly with slip velocity: the slope of the friction law causes more slip than "
             f"elastic creep, {listing(parts)}.",
             f"Slip is too large by as much, and friction losses by about {losses:.2g} W.",
-            f"To resolve elastic creep, {other_creep(evidence.drive, 0.1)}.",
+            f"To resolve elastic creep, {other_creep(evidence.prepared, 0.1)}.",
         )
 
 
 def smoothed_friction(evidence: Evidence) -> Iterator[Finding]:
     """Friction losses added by the slope of the friction law, from the creep at arc entries (`entry_creep`)."""
     window, lost = evidence.window, evidence.balance.lost
-    if evidence.drive.ends or not window.turns or any(regularized_slip(evidence)):
+    if evidence.prepared.ends or not window.turns or any(regularized_slip(evidence)):
         return
     added = [_added_by_slope(evidence, number) for number in range(len(evidence.pulleys))]
     power = sum(added)
@@ -98,29 +98,29 @@ def smoothed_friction(evidence: Evidence) -> Iterator[Finding]:
             f"creep, most of it on {worst.name}.",
             f"Losses are too large by {power / (lost - power):.1%}, those in friction by "
             f"{power / max(evidence.balance.losses['friction'] - power, _LEAST * power):.0%}.",
-            f"To resolve the losses of elastic creep, {other_creep(evidence.drive, 0.1)}.",
+            f"To resolve the losses of elastic creep, {other_creep(evidence.prepared, 0.1)}.",
         )
 
 
 def _added_by_slope(evidence: Evidence, number: int) -> float:
     """Friction loss on a pulley in excess of Coulomb friction, W."""
-    drive, pulley = evidence.drive, evidence.pulleys[number]
-    radius, friction = float(drive.radii[number]), float(drive.frictions[number])
+    prepared, pulley = evidence.prepared, evidence.pulleys[number]
+    radius, friction = float(prepared.radii[number]), float(prepared.frictions[number])
     tensions = np.asarray(evidence.recorded["span_tension"][evidence.window.first :]).mean(axis=0)
     tension, rim = 0.5 * float(tensions[number - 1] + tensions[number]), abs(pulley.speed) * radius
-    pressing, pull = tension - drive.belt.mass_per_length * rim**2, abs(pulley.belt_torque) / radius
+    pressing, pull = tension - prepared.belt.mass_per_length * rim**2, abs(pulley.belt_torque) / radius
     if not min(rim, pressing, pull, friction) > 0.0:
         return 0.0
-    by_strain = rim / drive.belt.local_stiffness(tension)
-    saturation = float(drive.friction_parameters.saturation(pressing / radius, friction, rim))
+    by_strain = rim / prepared.belt.local_stiffness(tension)
+    saturation = float(prepared.friction_parameters.saturation(pressing / radius, friction, rim))
     lengths = pulley.wrap_angle * friction * pressing * by_strain / saturation
     return entry_creep(by_strain * pull, saturation, lengths) * pull
 
 
 def _exceeds_stretch(evidence: Evidence, slip: float) -> bool:
     """Whether rims drift apart within the window by more than the belt's stretch changes with its tension."""
-    drive, window = evidence.drive, evidence.window
-    speed, radius = evidence.pulleys[drive.reference].speed, float(drive.rolling_radii[drive.reference])
+    prepared, window = evidence.prepared, evidence.window
+    speed, radius = evidence.pulleys[prepared.reference].speed, float(prepared.rolling_radii[prepared.reference])
     passed = abs(speed) * radius * (window.end - window.start)
-    stretch = drive.belt.stretch_parameters.stretch(evidence.recorded["span_tension"][window.first :])
-    return abs(slip) * passed > float(np.ptp(stretch, axis=0).max()) * drive.belt_length
+    stretch = prepared.belt.stretch_parameters.stretch(evidence.recorded["span_tension"][window.first :])
+    return abs(slip) * passed > float(np.ptp(stretch, axis=0).max()) * prepared.belt_length

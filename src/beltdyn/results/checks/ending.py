@@ -28,7 +28,8 @@ def unfinished(evidence: Evidence) -> Iterator[Finding]:
     if status != "completed":
         ended = {"interrupted": "was interrupted", "failed": "failed"}.get(status, "is still going, or was killed")
         yield Finding(
-            f"the run {ended}: results end at t = {evidence.time[-1]:.6g} s of {evidence.drive.simulation.end:.6g} s.",
+            f"the run {ended}: results end at t = {evidence.time[-1]:.6g} s of "
+            f"{evidence.prepared.simulation.end:.6g} s.",
             f"Means are taken from {evidence.window.start:.4g} s on and may include the starting transient.",
             "Run the drive again to complete it, unless it is still being computed.",
         )
@@ -43,7 +44,7 @@ def least_window(pulley: Pulley, speed: float) -> float:
 def unsettled(evidence: Evidence) -> Iterator[Finding]:
     """A run-up, or a run from steady running, that began before its starting transient had decayed."""
     left = attribute(evidence.recorded, "settling_left", 0.0)
-    if not left < SETTLED and evidence.drive.simulation.start == "steady":
+    if not left < SETTLED and evidence.prepared.simulation.start == "steady":
         yield Finding(
             f"steady running had not settled on the travelling mesh: a transient of {left:.1%} of the largest mean "
             "span tension remains.",
@@ -52,7 +53,7 @@ def unsettled(evidence: Evidence) -> Iterator[Finding]:
         )
     elif not left < SETTLED:
         much, longer = f"a transient of {left:.1%} of the largest mean span tension", "a longer settling time"
-        swept = [one for one in evidence.drive.pulleys if one.name == evidence.recorded.attrs.get("swept_pulley")]
+        swept = [one for one in evidence.prepared.pulleys if one.name == evidence.recorded.attrs.get("swept_pulley")]
         if isnan(left) and swept and swept[0].speed is not None:
             window = least_window(swept[0], float(swept[0].speed.at(evidence.time[:1])[0]))
             much, longer = (

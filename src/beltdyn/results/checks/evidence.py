@@ -7,7 +7,7 @@ from functools import cached_property
 import numpy as np
 
 from beltdyn.arrays import FloatArray
-from beltdyn.model import Drive
+from beltdyn.model import Prepared
 from beltdyn.parts.messages import Finding
 from beltdyn.results.balance import Balance, power_balance
 from beltdyn.results.cycles import Window, mean_window
@@ -27,14 +27,14 @@ class Evidence:
     ----------
     recorded : Recorded
         The results.
-    drive : Drive
+    prepared : Prepared
         The drive.
     resolution : Resolution
         How well its mesh resolves tension and contact.
     """
 
     recorded: Recorded
-    drive: Drive
+    prepared: Prepared
     resolution: Resolution
 
     @cached_property
@@ -45,12 +45,12 @@ class Evidence:
     @cached_property
     def window(self) -> Window:
         """The averaging window."""
-        return mean_window(self.recorded, self.drive)
+        return mean_window(self.recorded, self.prepared)
 
     @cached_property
     def pulleys(self) -> tuple[PulleySummary, ...]:
         """Means of the pulleys over the end of the run."""
-        return pulley_means(self.recorded, self.drive, self.window)
+        return pulley_means(self.recorded, self.prepared, self.window)
 
     @cached_property
     def balance(self) -> Balance:
@@ -63,7 +63,7 @@ class Evidence:
 
         The losses of an idling drive are not a share of a transmitted power.
         """
-        spans = span_means(self.recorded, self.drive, self.window)
+        spans = span_means(self.recorded, self.prepared, self.window)
         carried = max((one.tension * abs(one.belt_speed) for one in spans), default=0.0)
         return max(self.balance.power_in, IDLE * carried)
 
@@ -74,7 +74,7 @@ _FINER = 10.0
 """Factor by which a remedy reduces a tolerance."""
 
 
-def shorter_steps(drive: Drive) -> str:
+def shorter_steps(prepared: Prepared) -> str:
     """The remedy for long time steps; the steps of a second-order method scale with the root of the tolerance."""
-    rtol = drive.simulation.rtol
+    rtol = prepared.simulation.rtol
     return f"Reduce simulation.rtol from {rtol:g} to {rtol / _FINER:g}; a run then takes about three times as long."

@@ -7,7 +7,7 @@ from collections.abc import Iterator
 import numpy as np
 
 from beltdyn.machines.loads.load import Load
-from beltdyn.model import ERROR_LIMITS, Drive, unresolved
+from beltdyn.model import ERROR_LIMITS, Prepared, unresolved
 from beltdyn.model.resolution import PRESSURES
 from beltdyn.parts.messages import Finding, listing
 from beltdyn.results.balance import LOSSES
@@ -22,7 +22,7 @@ def unresolved_by_mesh(evidence: Evidence) -> Iterator[Finding]:
 
     Pressures at the ends of arcs need not be resolved by a number of elements that is chosen for a run over time.
     """
-    found, settings = found_errors(evidence.recorded), evidence.drive.simulation
+    found, settings = found_errors(evidence.recorded), evidence.prepared.simulation
     chosen = found and math.isnan(found["slip"]) and not _given(evidence) and settings.force_tolerance is None
     judged = [name for name in found if not (chosen and name in PRESSURES)]
     asked = settings.force_tolerance
@@ -32,7 +32,7 @@ def unresolved_by_mesh(evidence: Evidence) -> Iterator[Finding]:
         yield Finding(
             f"the mesh does not resolve {', '.join(worse)}.",
             "The values change by as much on a finer mesh.",
-            f"Omit belt.elements for a graded mesh, or set belt.elements = {2 * evidence.drive.elements}; in steady "
+            f"Omit belt.elements for a graded mesh, or set belt.elements = {2 * evidence.prepared.elements}; in steady "
             "running reduce `force_tolerance`.",
         )
     if not found:
@@ -45,7 +45,11 @@ def unresolved_by_mesh(evidence: Evidence) -> Iterator[Finding]:
 def _given(evidence: Evidence) -> bool:
     """Whether the drive file gives the number of elements; the drive of a run may hold one that was chosen."""
     text = evidence.recorded.attrs.get("drive_as_given")
-    return evidence.drive.belt.elements is not None if text is None else "elements" in tomllib.loads(str(text))["belt"]
+    return (
+        evidence.prepared.drive.belt.elements is not None
+        if text is None
+        else "elements" in tomllib.loads(str(text))["belt"]
+    )
 
 
 # Excitation that steady running ignores, and errors of losses and slip against it
@@ -61,7 +65,7 @@ def mean_torques(evidence: Evidence) -> Iterator[Finding]:
     """Loads that depend on the shaft angle, which steady running averages."""
     if not runs_steadily(evidence.recorded):
         return
-    for pulley in evidence.drive.pulleys:
+    for pulley in evidence.prepared.pulleys:
         for load in filter(_turns_with_its_shaft, pulley.load):
             yield Finding(
                 f'the load of {pulley.name} of kind "{load.kind}" varies with the shaft angle; steady running uses its '
@@ -109,10 +113,10 @@ def _off_slips(evidence: Evidence) -> Iterator[str]:
 
 def begun_by_means(evidence: Evidence) -> Iterator[Finding]:
     """Excitation that sets in with a run because the initial steady running ignores it."""
-    drive = evidence.drive
-    if runs_steadily(evidence.recorded) or drive.simulation.start != "steady":
+    prepared = evidence.prepared
+    if runs_steadily(evidence.recorded) or prepared.simulation.start != "steady":
         return
-    swinging = list(_swinging(drive))
+    swinging = list(_swinging(prepared))
     if swinging:
         yield Finding(
             f"the run starts from steady running with the mean of {listing(swinging)}; the oscillation sets in at "
@@ -122,9 +126,9 @@ def begun_by_means(evidence: Evidence) -> Iterator[Finding]:
         )
 
 
-def _swinging(drive: Drive) -> Iterator[str]:
+def _swinging(prepared: Prepared) -> Iterator[str]:
     """What oscillates with the shaft angles, in words."""
-    for pulley in drive.pulleys:
+    for pulley in prepared.pulleys:
         if pulley.harmonics:
             yield f"the speed of {pulley.name}"
         if any(load.orders for load in pulley.load):

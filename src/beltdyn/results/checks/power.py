@@ -3,7 +3,7 @@
 import math
 from collections.abc import Iterator
 
-from beltdyn.model import Drive
+from beltdyn.model import Prepared
 from beltdyn.model.defaults import DAMPING_RATIO
 from beltdyn.parts.messages import Finding, listing
 from beltdyn.parts.quantity import RPM
@@ -29,14 +29,14 @@ def negative_losses(evidence: Evidence) -> Iterator[Finding]:
     balance = evidence.balance
     giving = {cause: power for cause, power in balance.losses.items() if -power > GAIN_LIMIT * evidence.power}
     if giving and balance.power_in > 0.0:
-        point = evidence.drive.contact.moment_arm == "point" and "friction" in giving
+        point = evidence.prepared.contact.moment_arm == "point" and "friction" in giving
         gains = listing([f"{power:.3g} W in {cause}" for cause, power in giving.items()])
         yield Finding(
             f"a computed loss is negative (numerical error): {gains} on average.",
             _spoiled(balance, sum(giving.values())),
             'Set contact.moment_arm = "rim", with which the friction loss cannot be negative.'
             if point
-            else shorter_steps(evidence.drive),
+            else shorter_steps(evidence.prepared),
         )
 
 
@@ -53,7 +53,7 @@ def may_flutter(evidence: Evidence) -> bool:
     From half of critical damping on, more does not help: the loss in contact damping is then no sign of vibrations.
     """
     growth = attribute(evidence.recorded, "flutter_growth", 0.0)
-    return growth > 0.0 and evidence.drive.contact_damping < DAMPING_RATIO * evidence.drive.critical_damping
+    return growth > 0.0 and evidence.prepared.contact_damping < DAMPING_RATIO * evidence.prepared.critical_damping
 
 
 def artificial_losses(evidence: Evidence) -> Iterator[Finding]:
@@ -62,16 +62,16 @@ def artificial_losses(evidence: Evidence) -> Iterator[Finding]:
     Where vibrations grow they cause the loss: see `beltdyn.results.checks.power`.
     """
     balance, share = evidence.balance, damping_share(evidence)
-    power, drive = balance.losses["contact damping"], evidence.drive
+    power, prepared = balance.losses["contact damping"], evidence.prepared
     if share > DAMPING_LIMIT and not may_flutter(evidence):
         # beyond critical damping the loss no longer grows with the damping
-        growing = min(drive.contact_damping, drive.critical_damping)
+        growing = min(prepared.contact_damping, prepared.critical_damping)
         yield Finding(
             f"contact damping dissipates {power:.3g} W, {share:.1%} of the power input: it stabilizes the computation "
             "and is not a loss of a real belt.",
             _spoiled(balance, power),
-            f"Reduce contact.damping from {drive.contact_damping:.2g} to {growing * _DAMPING_GOAL / share:.1g} N s/m^2 "
-            "or less.",
+            f"Reduce contact.damping from {prepared.contact_damping:.2g} to {growing * _DAMPING_GOAL / share:.1g} "
+            "N s/m^2 or less.",
         )
 
 
@@ -85,8 +85,8 @@ def _spoiled(balance: Balance, power: float) -> str:
 
 def driving_loads(evidence: Evidence) -> Iterator[Finding]:
     """Loads that put power in, in a drive with a motor or a prescribed speed."""
-    drive = evidence.drive
-    motors = [pulley.prescribed or any(one.driven_speed for one in pulley.load) for pulley in drive.pulleys]
+    prepared = evidence.prepared
+    motors = [pulley.prescribed or any(one.driven_speed for one in pulley.load) for pulley in prepared.pulleys]
     most = max(evidence.power, *(abs(one.power) for one in evidence.pulleys))
     if not any(motors):
         return
@@ -128,17 +128,17 @@ def open_account(evidence: Evidence) -> Iterator[Finding]:
             f"the energy balance does not close: at t = {time:.4g} s {error:.2%} of the energy input is unaccounted "
             f"for (limit {CLOSURE_LIMIT:.0%}).",
             "Losses and efficiency may be wrong by as much.",
-            _closing(evidence.drive),
+            _closing(evidence.prepared),
         )
 
 
-def _closing(drive: Drive) -> str:
+def _closing(prepared: Prepared) -> str:
     """The remedy: on a staying mesh finer elements, otherwise shorter steps."""
-    if not drive.frame.stays:
-        return shorter_steps(drive)
+    if not prepared.frame.stays:
+        return shorter_steps(prepared)
     return (
-        f"On a staying mesh the error falls as the mesh is refined: set belt.elements = {2 * drive.elements}, or "
-        f"reduce simulation.force_tolerance. If that does not help: {shorter_steps(drive)}"
+        f"On a staying mesh the error falls as the mesh is refined: set belt.elements = {2 * prepared.elements}, or "
+        f"reduce simulation.force_tolerance. If that does not help: {shorter_steps(prepared)}"
     )
 
 
@@ -150,7 +150,7 @@ def numerical_damping(evidence: Evidence) -> Iterator[Finding]:
             f"time steps are too long for the vibrations: numerical damping has dissipated {share:.2%} of the energy "
             f"input by t = {time:.4g} s (limit {NUMERICAL_LIMIT:.0%}).",
             "Vibrations decay too fast, and the efficiency is too low by up to this share.",
-            shorter_steps(evidence.drive),
+            shorter_steps(evidence.prepared),
         )
 
 
@@ -164,7 +164,7 @@ def unbalanced_powers(evidence: Evidence) -> Iterator[Finding]:
     missing = balance.power_in - balance.power_out - balance.lost - balance.stored
     closes = abs(largest_closure(evidence.recorded)[1]) <= CLOSURE_LIMIT
     if evidence.window.turns and closes and abs(missing) > POWER_LIMIT * evidence.power and balance.power_in > 0.0:
-        interval = evidence.drive.simulation.output_interval
+        interval = evidence.prepared.simulation.output_interval
         yield Finding(
             f"the mean powers do not balance: {missing:.3g} W ({missing / balance.power_in:.1%}) of "
             f"{balance.power_in:.4g} W input is unaccounted for, because a torque ripple is in step with the "
@@ -192,7 +192,7 @@ def flutter(evidence: Evidence) -> Iterator[Finding]:
     growth, start, end, frequency = (
         attribute(evidence.recorded, f"flutter_{name}", 0.0) for name in ("growth", "start", "end", "frequency")
     )
-    drive, share = evidence.drive, damping_share(evidence)
+    prepared, share = evidence.prepared, damping_share(evidence)
     between = f"between t = {start:.4g} s and {end:.4g} s, vibrations of {frequency:.0f} Hz"
     fault = ""
     if growth > GROWTH_LIMIT:
@@ -203,8 +203,8 @@ def flutter(evidence: Evidence) -> Iterator[Finding]:
     if fault:
         yield Finding(
             fault,
-            f"Contact forces are then uncertain; a run with simulation.rtol = {drive.simulation.rtol / 10.0:g} shows "
-            "by how much speeds and slip are. Real belts rarely flutter like this.",
-            f"Increase contact.damping from {drive.contact_damping:.2g} to "
-            f"{DAMPING_RATIO * drive.critical_damping:.2g} N s/m^2, half of critical.",
+            f"Contact forces are then uncertain; a run with simulation.rtol = {prepared.simulation.rtol / 10.0:g} "
+            "shows by how much speeds and slip are. Real belts rarely flutter like this.",
+            f"Increase contact.damping from {prepared.contact_damping:.2g} to "
+            f"{DAMPING_RATIO * prepared.critical_damping:.2g} N s/m^2, half of critical.",
         )

@@ -20,7 +20,7 @@ LEAST_SLIP_SAFETY = 1.5
 
 def gross_slip(evidence: Evidence) -> Iterator[Finding]:
     """Pulleys in gross slip at the end of the run; a belt held at an end slides by design."""
-    drive, numbers = evidence.drive, _sliding(evidence)
+    prepared, numbers = evidence.prepared, _sliding(evidence)
     if not numbers:
         return
     speeds, heats = [], []
@@ -28,7 +28,7 @@ def gross_slip(evidence: Evidence) -> Iterator[Finding]:
         pulley = evidence.pulleys[number]
         speed = abs(pulley.sliding_speed)
         speeds.append(f"{speed:.3g} m/s on {pulley.name}")
-        heats.append(f"{speed * abs(pulley.belt_torque) / drive.radii[number]:.3g} W on {pulley.name}")
+        heats.append(f"{speed * abs(pulley.belt_torque) / prepared.radii[number]:.3g} W on {pulley.name}")
     names = [evidence.pulleys[number].name for number in numbers]
     yield Finding(
         f"gross slip: the belt slides on the whole arc of {listing(names)}, at {listing(speeds)}.",
@@ -46,15 +46,15 @@ def near_gross_slip(evidence: Evidence) -> Iterator[Finding]:
         for number, pulley in enumerate(evidence.pulleys)
         if number not in sliding and 0.0 < pulley.slip_safety < LEAST_SLIP_SAFETY
     ]
-    if evidence.drive.ends or not near or not _driving_rim(evidence) > 0.0:
+    if evidence.prepared.ends or not near or not _driving_rim(evidence) > 0.0:
         return
     worst, number = min(near, key=lambda one: one[0].slip_safety)
-    drive = evidence.drive
+    prepared = evidence.prepared
     tension, speed, centers = (evidence.window.mean(evidence.recorded, name) for name in STATE)
-    least = float(friction_used(tension, speed, centers, drive)[number])
-    pressing = 1.0 - drive.belt.mass_per_length * float(np.mean(speed**2)) / float(np.mean(tension))
+    least = float(friction_used(tension, speed, centers, prepared)[number])
+    pressing = 1.0 - prepared.belt.mass_per_length * float(np.mean(speed**2)) / float(np.mean(tension))
     missing = LEAST_SLIP_SAFETY / worst.slip_safety - 1.0
-    held = listing([f"the tensioner of {one.pulley}" for one in drive.moving_tensioners] or ["the belt"])
+    held = listing([f"the tensioner of {one.pulley}" for one in prepared.moving_tensioners] or ["the belt"])
     safeties = [f"{floor(100.0 * one.slip_safety) / 100.0:.2f} on {one.name}" for one, _ in near]
     yield Finding(
         f"{listing([pulley.name for pulley, _ in near])} {'are' if near[1:] else 'is'} near gross slip: the slip "
@@ -74,17 +74,17 @@ def _percent(part: float) -> str:
 
 def gross_slip_before(evidence: Evidence) -> Iterator[Finding]:
     """Pulleys in gross slip before the end of the run, for more than a single output at a time."""
-    first, drive = evidence.window.first, evidence.drive
-    if drive.ends or first < 2:
+    first, prepared = evidence.window.first, evidence.prepared
+    if prepared.ends or first < 2:
         return
     torque, times = np.asarray(evidence.recorded["pulley_torque"]), evidence.time[:first]
-    reached = slides_through(evidence.recorded, drive)[:first]
+    reached = slides_through(evidence.recorded, prepared)[:first]
     durations, found, longest = np.gradient(times), [], 0.0
     for number in np.flatnonzero(reached.any(axis=0)).tolist():
         when = reached[:, number]
         load = abs(torque[:first][when, number][0])
         found.append(
-            f"{drive.pulleys[number].name} from t = {times[when][0]:.4g} to {times[when][-1]:.4g} s, starting at "
+            f"{prepared.pulleys[number].name} from t = {times[when][0]:.4g} to {times[when][-1]:.4g} s, starting at "
             f"{load:.4g} N m"
         )
         longest = max(longest, float(durations[when].sum()))
@@ -101,18 +101,18 @@ def _sliding(evidence: Evidence) -> list[int]:
     """Numbers of the pulleys in gross slip at the end of the run."""
     limit = SLIDING_LIMIT * _driving_rim(evidence)
     sliding = (abs(pulley.sliding_speed) > limit for pulley in evidence.pulleys)
-    return [] if evidence.drive.ends else [number for number, slides in enumerate(sliding) if slides]
+    return [] if evidence.prepared.ends else [number for number, slides in enumerate(sliding) if slides]
 
 
 def _driving_rim(evidence: Evidence) -> float:
     """Mean speed of the driver's rim, m/s."""
     speeds = np.array([pulley.speed for pulley in evidence.pulleys])
-    return float(abs(rim_speeds(speeds, evidence.drive)[evidence.drive.reference]))
+    return float(abs(rim_speeds(speeds, evidence.prepared)[evidence.prepared.reference]))
 
 
 def _frictions(evidence: Evidence, numbers: list[int]) -> str:
     """Coefficients of friction of some pulleys, with the wedge factor."""
-    return listing(sorted({f"{evidence.drive.frictions[number]:.3g}" for number in numbers}))
+    return listing(sorted({f"{evidence.prepared.frictions[number]:.3g}" for number in numbers}))
 
 
 def ended_by_slip(evidence: Evidence) -> Iterator[Finding]:

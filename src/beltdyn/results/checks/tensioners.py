@@ -20,10 +20,10 @@ def unstable_tensioners(evidence: Evidence) -> Iterator[Finding]:
 
 def stopped_tensioners(evidence: Evidence) -> Iterator[Finding]:
     """Tensioners on a stop at any time, and when."""
-    for number, tensioner in enumerate(evidence.drive.moving_tensioners):
+    for number, tensioner in enumerate(evidence.prepared.moving_tensioners):
         if tensioner.stops is None:
             continue
-        lower, upper = (on[:, number] for on in on_stops(evidence.recorded, evidence.drive))
+        lower, upper = (on[:, number] for on in on_stops(evidence.recorded, evidence.prepared))
         for name, on in (("lower", lower), ("upper", upper)):
             if on.any():
                 tension = float(np.nanmean(np.asarray(evidence.recorded["span_tension"])[on]))

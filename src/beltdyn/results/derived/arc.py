@@ -45,9 +45,9 @@ def wear_by_arc(run: Run, start: float | None = None, end: float | None = None) 
     ('pulley', 'share')
     """
     dataset, work = _work(run, "friction_work_on_arc", start, end)
-    _, wrap = arc_ends(run.drive, dataset["pulley_center"].values.mean(axis=0))
+    _, wrap = arc_ends(run.prepared, dataset["pulley_center"].values.mean(axis=0))
     share = dataset["arc_share"].values
-    length = np.broadcast_to(((1.0 + 2.0 * BEYOND) * run.drive.radii * wrap / ARC_PARTS)[:, None], work.shape)
+    length = np.broadcast_to(((1.0 + 2.0 * BEYOND) * run.prepared.radii * wrap / ARC_PARTS)[:, None], work.shape)
     dims = ("pulley", "share")
     return xr.DataArray(
         work / length,
@@ -91,7 +91,7 @@ def wear_by_belt(run: Run, start: float | None = None, end: float | None = None)
     dataset, work = _work(run, "friction_work_on_belt", start, end)
     coordinates = {"pulley": dataset["pulley"], "element_coordinate": dataset["element_coordinate"]}
     attributes = {"units": "J/m", "long_name": "Wear intensity on the belt"}
-    lengths = element_lengths(dataset, run.drive.belt_length)
+    lengths = element_lengths(dataset, run.prepared.belt_length)
     return xr.DataArray(work / lengths, coordinates, ("pulley", "element"), attrs=attributes)
 
 
@@ -138,27 +138,27 @@ def contact_arc(run: Run | StaticResult, pulley: str | int, time: float | None =
     >>> sorted(arc)
     ['friction_force', 'normal_force', 'pressure', 'shear', 'sliding', 'slip_velocity']
     """
-    number, drive = pulley_number(run, pulley), run.drive
+    number, prepared = pulley_number(run, pulley), run.prepared
     instant = run.fields_at(time)
     centers = instant["pulley_center"].values
-    inlet, wrap = arc_ends(drive, centers)
+    inlet, wrap = arc_ends(prepared, centers)
     touched = instant["contact_pulley"].values
     on = touched == number
-    turning = drive.pulleys[number].turning
+    turning = prepared.pulleys[number].turning
     place = instant["contact_position"].values[on] - centers[number]
     angle = angle_from_inlet(place, inlet[number], wrap[number], turning)
     speed = instant["pulley_speed"].values
-    backwards = rim_speeds(speed, drive)[number] < 0.0
+    backwards = rim_speeds(speed, prepared)[number] < 0.0
     forward = -turning if backwards else turning
     angle = wrap[number] - angle if backwards else angle
     normal, slip = instant["normal_force"].values, instant["slip_velocity"].values
-    sliding = sliding_velocity(slip, normal, touched, speed, drive)[on] != 0.0
+    sliding = sliding_velocity(slip, normal, touched, speed, prepared)[on] != 0.0
     normal, shear = normal[on], forward * instant["friction_force"].values[on]
     columns = {
         "normal_force": (normal, "N/m", "Normal force on the belt"),
         "friction_force": (shear, "N/m", "Friction force on the belt"),
-        "pressure": (normal / drive.belt.width, "Pa", "Contact pressure"),
-        "shear": (shear / drive.belt.width, "Pa", "Contact shear"),
+        "pressure": (normal / prepared.belt.width, "Pa", "Contact pressure"),
+        "shear": (shear / prepared.belt.width, "Pa", "Contact shear"),
         "slip_velocity": (forward * slip[on], "m/s", "Slip velocity"),
         "sliding": (sliding.astype(float), "1", "Sliding"),
     }

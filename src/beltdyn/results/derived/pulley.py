@@ -169,7 +169,7 @@ def turn_means(run: Run, variable: xr.DataArray) -> xr.DataArray:
     >>> bd.derived.turn_means(run, run.dataset.pulley_speed).dims
     ('time', 'pulley')
     """
-    window = turn_window(run.dataset, run.drive)
+    window = turn_window(run.dataset, run.prepared)
     rows = np.searchsorted(window.time, variable["time"].values)
     cycles = tuple(Cycle(cycle.phase[rows], cycle.count) for cycle in window.cycles)
     return variable.copy(data=Window(window.time[rows], cycles).running_means(variable.values))
@@ -223,13 +223,13 @@ def slips(run: Run, start: float | None = None, end: float | None = None, *, tur
     """
     dataset = window(run, start, end)
     dataset = run.dataset if turns else dataset
-    over = turn_window(run.dataset, run.drive) if turns else Window(dataset["time"].values, ())
+    over = turn_window(run.dataset, run.prepared) if turns else Window(dataset["time"].values, ())
     gross = over.running_means(dataset["sliding_speed"].values)
     speed, tension = (over.running_means(dataset[name].values) for name in ("pulley_speed", "span_tension"))
-    rim = rim_speeds(speed, run.drive)
+    rim = rim_speeds(speed, run.prepared)
     driver = np.abs(rim[:, run.drive.reference, None])
     rim = np.where(driver > _STANDING * np.max(driver, initial=0.0, where=np.isfinite(driver)), rim, 0.0)
-    parts = slip_parts(rim, tension, gross, np.ptp(run.dataset["time"].values), run.drive)
+    parts = slip_parts(rim, tension, gross, np.ptp(run.dataset["time"].values), run.prepared)
     called = {
         "slip": (parts.slip, "Slip"),
         "creep": (parts.slip - parts.sliding, "Creep"),
@@ -330,7 +330,7 @@ def slip_safety(run: Run, start: float | None = None, end: float | None = None) 
     dataset = window(run, start, end)
     tension, speed, centers = (dataset[name].values for name in ("span_tension", "belt_speed", "pulley_center"))
     return labelled(
-        slip_safety_of_states(tension, speed, centers, run.drive), dataset["wrap_angle"], "1", "Slip safety"
+        slip_safety_of_states(tension, speed, centers, run.prepared), dataset["wrap_angle"], "1", "Slip safety"
     )
 
 
@@ -355,7 +355,7 @@ def tension_ratios(run: Run, start: float | None = None, end: float | None = Non
     array([1., 1.])
     """
     dataset = window(run, start, end)
-    before, after = across(dataset["span_tension"].values, run.drive)
+    before, after = across(dataset["span_tension"].values, run.prepared)
     tight, slack = np.maximum(before, after), np.minimum(before, after)
     ratio = np.divide(tight, slack, out=np.full_like(slack, np.nan), where=slack > 0.0)
     return labelled(ratio, dataset["wrap_angle"], "1", "Tension ratio")

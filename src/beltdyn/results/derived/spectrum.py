@@ -8,7 +8,7 @@ import xarray as xr
 
 from beltdyn.arrays import BoolArray, FloatArray, IntArray
 from beltdyn.errors import ModelError
-from beltdyn.model import Drive
+from beltdyn.model import Drive, prepare
 from beltdyn.results.schema import PASS_BAND
 
 if TYPE_CHECKING:
@@ -242,10 +242,11 @@ def element_order(drive: Drive, pulley: int) -> float:
     >>> round(bd.derived.element_order(drive, 0), 2)
     8.0
     """
-    if drive.frame.stays:
+    prepared = prepare(drive)
+    if prepared.frame.stays:
         return float("inf")
-    turn = 2.0 * np.pi * float(drive.radii[pulley])
-    return drive.elements * turn / drive.path.length
+    turn = 2.0 * np.pi * float(prepared.radii[pulley])
+    return prepared.elements * turn / prepared.path.length
 
 
 def instants_of(values: xr.DataArray) -> FloatArray:

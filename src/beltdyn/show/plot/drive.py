@@ -17,7 +17,7 @@ from numpy.typing import ArrayLike
 
 from beltdyn.analyses import EQUILIBRIUM, RUN
 from beltdyn.arrays import FloatArray
-from beltdyn.model import Drive, Path, Pulley
+from beltdyn.model import Drive, Path, Pulley, prepare
 from beltdyn.model.carrier import Carrier
 from beltdyn.results import Result, Run, StaticResult
 from beltdyn.results.mechanics import centerline, element_lengths, recorded_kind
@@ -120,11 +120,11 @@ class DrivePicture:
     """
 
     def __init__(self, run: Run | StaticResult, ax: Axes, norm: Normalize) -> None:
-        self._kind = recorded_kind(run.dataset, run.drive)
+        self._kind = recorded_kind(run.dataset, run.prepared)
         self._lengths = element_lengths(run.dataset, run.drive.belt_length)
         self._radii = [pulley.radius for pulley in run.drive.pulleys]
         self._centers = run.drive.centers
-        self._bodies = [_draw_pulley(ax, pulley, number) for number, pulley in enumerate(run.drive.completed.pulleys)]
+        self._bodies = [_draw_pulley(ax, pulley, number) for number, pulley in enumerate(run.prepared.pulleys)]
         extent = float(np.ptp(extent_of(run.drive, run.drive.path), axis=0).max())
         for number, pulley in enumerate(run.drive.pulleys):
             write_pulley(ax, run.drive.path, number, pulley.name, extent, color(number))
@@ -132,7 +132,7 @@ class DrivePicture:
         self._belt.set_snap(False)
         ax.add_collection(self._belt)
         self._title = ax.set_title("")
-        self._tensioners = [TensionerPicture(ax, run.drive, carrier) for carrier in run.drive.carriers]
+        self._tensioners = [TensionerPicture(ax, run.drive, carrier) for carrier in run.prepared.carriers]
         _draw_scale(ax, self._belt, run.dataset["belt_tension"])
         _frame(ax, run)
 
@@ -195,7 +195,7 @@ def extent_of(drive: Drive, path: Path) -> FloatArray:
     points = [*(path.centers - radii), *(path.centers + radii)]
     points += [np.array(one.anchor) for one in drive.tensioners if one.anchor is not None]
     points += [] if path.ends is None else list(path.ends)
-    for carrier in drive.carriers:
+    for carrier in prepare(drive).carriers:
         ends = [carrier.place(position)[0] for position in carrier.tensioner.stops or ()]
         points += [end + side * radii[carrier.pulley] for end in ends for side in (-1.0, 1.0)]
     return np.array([np.min(points, axis=0), np.max(points, axis=0)])

@@ -214,7 +214,7 @@ def _range(run: Run) -> str:
 def _operating_point(run: Run) -> str:
     """Mean speed of the pulley with the largest power, and the power input; at the end of a run over time."""
     with run.recorded() as recorded:
-        over = mean_window(recorded, run.drive)
+        over = mean_window(recorded, run.prepared)
         power = over.product(recorded, "shaft_torque", "shaft_speed")
         speed = RPM * over.mean(recorded, "pulley_speed")
         put_in = power_balance(recorded, over).power_in

@@ -187,7 +187,7 @@ def mark_incidents(run: Run, ax: Axes, kinds: Collection[str]) -> Axes:
     Periods that are closer than a hundredth of the run are drawn as one.
     """
     with run.recorded() as recorded:
-        found = [one for one in incidents(recorded, run.drive) if one.kind in kinds]
+        found = [one for one in incidents(recorded, run.prepared) if one.kind in kinds]
         time = np.asarray(recorded["time"])
     gap = float(np.ptp(time)) / _PARTS
     for number, one in enumerate(found):
@@ -401,7 +401,7 @@ def tensioners(run: Run, ax: Axes | None = None) -> Axes:
     units = [name for name, there in (("mm", not rotary.all()), ("°", rotary.any())) if there]
     factors = np.where(rotary, np.degrees(1.0), 1e3)
     scaled = (position * factors).assign_attrs(position.attrs | {"units": ", ".join(units)})
-    ax = lines(scaled, axes_or_new(ax), pulleys=[carrier.pulley for carrier in run.drive.carriers])
+    ax = lines(scaled, axes_or_new(ax), pulleys=[carrier.pulley for carrier in run.prepared.carriers])
     for tensioner, factor, turns in zip(run.drive.moving_tensioners, factors.tolist(), rotary, strict=True):
         for name, stop in zip(("lower", "upper"), tensioner.stops or (), strict=False):
             place = f"{factor * stop:.4g}{'°' if turns else ' mm'}"

@@ -14,7 +14,7 @@ from numpy.typing import ArrayLike
 from beltdyn.arrays import FloatArray
 from beltdyn.errors import ConvergenceError
 from beltdyn.machines import FixedTensioner, Tensioner
-from beltdyn.model import Drive, Installation, Path, install
+from beltdyn.model import Drive, Installation, Path, install, prepare
 from beltdyn.model.end import End
 from beltdyn.model.path import crossings
 from beltdyn.show.plot.drive import (
@@ -73,7 +73,7 @@ def layout(drive: Drive, installation: Installation | None = None, ax: Axes | No
     for number in range(path.count):
         _draw_pulley(ax, drive, path, number)
     _draw_belt(ax, path)
-    for carrier in drive.carriers:
+    for carrier in prepare(drive).carriers:
         draw_stops(ax, drive, carrier)
     for tensioner, way in _ways(drive, installation):
         _draw_tensioner(ax, tensioner, way)
@@ -178,7 +178,7 @@ def _ways(drive: Drive, installation: Installation) -> Iterator[tuple[Tensioner,
         if isinstance(tensioner, FixedTensioner):
             number = drive.carried(tensioner)
             yield tensioner, path.centers[number] + np.outer(radii[number] * parts, tensioner.direction)
-    for carrier, position in zip(drive.carriers, installation.tensioner_positions.tolist(), strict=True):
+    for carrier, position in zip(prepare(drive).carriers, installation.tensioner_positions.tolist(), strict=True):
         step = radii[carrier.pulley] / np.linalg.norm(carrier.place(position)[1])
         yield carrier.tensioner, np.array([carrier.place(position + step * part)[0] for part in parts])
 

@@ -62,7 +62,7 @@ def tensioner_sheet(result: Result, variable: str = "tension", *, ax: Axes | Non
     dataset, ax = result.dataset, axes_or_new(ax)
     names = [one.pulley for one in result.drive.moving_tensioners]
     number = names.index(str(dataset.attrs["pulley"]))
-    carrier = result.drive.carriers[number]
+    carrier = result.prepared.carriers[number]
     scale, of_travel = (np.degrees(1.0), "°") if carrier.tensioner.turns else (1e3, "mm")
     place, size = dataset["position"].values, dataset[variable].values
     on = np.isfinite(size) & np.isfinite(dataset["belt_length"].values)
@@ -89,14 +89,14 @@ def tensioner_sheet(result: Result, variable: str = "tension", *, ax: Axes | Non
 
 def _by_hand(result: Result, number: int, position: float, variable: str) -> float:
     """Tension or hub load by virtual work, N; NaN where no tension holds the tensioner."""
-    drive = result.drive
-    positions = drive.balance[1].copy()
+    prepared = result.prepared
+    positions = prepared.installation.tensioner_positions.copy()
     positions[number] = position
     try:
-        there = held_belt(drive.path, drive.belt, drive.completed.contact, drive.carriers, positions, number)
+        there = held_belt(prepared.path, prepared.belt, prepared.contact, prepared.carriers, positions, number)
     except ValueError:
         return float("nan")
-    wrap = float(there.path.wrap_angles[drive.carriers[number].pulley])
+    wrap = float(there.path.wrap_angles[prepared.carriers[number].pulley])
     return there.tension * (1.0 if variable == "tension" else float(2.0 * np.sin(0.5 * wrap)))
 
 

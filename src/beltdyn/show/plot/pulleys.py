@@ -34,7 +34,7 @@ def _losses_of_several(runs: Sequence[Run], ax: Axes | None) -> Axes:
     ax = axes_or_new(ax)
     for run in runs:
         run.require_output()
-    balances = [power_balance(run.dataset, mean_window(run.dataset, run.drive)) for run in runs]
+    balances = [power_balance(run.dataset, mean_window(run.dataset, run.prepared)) for run in runs]
     causes = _worth_drawing(balances)
     height = _ROOM / len(runs)
     for number, (balance, name) in enumerate(zip(balances, names_of_results(runs), strict=True)):
@@ -80,7 +80,7 @@ def losses(run: Run, ax: Axes | None = None) -> Axes:
     """
     run.require_output()
     ax = axes_or_new(ax)
-    over = mean_window(run.dataset, run.drive)
+    over = mean_window(run.dataset, run.prepared)
     balance = power_balance(run.dataset, over)
     by_pulley = derived.pulley_powers(run).map(lambda power: xr.DataArray(over.mean_of(power.values), dims="pulley"))
     by_pulley = by_pulley.assign_coords(pulley=run.dataset["pulley"])
@@ -358,7 +358,7 @@ def hub_load_sizes(run: Run, ax: Axes | None = None) -> Axes:
     """
     run.require_output()
     loads = derived.hub_loads(run)["hub_load"]
-    over = mean_window(run.dataset, run.drive)
+    over = mean_window(run.dataset, run.prepared)
     means = over.mean_of(loads.values)
     names = [f"{pulley.name} {mean:.4g} N" for pulley, mean in zip(run.drive.pulleys, means, strict=True)]
     ax = lines(loads, axes_or_new(ax), names)

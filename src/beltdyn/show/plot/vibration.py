@@ -74,7 +74,7 @@ def swing(result: Result, mode: int) -> Swing:
     belt = size * _complex(one["belt_shape"].values)[:, None] * one["point_normal"].values
     centers = np.zeros((len(drive.pulleys), 2), complex)
     arms = _complex(one["tensioner_shape"].values) if "tensioner_shape" in one else np.zeros(0, complex)
-    for carrier, way in zip(drive.carriers, arms, strict=True):
+    for carrier, way in zip(result.prepared.carriers, arms, strict=True):
         along = carrier.place(0.0)[1]
         centers[carrier.pulley] = size * way * along / np.linalg.norm(along)
     return Swing(belt, centers, size * _complex(one["rim_shape"].values) / np.abs(drive.path.radii), size)
@@ -115,7 +115,11 @@ class ModePicture:
         drive, self._swing = result.drive, swing(result, mode)
         extent, size = extent_of(drive, drive.path), self._swing.size
         self._place = result.dataset["point_position"].values
-        self._carriers, self._radii, self._centers = drive.carriers, np.abs(drive.path.radii), drive.path.centers
+        self._carriers, self._radii, self._centers = (
+            result.prepared.carriers,
+            np.abs(drive.path.radii),
+            drive.path.centers,
+        )
         tint = tint_of(result, mode)
         ax.plot(*_closed(self._place).T, color=INK, linewidth=0.6, linestyle=":", zorder=2)
         self._line = ax.plot([], [], color=tint, linewidth=2.0, zorder=3)[0]

@@ -98,7 +98,7 @@ def _incidents(result: Result) -> tuple[Incident, ...]:
     if not isinstance(result, Run) or result.outputs == 0:
         return ()
     with result.recorded() as recorded:
-        return incidents(recorded, result.drive)
+        return incidents(recorded, result.prepared)
 
 
 def limit_in_words(number: KeyNumber | None) -> str:

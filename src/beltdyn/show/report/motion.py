@@ -92,7 +92,9 @@ def along_belt(run: Run, instant: xr.Dataset) -> tuple[FloatArray, FloatArray, F
     """
     drive = run.drive
     lengths = element_lengths(run.dataset, drive.belt_length)
-    curves = centerline(recorded_kind(run.dataset, drive), instant["nodal_coordinates"].values, lengths, _SMOOTH + 1)
+    curves = centerline(
+        recorded_kind(run.dataset, run.prepared), instant["nodal_coordinates"].values, lengths, _SMOOTH + 1
+    )
     points = curves[:, :-1].reshape(-1, 2)
     starts = np.cumsum(lengths) - lengths
     coordinate = (starts[:, None] + lengths[:, None] * np.arange(_SMOOTH) / _SMOOTH).ravel()
@@ -145,7 +147,7 @@ def swinging(result: Result) -> dict[str, Any]:
     drive, numbers = result.drive, shown_modes(result)
     swings = [swing(result, one) for one in numbers]
     size, extent = swings[0].size, extent_of(drive, drive.path)
-    anchors = ((one.tensioner.anchor, one.pulley) for one in drive.carriers)
+    anchors = ((one.tensioner.anchor, one.pulley) for one in result.prepared.carriers)
     return {
         "extent": [(extent[0] - _ROOM * size).tolist(), (extent[1] + _ROOM * size).tolist()],
         "size": size,

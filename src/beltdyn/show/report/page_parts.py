@@ -70,7 +70,7 @@ def origin(result: Result) -> list[tuple[str, str]]:
         integrator = said.get("integrator", settings.integrator)
         facts += [("integrator", f"{integrator}, rtol {settings.rtol:g}, start {settings.start}")]
     facts += mesh_facts(said)
-    facts += [(choice.key, choice.words) for choice in result.drive.completed.choices]
+    facts += [(choice.key, choice.words) for choice in result.prepared.choices]
     return facts
 
 

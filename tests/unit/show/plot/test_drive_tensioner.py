@@ -4,7 +4,7 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.patches import Circle
 
-from beltdyn.model import Drive
+from beltdyn.model import Drive, prepare
 from beltdyn.show.plot.drive import TensionerPicture
 
 IDLER = {"name": "idler", "center": (0.0, -0.09), "radius": 0.03, "side": "outside", "inertia": 0.01, "mass": 0.1}
@@ -21,7 +21,7 @@ def with_tensioner(drive: Drive, length: float, **tensioner: object) -> Drive:
 def test_an_arm_follows_its_pulley_between_stops(drive: Drive, ax: Axes) -> None:
     arm = {"kind": "rotary", "pivot": (-0.1, -0.15), "inertia": 0.01, "rate": 1.0, "stops": (-0.2, 0.1)}
     sprung = with_tensioner(drive, 1.278, **arm, **STOPS)
-    (carrier,) = sprung.carriers
+    (carrier,) = prepare(sprung).carriers
     picture = TensionerPicture(ax, sprung, carrier)
     way, line, pivot = ax.lines
     centers = np.array([[0.0, 0.0], [0.01, -0.08], [0.3, 0.0]])
@@ -35,7 +35,7 @@ def test_an_arm_follows_its_pulley_between_stops(drive: Drive, ax: Axes) -> None
 
 def test_a_sliding_one_without_stops_has_its_line(drive: Drive, ax: Axes) -> None:
     sprung = with_tensioner(drive, 1.29, kind="sliding", direction=(0.0, 1.0), mass=0.1)
-    picture = TensionerPicture(ax, sprung, sprung.carriers[0])
+    picture = TensionerPicture(ax, sprung, prepare(sprung).carriers[0])
     picture.show(sprung.centers)
     (line,) = ax.lines
     np.testing.assert_allclose(np.asarray(line.get_xydata()), [(0.0, -0.12), (0.0, -0.06)], atol=1e-12)

@@ -12,7 +12,7 @@ from matplotlib.patches import Circle, FancyArrowPatch, Wedge
 from matplotlib.text import Annotation
 
 from beltdyn.errors import ConvergenceError, ModelError
-from beltdyn.model import Drive, install
+from beltdyn.model import Drive, install, prepare
 from beltdyn.show import plot
 from beltdyn.state.installation import bring_to_rest
 
@@ -153,7 +153,7 @@ def test_stops_of_a_tensioner_are_drawn_where_its_pulley_stands(idler_drive: Dri
     stops = {"stops": (-0.2, 0.1), "stop_stiffness": 100.0}
     stopped = idler_drive.replace(tensioner=[idler_drive.tensioners[0].replace(**stops)])
     plot.layout(stopped, ax=ax)
-    (carrier,) = stopped.carriers
+    (carrier,) = prepare(stopped).carriers
     rims = {str(patch.get_label()): patch for patch in ax.patches if "stop" in str(patch.get_label())}
     for name, position in (("lower stop", -0.2), ("upper stop", 0.1)):
         rim = rims[name]
