@@ -1,21 +1,16 @@
 """Computation of the numbers below the canvas in a separate process: rest, steady running and modes."""
 
 import asyncio
-import multiprocessing
-import os
-import signal
 import threading
 import time
-import warnings
 from collections.abc import Callable
-from concurrent.futures import Future, ProcessPoolExecutor
-from concurrent.futures.process import BrokenProcessPool
+from concurrent.futures import Future
 from multiprocessing.context import SpawnProcess
-from multiprocessing.process import BaseProcess
 from multiprocessing.synchronize import Event as SharedEvent
 from pathlib import Path
 from typing import TYPE_CHECKING, NamedTuple
 
+from beltdyn.designs.processes import SPAWN, LocalProcesses, start_process, start_worker
 from beltdyn.errors import BeltdynError
 from beltdyn.model import Drive, advise, install, loads, unstable_balance
 from beltdyn.results import Run
@@ -120,38 +115,19 @@ _compiles: SharedEvent | None = None
 """An event, set while this process compiles kernels."""
 
 
-def prepare() -> None:
-    """Initialize the process: the server handles Ctrl-C, and the process ends with it."""
-    signal.signal(signal.SIGINT, signal.SIG_IGN)
-    warnings.simplefilter("ignore")
-    threading.Thread(target=_follow_parent, daemon=True).start()
-
-
-def begin(compiles: SharedEvent) -> None:
-    """Initialize the computing process."""
+def begin(stop: SharedEvent, compiles: SharedEvent) -> None:
+    """Prepare a computing process, which tells by an event when it compiles kernels."""
     global _compiles
-    prepare()
+    start_worker(stop)
     _compiles = compiles
-    _tell_by(compiles)
+    tell_of_compilation(lambda going: compiles.set() if going else compiles.clear())
 
 
-def _tell_by(flag: SharedEvent) -> None:
-    tell_of_compilation(lambda compiles: flag.set() if compiles else flag.clear())
-
-
-def compile_ahead(asked: Asked, compiles: SharedEvent) -> None:
+def compile_ahead(asked: Asked, stop: SharedEvent, compiles: SharedEvent) -> None:
     """Load or compile the kernels of steady running and modes in advance."""
-    prepare()
-    _tell_by(compiles)
+    begin(stop, compiles)
     for what in ("running", "modes"):
         answer(asked._replace(what=what))
-
-
-def _follow_parent() -> None:
-    parent = multiprocessing.parent_process()
-    if parent is not None:
-        parent.join()
-        os._exit(1)
 
 
 def answer(asked: Asked) -> Answer:
@@ -240,9 +216,9 @@ class Calculator:
     """A process that answers requests one after another, started with the first."""
 
     def __init__(self) -> None:
-        self._spawning = multiprocessing.get_context("spawn")
-        self._compiles, self._compiles_ahead = self._spawning.Event(), self._spawning.Event()
-        self._pool: ProcessPoolExecutor | None = None
+        self._compiles, self._compiles_ahead = SPAWN.Event(), SPAWN.Event()
+        self._stop = SPAWN.Event()
+        self._pool: LocalProcesses | None = None
         self._ahead: SpawnProcess | None = None
         self._starting = threading.Lock()
 
@@ -257,28 +233,28 @@ class Calculator:
         What a drive at rest needs is loaded by the process that answers; running and modes are left to one of their
         own, which begins when the drive is at rest.
         """
-        pool = self._process()
+        pool = self._started()
 
         def go_on(found: Future[Answer]) -> None:
             with self._starting:
                 if self._pool is pool and not found.cancelled() and found.exception() is None:
-                    self._ahead = self._spawning.Process(
-                        target=compile_ahead, args=(asked, self._compiles_ahead), daemon=True
-                    )
-                    self._ahead.start()
+                    self._ahead = start_process(compile_ahead, asked, self._stop, self._compiles_ahead)
 
         pool.submit(answer, asked).add_done_callback(go_on)
 
-    def _process(self) -> ProcessPoolExecutor:
+    def _started(self) -> LocalProcesses:
         if self._pool is None:
-            self._pool = ProcessPoolExecutor(1, self._spawning, begin, (self._compiles,))
+            self._pool = LocalProcesses(1, begin, (self._compiles,))
         return self._pool
 
     async def ask(self, asked: Asked) -> Answer:
         """Compute the numbers of a tab."""
+        pool = self._started()
         try:
-            return await asyncio.get_running_loop().run_in_executor(self._process(), answer, asked)
-        except BrokenProcessPool:
+            return await asyncio.wrap_future(pool.submit(answer, asked))
+        except Exception as error:
+            if not pool.lost(error):
+                raise
             self.close()
             return Answer((), (), "the computing process ended unexpectedly. Any change of the drive restarts it.", 0.0)
 
@@ -287,13 +263,10 @@ class Calculator:
         with self._starting:
             pool, self._pool = self._pool, None
             ahead, self._ahead = self._ahead, None
-        processes: list[BaseProcess] = [] if ahead is None else [ahead]
+        if ahead is not None:
+            ahead.kill()
+            ahead.join()
         if pool is not None:
-            processes += (pool._processes or {}).values()
-            pool.shutdown(wait=False, cancel_futures=True)
-        for process in processes:
-            process.kill()
-        for process in processes:
-            process.join()
+            pool.kill()
         self._compiles.clear()
         self._compiles_ahead.clear()

@@ -1,9 +1,6 @@
 """Long analyses, each in a separate process with progress and cancellation."""
 
 import math
-import multiprocessing
-import os
-import signal
 import threading
 import time
 from collections.abc import Mapping
@@ -13,7 +10,8 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 from beltdyn.analyses import ANALYSES
-from beltdyn.app.computing import PREPARING, prepare, tell_of_compilation
+from beltdyn.app.computing import PREPARING, tell_of_compilation
+from beltdyn.designs.processes import SPAWN, heeding, start_process, start_worker, working
 from beltdyn.errors import BeltdynError
 from beltdyn.model import loads
 from beltdyn.show.sheet import Facts, Table
@@ -97,17 +95,13 @@ class Job:
     """
 
     def __init__(self, name: str, text: str, folder: Path, result: Path, options: Mapping[str, Any]) -> None:
-        spawning = multiprocessing.get_context("spawn")
-        self._heard, told = spawning.Pipe(duplex=False)
-        self._stop = spawning.Event()
-        self._process = spawning.Process(
-            target=_analyse, args=(name, text, folder, result, dict(options), told, self._stop), daemon=True
-        )
+        self._heard, told = SPAWN.Pipe(duplex=False)
+        self._stop = SPAWN.Event()
+        self._process = start_process(_analyse, name, text, folder, result, dict(options), told, self._stop)
         self.name = name
         self.step = _STARTING
         self.outcome: Outcome | None = None
         self._ending: Outcome | None = None
-        self._process.start()
         told.close()
         self._listener = threading.Thread(target=self._listen, daemon=True)
         self._listener.start()
@@ -148,20 +142,13 @@ def _analyse(
     name: str, text: str, folder: Path, result: Path, options: dict[str, Any], told: Connection, stop: SharedEvent
 ) -> None:
     """Analyze a drive into a file, write its report, and tell how it goes."""
-    prepare()
-    signal.signal(signal.SIGTERM, signal.SIG_DFL)
-    os.environ.setdefault("OMP_NUM_THREADS", "1")
-
+    start_worker(stop)
     teller = _Teller(told, result)
     tell_of_compilation(teller.tell_of_compilation)
 
-    def heed(progress: Any) -> None:
-        teller.tell(progress)
-        if stop.is_set():
-            raise KeyboardInterrupt
-
     try:
-        found = ANALYSES[name].write(loads(text, folder), result, heed, True, **options)
+        with working():
+            found = ANALYSES[name].write(loads(text, folder), result, heeding(teller.tell), True, **options)
         told.send(_outcome(found, result))
     except KeyboardInterrupt:
         told.send(Outcome("interrupted"))

@@ -2,14 +2,13 @@
 
 import math
 from collections.abc import Callable, Mapping, Sequence
-from concurrent.futures import FIRST_COMPLETED, Future, ProcessPoolExecutor, wait
-from concurrent.futures.process import BrokenProcessPool
-from multiprocessing.synchronize import Event as SharedEvent
+from concurrent.futures import FIRST_COMPLETED, wait
 from pathlib import Path
 from typing import Any
 
 from beltdyn.analyses import ANALYSES, SIMULATE, Analysis
-from beltdyn.designs.worker import SPAWN, Ending, Work, analyse, bare_workers, start_worker
+from beltdyn.designs.processes import SPAWN, LocalProcesses, bare_workers
+from beltdyn.designs.worker import Ending, Work, analyse, begin_batch
 from beltdyn.model import Drive
 from beltdyn.model.drive import refuse_functions
 from beltdyn.observation.compilation import usable_cores
@@ -70,7 +69,7 @@ def analyse_all(
         rule = f"{file.name} runs in another process, which a Python function cannot be passed to"
         refuse_functions(_drive_of(drive), rule, "Call `simulate` or another analysis for this drive alone.")
     waiting, work = _longest_first(files), Work(analysis, options, overwrite, finish)
-    stop = SPAWN.Event()
+    going = True
 
     def tell(running: Mapping[Path, float], ended: int) -> None:
         if progress is not None:
@@ -78,9 +77,10 @@ def analyse_all(
 
     tell({}, 0)
     if waiting:
-        _compile(_drive_of(waiting[0][1]), stop)
-    while waiting and not stop.is_set():
-        endings |= _run_pool(waiting, min(jobs or usable_cores(), len(waiting)), stop, tell, work)
+        going = _compiled(_drive_of(waiting[0][1]))
+    while waiting and going:
+        found, going = _run_pool(waiting, min(jobs or usable_cores(), len(waiting)), tell, work)
+        endings |= found
         waiting = [(file, drive) for file, drive in waiting if file not in endings]
     return {file: endings.get(file, Ending("not started")) for file in files}
 
@@ -99,45 +99,49 @@ def _longest_first(drives: Mapping[Path, Drive | Run]) -> list[tuple[Path, Drive
     return sorted(drives.items(), key=size, reverse=True)
 
 
-def _compile(drive: Drive, stop: SharedEvent) -> None:
+def _compiled(drive: Drive) -> bool:
+    """Compile the kernels; False after Ctrl-C."""
     try:
         compile_ahead(drive)
     except KeyboardInterrupt:
-        stop.set()
+        return False
+    return True
 
 
 def _run_pool(
     drives: Sequence[tuple[Path, Drive | Run]],
     jobs: int,
-    stop: SharedEvent,
     tell: Callable[[Mapping[Path, float], int], None],
     work: Work,
-) -> dict[Path, Ending]:
-    """Simulate in a pool of processes; if one of these is killed, what had not begun by then has no ending yet."""
+) -> tuple[dict[Path, Ending], bool]:
+    """Simulate in a pool of processes; also whether to go on, False after Ctrl-C.
+
+    If one of the processes is killed, what had not begun by then has no ending yet.
+    """
     parts = SPAWN.RawArray("d", [math.nan] * len(drives))
-    with ProcessPoolExecutor(jobs, SPAWN, start_worker, (stop, parts)) as pool:
-        with bare_workers():
-            futures = [pool.submit(analyse, place, *one, work) for place, one in enumerate(drives)]
-        try:
-            pending = set(futures)
-            while pending:
-                running = [place for place, future in enumerate(futures) if future in pending and parts[place] >= 0.0]
-                tell({drives[place][0]: parts[place] for place in running}, len(drives) - len(pending))
-                pending = wait(pending, timeout=_POLL, return_when=FIRST_COMPLETED).not_done
-            tell({}, len(drives))
-        except KeyboardInterrupt:
-            stop.set()
-    endings = {file: _ending(future) for (file, _), future in zip(drives, futures, strict=True)}
+    workers, going = LocalProcesses(jobs, begin_batch, (parts,)), True
+    with bare_workers():  # as a whole, so that Ctrl-C comes before or after
+        futures = [workers.submit(analyse, place, *one, work) for place, one in enumerate(drives)]
+    try:
+        pending = set(futures)
+        while pending:
+            running = [place for place, future in enumerate(futures) if future in pending and parts[place] >= 0.0]
+            tell({drives[place][0]: parts[place] for place in running}, len(drives) - len(pending))
+            pending = wait(pending, timeout=_POLL, return_when=FIRST_COMPLETED).not_done
+        tell({}, len(drives))
+    except KeyboardInterrupt:
+        going = False
+    finally:
+        workers.close(stop=not going)
+    lost = [workers.lost(future.exception()) for future in futures]
     begun = [part >= 0.0 for part in parts]
-    if any(begun) and any(isinstance(future.exception(), BrokenProcessPool) for future in futures):
-        return {file: ending for (file, ending), it_began in zip(endings.items(), begun, strict=True) if it_began}
-    return endings
+    endings = {
+        file: _KILLED if gone else future.result()
+        for (file, _), future, gone in zip(drives, futures, lost, strict=True)
+    }
+    if any(begun) and any(lost):
+        endings = {file: ending for (file, ending), it_began in zip(endings.items(), begun, strict=True) if it_began}
+    return endings, going
 
 
-def _ending(future: Future[Ending]) -> Ending:
-    error = future.exception()
-    if isinstance(error, BrokenProcessPool):
-        return Ending(
-            "failed", "its process or another one was killed, possibly because memory ran out. Run fewer at once."
-        )
-    return future.result()
+_KILLED = Ending("failed", "its process or another one was killed, possibly because memory ran out. Run fewer at once.")

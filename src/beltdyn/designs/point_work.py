@@ -14,7 +14,7 @@ import numpy as np
 
 from beltdyn.analyses import Analysis
 from beltdyn.designs.named_results import unit_of, values_of
-from beltdyn.designs.worker import heeding, leaving, stopped, wait_for_the_end, working
+from beltdyn.designs.processes import heeding, leaving, stopped, wait_for_the_end, working
 from beltdyn.errors import BeltdynError, ModelError
 from beltdyn.model import Drive
 from beltdyn.parts.messages import suggest

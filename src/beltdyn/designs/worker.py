@@ -1,67 +1,25 @@
-"""The processes of a batch: each analyses one drive after another, until its parent says so or is gone."""
+"""What a process of a batch does with a drive, and who computes the points of a study."""
 
 import asyncio
-import multiprocessing
-import os
-import signal
-import sys
 import time
-import warnings
-from collections.abc import Awaitable, Callable, Iterator, Mapping
-from concurrent.futures import CancelledError, Future, ProcessPoolExecutor
-from concurrent.futures.process import BrokenProcessPool
-from contextlib import closing, contextmanager
+from collections.abc import Awaitable, Callable, Mapping
+from concurrent.futures import CancelledError, Future
+from contextlib import closing
 from dataclasses import dataclass, replace
 from multiprocessing.synchronize import Event as SharedEvent
 from pathlib import Path
-from threading import Event, Lock, Thread, current_thread, main_thread
-from time import sleep
-from types import FrameType, ModuleType
 from typing import TYPE_CHECKING, Any, Protocol
 
 from beltdyn.analyses import Analysis
+from beltdyn.designs.processes import LocalProcesses, heeding, start_worker, stopped, wait_for_the_end, working
 from beltdyn.errors import BeltdynError, LostOutputError, ModelError, SimulationError
 from beltdyn.model import Drive
-from beltdyn.observation.compilation import usable_cores
 from beltdyn.results import Result, Run, Summary, open_result, summarize
 from beltdyn.results.atomic import locked_output, stamp
-from beltdyn.signals import ENDING
 from beltdyn.solvers.progress import Progress
 
 if TYPE_CHECKING:
     from ctypes import Array, c_double
-
-
-# How processes are started that compute beside this one
-
-SPAWN = multiprocessing.get_context("spawn")
-_THREADS = "OMP_NUM_THREADS"
-"""What OpenBLAS and MKL ask for their number of threads."""
-
-
-@contextmanager
-def bare_workers() -> Iterator[None]:
-    """Let processes that are started meanwhile inherit little.
-
-    They ignore Ctrl-C, of which the parent tells them; use one thread for linear algebra unless the user chose a
-    number; and see an empty script in place of the caller's, which each of them would run otherwise.
-    """
-    script, threads = sys.modules["__main__"], os.environ.get(_THREADS)
-    in_main_thread = current_thread() is main_thread()
-    handler = signal.signal(signal.SIGINT, signal.SIG_IGN) if in_main_thread else None
-    sys.modules["__main__"] = ModuleType("__main__")
-    os.environ.setdefault(_THREADS, "1")
-    try:
-        yield
-    finally:
-        sys.modules["__main__"] = script
-        if threads is None:
-            del os.environ[_THREADS]
-        if in_main_thread:
-            signal.signal(signal.SIGINT, handler)
-
-
-_GRACE = 2.0  # s
 
 
 @dataclass(frozen=True, slots=True)
@@ -99,80 +57,14 @@ class Ending:
     kept: bool = False
 
 
-_stop: SharedEvent | None = None
 _parts: "Array[c_double]"
-_working = Lock()
-_leaving = Event()
 
 
-def start_worker(stop: SharedEvent, parts: "Array[c_double] | tuple[()]" = ()) -> None:
-    """Keep what is shared with the parent."""
-    global _stop, _parts
-    _stop = stop
-    if parts:
-        _parts = parts
-    for number in ENDING:
-        signal.signal(number, signal.SIG_IGN)
-    signal.signal(signal.SIGTERM, _leave)
-    warnings.simplefilter("ignore")
-    Thread(target=_follow_parent, daemon=True).start()
-
-
-def _follow_parent() -> None:
-    """End when the parent was killed, after the simulation on its way has closed its file."""
-    parent = multiprocessing.parent_process()
-    if parent is not None:
-        parent.join()
-        if _stop is not None:
-            _stop.set()
-        with working():
-            os._exit(1)
-
-
-def _leave(number: int, frame: FrameType | None) -> None:
-    """End the simulation on its way, and then the process."""
-    _leaving.set()
-    Thread(target=_exit_when_told, daemon=True).start()
-
-
-def _exit_when_told() -> None:
-    """End the process when the simulation has closed its file and the parent has had time to hear of it."""
-    with working():
-        sleep(_GRACE)
-        os._exit(1)
-
-
-def working() -> Lock:
-    """What is held while a file is written, so that the process does not end meanwhile."""
-    return _working
-
-
-def stopped() -> bool:
-    """Whether the parent was interrupted, or is gone."""
-    return _stop is not None and _stop.is_set()
-
-
-def leaving() -> bool:
-    """Whether this process was told to end; another one takes what it is given from now on."""
-    return _leaving.is_set()
-
-
-def wait_for_the_end() -> None:
-    """Wait until this process ends, if it was told to."""
-    if leaving():
-        Event().wait()
-
-
-def heeding(tell: Callable[[Progress], None] | None = None) -> Callable[[Progress], None]:
-    """Progress of an analysis, which ends it on request of the parent."""
-
-    def heed(progress: Progress) -> None:
-        if tell is not None:
-            tell(progress)
-        if stopped() or leaving():
-            raise KeyboardInterrupt
-
-    return heed
+def begin_batch(stop: SharedEvent, parts: "Array[c_double]") -> None:
+    """Prepare a process of a batch, which tells how far each analysis is by its place in an array."""
+    global _parts
+    start_worker(stop)
+    _parts = parts
 
 
 def analyse(place: int, file: Path, drive: Drive | Run, work: Work) -> Ending:
@@ -264,47 +156,6 @@ class ThisProcess:
 
     def close(self, *, abandon: bool = False) -> None:
         """Do nothing; see `Workers.close`."""
-
-
-class LocalProcesses:
-    """Processes of this machine, of which each uses one thread; one that is killed is replaced.
-
-    Parameters
-    ----------
-    jobs
-        How many; by default as many as there are cores.
-    """
-
-    def __init__(self, jobs: int | None = None) -> None:
-        self.slots = jobs or usable_cores()
-        self._stop = SPAWN.Event()
-        self._pool = self._new()
-
-    def _new(self) -> ProcessPoolExecutor:
-        return ProcessPoolExecutor(self.slots, SPAWN, start_worker, (self._stop,))
-
-    def submit(self, function: Callable[..., Any], *arguments: Any) -> Future[Any]:
-        """Have it computed; see `Workers.submit`."""
-        with bare_workers():
-            try:
-                return self._pool.submit(function, *arguments)
-            except BrokenProcessPool:
-                self._renew()
-                return self._pool.submit(function, *arguments)
-
-    def lost(self, error: BaseException) -> bool:
-        """See `Workers.lost`; of a pool all work is lost."""
-        return isinstance(error, BrokenProcessPool)
-
-    def _renew(self) -> None:
-        self._pool.shutdown(wait=True, cancel_futures=True)
-        self._pool = self._new()
-
-    def close(self, *, abandon: bool = False) -> None:
-        """End the processes; see `Workers.close`."""
-        if abandon:
-            self._stop.set()
-        self._pool.shutdown(wait=True, cancel_futures=abandon)
 
 
 class DaskWorkers:

@@ -54,7 +54,7 @@ def test_a_process_answers_and_one_that_was_killed_is_replaced(drive_text: str) 
             wrong = await calculator.ask(Asked("rest", "d", "belt = 3", HERE))
             assert "belt = 3" in wrong.error
             assert calculator._pool is not None
-            for process in (calculator._pool._processes or {}).values():
+            for process in calculator._pool.processes:
                 process.kill()
             said = (await calculator.ask(Asked("rest", "d", "belt = 3", HERE))).error
             assert "ended unexpectedly" in said or "belt = 3" in said
@@ -75,7 +75,7 @@ def test_what_a_drive_needs_is_made_ready_before_there_is_a_question(drive_text:
             found = await calculator.ask(Asked("rest", "e", drive_text, HERE))
             assert table(found, "Pulleys at rest")["driver"][0] == "prescribed"
             assert calculator._pool is not None
-            (process,) = (psutil.Process(one) for one in calculator._pool._processes or {})
+            (process,) = (psutil.Process(one.pid) for one in calculator._pool.processes)
             ahead = calculator._ahead
             assert ahead is not None
             assert ahead.is_alive()

@@ -14,8 +14,9 @@ import pytest
 
 from beltdyn.analyses import ANALYSES
 from beltdyn.designs.point_work import Outcome, PointWork
+from beltdyn.designs.processes import LocalProcesses
 from beltdyn.designs.study import Dispatch, study
-from beltdyn.designs.worker import DaskWorkers, LocalProcesses, ThisProcess, Workers
+from beltdyn.designs.worker import DaskWorkers, ThisProcess, Workers
 from beltdyn.errors import SimulationError
 from beltdyn.model import Drive, ParameterStudy
 

@@ -6,7 +6,8 @@ from concurrent.futures import CancelledError, Future
 
 import pytest
 
-from beltdyn.designs.worker import DaskWorkers, LocalProcesses, ThisProcess, hand_on, workers_of
+from beltdyn.designs.processes import LocalProcesses
+from beltdyn.designs.worker import DaskWorkers, ThisProcess, hand_on, workers_of
 from beltdyn.errors import ModelError
 
 
