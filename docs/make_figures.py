@@ -43,7 +43,7 @@ def draw(run: bd.Run, panels: Mapping[str, Callable[..., Axes]], path: Path) -> 
     bd.plot.configuration(run, ax=axes["drive"])
     for name, plot in panels.items():
         plot(run, ax=axes[name])
-    figure.savefig(path, dpi=110)
+    figure.savefig(path, dpi=110, bbox_inches="tight")
 
 
 if __name__ == "__main__":

@@ -176,12 +176,21 @@ def operating_points(result: Result, variable: str = "span_tension", *, ax: Axes
         ax.autoscale_view(scalex=False)
     if variable == "slip_safety":
         ax.axhline(_WARNED, color=INK, linewidth=0.7)
-        ax.set_ylim(0.0, min(_SAFE, 1.1 * float(values.max())) if values.notnull().any() else _SAFE)
+        ax.set_ylim(0.0, _top(values))
     title = str(values.attrs["long_name"]).partition(":")[0]
     ax.set(xlabel=label(along), ylabel=label(values.assign_attrs(long_name=title)))
     if values.ndim > 1:
         name_lines(ax)
     return ax
+
+
+def _top(safety: xr.DataArray) -> float:
+    """Upper end of an axis of slip safeties: large ones are cut off where there are small ones."""
+    known = safety.values[np.isfinite(safety.values)]
+    if known.size == 0:
+        return _SAFE
+    top = 1.1 * float(known.max())
+    return min(_SAFE, top) if known.min() < _SAFE else top
 
 
 @figure(_over_both, of=("operating_map",))
@@ -223,7 +232,7 @@ def efficiency_map(result: Result, ax: Axes | None = None) -> Axes:
     safety = dataset["least_slip_safety"].transpose("load", "speed")
     if safety.notnull().any():
         lines = ax.contour(speed, load, safety, levels=[1.0, 1.5, 2.0, 3.0, 5.0], colors="w", linewidths=0.9)
-        ax.clabel(lines, fmt="safety %g", fontsize=8)
+        ax.clabel(lines, fmt="slip safety %g", fontsize=8)
     ax.set(xlabel=label(speed), ylabel=label(load))
     ax.grid(visible=False)
     return ax

@@ -42,6 +42,15 @@ def test_over_speed(drive: Drive) -> None:
     np.testing.assert_allclose(np.asarray(ax.lines[1].get_xdata(), dtype=float)[-1], 30.0 / np.pi)
 
 
+def test_large_slip_safeties_are_cut_off_where_there_are_small_ones(drive: Drive) -> None:
+    """An axis up to 10 would be empty where all of them are larger."""
+    result = made(drive, "operating_map", speed=8)
+    top = plot.operating_points(result, "slip_safety").get_ylim()[1]
+    assert top == 10.0
+    large = Result(result.dataset.assign(slip_safety=result.dataset["slip_safety"] + 20.0), drive)
+    assert plot.operating_points(large, "slip_safety").get_ylim()[1] == pytest.approx(1.1 * 35.0)
+
+
 def test_all_of_a_kind_are_saved(drive: Drive, tmp_path: Path) -> None:
     assert [path.stem for path in plot.save_all(made(drive, "operating_map", speed=4), tmp_path)] == [
         "operating_points"
