@@ -126,7 +126,7 @@ def _tornado(result: Result, of: str | None, variable: str, words: str, ax: Axes
     drawn = ax.barh(ticks, [length for _, length, _ in bars], color=[shade for _, _, shade in bars])
     ax.bar_label(drawn, fmt="%.2g", padding=2, fontsize=7)
     ax.set_yticks(ticks, [label for label, _, _ in bars], fontsize=7)
-    ax.margins(x=0.2)
+    ax.margins(x=0.35)
     found = f"{name} = {factor * value:.4g} {shown}".rstrip()
     ax.set_xlabel(f"{found}\n{words}{f' [{shown}]' if shown else ''}", fontsize=9)
     return ax
