@@ -25,9 +25,9 @@ def _life_name(survival: float | None) -> str:
 class CordFatigue(Part):
     """An S-N line of the cords of the whole belt.
 
-    The force in the cords is F = T + `bending_force` |κ|, with the tension T and the curvature κ of a material point. A
-    cycle between F₁ and F₂ counts as the force F₂ (1 − F₁/F₂)^γ (Walker) with γ = `range_exponent`. The cycles to
-    failure at this force are read from the points, on straight lines over the logarithms of both.
+    The force in the cords is F = T + `bending_force` ``|κ|``, with the tension T and the curvature κ of a material
+    point. A cycle between F₁ and F₂ counts as the force F₂ (1 − F₁/F₂)^γ (Walker) with γ = `range_exponent`. The cycles
+    to failure at this force are read from the points, on straight lines over the logarithms of both.
 
     Examples
     --------
