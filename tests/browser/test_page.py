@@ -207,7 +207,7 @@ def test_an_optimisation_finds_a_drive_file(shoot: Shoot, open_page: Open, folde
     page.get_by_text("optimize: completed").wait_for()
     shoot(page, "optimisation")
     safety = page.locator("tr", has_text="slip_safety at least 3").locator("td")
-    assert [float(one) for one in safety.all_inner_texts()[1:3]] == pytest.approx([4.66, 3.0], rel=0.01)
+    assert [float(one) for one in safety.all_inner_texts()[1:3]] == pytest.approx([5.49, 3.0], rel=0.01)
     with page.expect_download() as kept:
         page.get_by_role("button", name="Resulting drive file").click()
     best = tomllib.loads(Path(kept.value.path()).read_text(encoding="utf-8"))
