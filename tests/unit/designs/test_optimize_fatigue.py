@@ -1,4 +1,4 @@
-"""Fatigue among the results of studies: its names and units, and limits of an optimisation."""
+"""Fatigue among the results of studies: its names and units, and limits of an optimization."""
 
 import numpy as np
 import pytest
