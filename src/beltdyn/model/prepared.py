@@ -10,6 +10,7 @@ import numpy as np
 from beltdyn.arrays import FloatArray
 from beltdyn.contact.friction import FrictionParameters
 from beltdyn.elements import ElementKind
+from beltdyn.errors import ModelError
 from beltdyn.machines import MovingTensioner, Tensioner
 from beltdyn.model.belt import Belt
 from beltdyn.model.carrier import Carrier, carriers_of, moved
@@ -208,7 +209,13 @@ class Prepared:
     @cached_property
     def layer(self) -> float:
         """Length over which the belt at rest takes on the curvature of a pulley, m."""
-        return layer_length(*layer_lengths(self, self.installation.tension))
+        tension = self.installation.tension
+        if not tension > 0.0:
+            raise ModelError(
+                "the belt has no tension at rest: its tensioners let it hang slack. Increase the preload, or shorten "
+                "the belt."
+            )
+        return layer_length(*layer_lengths(self, tension))
 
     @cached_property
     def laid(self) -> Laid:

@@ -38,7 +38,7 @@ _SOUND = 0.1
 _ACCURACY = 1e-6
 """Tolerance of the installed tension, relative."""
 _JUMP = 0.005
-"""Largest relative error of the installed tension if it jumps over the length of the belt."""
+"""Largest relative error of the installed tension if it jumps over the length of the belt, or a spring sets it."""
 _MOST_TRIALS = 60
 _LONGEST_CHANGE = 0.02
 """Change of a belt's length from one trial to the next, over its length, at most."""
@@ -200,6 +200,8 @@ def tighten(first: At, wanted: float, at_rest: Callable[[Prepared], At]) -> At:
         gained = ahead.tension - rest.tension
         slope, rest, done = gained / change if gained * change > 0.0 else slope, ahead, done + change
     if abs(rest.tension - first.tension) < abs(wanted - rest.tension):
+        if abs(wanted - rest.tension) < _JUMP * wanted:  # a spring holds the tension that bending leaves of it
+            return rest
         raise ConvergenceError(
             f"belt.installed_tension = {wanted:.5g} N cannot be set: the tensioner force gives "
             f"{first.tension:.5g} N at any belt length. Give belt.length instead, near "
