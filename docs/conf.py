@@ -9,7 +9,7 @@ from beltdyn.model import Entry, read_catalogue
 from beltdyn.results import COORDINATES, VARIABLES, Variable
 
 sys.path.insert(0, str(Path(__file__).parent))
-from key_tables import KEYS
+from key_tables import KEYS, KINDS
 
 project = "beltdyn"
 author = "The beltdyn developers"
@@ -71,6 +71,7 @@ myst_substitutions = {
     "coordinates": table(COORDINATES),
     "catalogue": profiles(read_catalogue()),
     "keys": KEYS,
+    "kinds": KINDS,
 }
 napoleon_google_docstring = False
 autodoc_typehints = "description"

@@ -5,19 +5,22 @@ import re
 import typing
 from collections.abc import Iterable, Mapping
 from math import inf, pi, tau
-from types import ModuleType
 from typing import Any, Literal
 
 from annotated_types import Ge, Gt, Le, Lt
 from pydantic.fields import FieldInfo
 
-from beltdyn.machines import links, loads, profiles, tensioners
-from beltdyn.machines.loads.load import Load
+from beltdyn.analyses import ANALYSES
+from beltdyn.contact.surface import KINDS as SURFACES
+from beltdyn.machines.links.link import LINKS
+from beltdyn.machines.loads.load import LOADS, Load
 from beltdyn.machines.profiles.harmonic import CrankSpeed
+from beltdyn.machines.profiles.profile import PROFILES
+from beltdyn.machines.tensioners.tensioner import TENSIONERS
 from beltdyn.model import Belt, Contact, FixedEnd, Harmonic, Limits, PulledEnd, Pulley, Simulation, Steady, WeightEnd
 from beltdyn.model.belt_form import Nominal, Sold, Stiffnesses
 from beltdyn.model.fatigue import CordFatigue, RibFatigue
-from beltdyn.model.pulley import SURFACES, Diameter
+from beltdyn.model.pulley import Diameter, surface_part
 from beltdyn.model.stretch_curve import StretchCurve
 from beltdyn.model.study import (
     FreeNumber,
@@ -30,7 +33,10 @@ from beltdyn.model.study import (
     Requirement,
     VariedNumber,
 )
+from beltdyn.parts.kind_fields import NameOf
 from beltdyn.parts.part import Part
+from beltdyn.show.plot import FIGURES
+from beltdyn.show.plot.registry import on_request
 
 CHOSEN = {
     Belt: ("elements", "discretization"),
@@ -41,12 +47,6 @@ CHOSEN = {
 
 _CODE = re.compile(r'\{ [^}]*\}|"[\w.()\[\] -]+"|\b[a-z]+(?:_[a-z]+)+\b')
 """Values in quotation marks, and keys of more than one word."""
-
-
-def kinds_in(family: ModuleType) -> dict[str, type[Part]]:
-    """Parts of a family of machines by the names of their kinds."""
-    parts = [kind for kind in vars(family).values() if isinstance(kind, type)]
-    return {part.model_json_schema()["properties"]["kind"]["const"]: part for part in parts}
 
 
 def table(part: type[Part], *others: type[Part], without: Iterable[str] = ("kind",)) -> str:
@@ -78,7 +78,7 @@ def _meaning(field: FieldInfo) -> str:
     """Description, choices and limits."""
     told = spelled(field.description or "")
     words = [f"{told[0].upper()}{told[1:]}"]
-    choices = _choices(field.annotation)
+    choices = next((one.choices for one in field.metadata if isinstance(one, NameOf)), _choices(field.annotation))
     if not all(one in told for one in choices):
         words.append(f"one of {', '.join(f'`{one}`' for one in choices)}")
     limits = [limit for one in field.metadata if (limit := _limit(one)) and limit not in told]
@@ -89,6 +89,9 @@ def _choices(annotation: Any) -> tuple[str, ...]:
     """The words from which one is chosen."""
     if typing.get_origin(annotation) is Literal:
         return typing.get_args(annotation)
+    for one in getattr(annotation, "__metadata__", ()):
+        if isinstance(one, NameOf):
+            return one.choices
     return next((found for one in typing.get_args(annotation) if (found := _choices(one))), ())
 
 
@@ -120,6 +123,36 @@ def _default(part: type[Part], one: type[Part], name: str, field: FieldInfo) -> 
     return f"`{json.dumps(value) if isinstance(value, bool | tuple) else value}`"
 
 
+def names(kinds: Mapping[str, Any]) -> str:
+    """The classes of a family as a table in Markdown, with their keys."""
+    rows = []
+    for name, part in kinds.items():
+        told = (part.__doc__ or "").partition("\n")[0]
+        keys = ", ".join(f"`{key}`" for key in list(part.keys()) if key != "kind")
+        rows.append(f"| `bd.{part.__name__}` | `{name}` | {told} | {keys} |")
+    return "\n".join(["| class | `kind` | | keys |", "|---|---|---|---|", *rows])
+
+
+def analyses() -> str:
+    """The analyses as a table in Markdown."""
+    rows = [f"| `bd.{name}` | `beltdyn {one.command}` | {one.purpose} |" for name, one in ANALYSES.items()]
+    return "\n".join(["| function | command | |", "|---|---|---|", *rows])
+
+
+def figures() -> str:
+    """The figures as a table in Markdown."""
+    rows = [
+        f"| `bd.plot.{name}` | {', '.join(one.of)} | {'on request' if one.by_default is on_request else ''} "
+        f"| {(one.draw.__doc__ or '').partition(chr(10))[0]} |"
+        for name, one in FIGURES.items()
+    ]
+    return "\n".join(["| figure | of results of | | |", "|---|---|---|---|", *rows])
+
+
+KINDS = {"load": names(LOADS), "hub": names(LINKS), "tensioner": names(TENSIONERS), "profile": names(PROFILES)}
+KINDS |= {"analysis": analyses(), "figure": figures()}
+"""The classes of the machines: `{{ kinds.load }}`."""
+
 KEYS: dict[str, Any] = {
     "belt": table(Belt, Nominal),
     "sold": table(Stiffnesses, Sold, without=("width", "thickness")),
@@ -127,7 +160,7 @@ KEYS: dict[str, Any] = {
     "cord_fatigue": table(CordFatigue),
     "rib_fatigue": table(RibFatigue),
     "pulley": table(Pulley, Diameter),
-    "surface": family(SURFACES),
+    "surface": family({name: surface_part(kind) for name, kind in SURFACES.items()}),
     "contact": table(Contact),
     "simulation": table(Simulation),
     "steady": table(Steady),
@@ -135,10 +168,10 @@ KEYS: dict[str, Any] = {
     "end": family({"fixed": FixedEnd, "pulled": PulledEnd, "weight": WeightEnd}),
     "harmonic": table(Harmonic),
     "crank": table(CrankSpeed),
-    "load": family(kinds_in(loads), Load),
-    "hub": family(kinds_in(links)),
-    "tensioner": family(kinds_in(tensioners)),
-    "profile": family(kinds_in(profiles)),
+    "load": family(LOADS, Load),
+    "hub": family(LINKS),
+    "tensioner": family(TENSIONERS),
+    "profile": family(PROFILES),
     "study": table(ParameterStudy),
     "study_number": table(VariedNumber),
     "free_number": table(FreeNumber),

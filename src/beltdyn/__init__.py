@@ -4,21 +4,26 @@ The public names are listed in ``__init__.pyi`` and in ``analyses.py``, and impo
 the command line answers at once.
 """
 
+from pathlib import Path as _Path
 from typing import Any
 
-import lazy_loader
-
 from beltdyn.analyses import ANALYSES as _ANALYSES
+from beltdyn.lazy import LazyNames as _LazyNames
 
 __version__ = "0.1.0"
 
-_load, _names, _listed = lazy_loader.attach_stub(__name__, __file__)
+_listed = _LazyNames(__name__, _Path(__file__).with_suffix(".pyi"))
 __all__ = sorted({*_listed, *_ANALYSES})
 
 
 def __getattr__(name: str) -> Any:
-    return _ANALYSES[name].function if name in _ANALYSES else _load(name)
+    if name in _ANALYSES:
+        return _ANALYSES[name].function
+    if name not in _listed:
+        raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
+    found = globals()[name] = _listed[name]
+    return found
 
 
 def __dir__() -> list[str]:
-    return sorted({*_names(), *_ANALYSES})
+    return list(__all__)

@@ -55,3 +55,9 @@ def blank(kind: np.dtype[np.void]) -> np.record:
 def offsets(counts: Iterable[int]) -> IntArray:
     """Where groups of rows begin that are laid end to end, and where the last one ends."""
     return np.cumsum([0, *counts]).astype(np.int64)
+
+
+def as_values(row: np.record) -> dict[str, Any]:
+    """The fields of a row, with inner rows as mappings, for `fill`."""
+    names = row.dtype.names or ()
+    return {name: as_values(row[name]) if isinstance(row[name], np.record) else row[name] for name in names}

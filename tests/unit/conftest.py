@@ -45,8 +45,10 @@ def stretch_law(request: pytest.FixtureRequest) -> StretchParameters:
     """Each law of stretch, with about 20 kN; a measured one softens like that of an elastic belt."""
     law: StretchLaw = request.param
     strains = np.array([0.0, 0.004, 0.01, 0.02, 0.05, 0.1, 0.3])
-    given = (strains, 600.0 * (np.sqrt(strains / 0.03 + 0.25) - 0.5)) if law.from_points else (2e4,)
-    made: StretchParameters = law.make(*given)
+    if law.through is not None:
+        measured: StretchParameters = law.through(strains, 600.0 * (np.sqrt(strains / 0.03 + 0.25) - 0.5))
+        return measured
+    made: StretchParameters = law.record(2e4, *(parameter.example for parameter in law.parameters))
     return made
 
 

@@ -8,6 +8,12 @@ import pytest
 UNIT = Path(__file__).parent
 SOURCE = UNIT.parents[1] / "src" / "beltdyn"
 
+FAMILIES = {
+    "elements/*.py": "unit/elements/test_kind.py",
+    "show/plot/*.py": "unit/show/plot/test_figures.py",
+}
+"""Where a kind is tested with all of its family, if it has no test of its own."""
+
 ELSEWHERE = {
     # Kinds of one contract: the test of their family runs over all of them alike.
     "errors.py": "unit/observation/test_observer_slip_through.py",
@@ -20,6 +26,8 @@ ELSEWHERE = {
     "machines/tensioners/registry.py": "unit/machines/tensioners/test_tensioner.py",
     "stretch/*.py": "unit/stretch/test_laws.py",
     "results/checks/*.py": "unit/results/test_checks.py",
+    "kernel/fingerprint.py": "unit/kernel/test_kinds.py",
+    "show/plot/__init__.py": "unit/test_extend.py",
     # Parts of one calculation, which is tested as a whole: forces by their energies, tangents by differences.
     "system/body_forces.py": "unit/system/test_bodies.py",
     "system/element_state.py": "unit/system/test_discretization.py",
@@ -72,7 +80,7 @@ WITHOUT = [path for path in sorted(SOURCE.rglob("*.py")) if has_functions(path) 
 
 
 def test_every_module_has_its_test_or_says_where_it_is_tested() -> None:
-    listed = {path for pattern in ELSEWHERE for path in SOURCE.glob(pattern)}
+    listed = {path for pattern in ELSEWHERE | FAMILIES for path in SOURCE.glob(pattern)}
     assert [path.relative_to(SOURCE).as_posix() for path in WITHOUT if path not in listed] == []
 
 

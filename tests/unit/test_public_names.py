@@ -6,11 +6,18 @@ import subprocess
 import sys
 from pathlib import Path
 from types import ModuleType
+from typing import Any
 
 import pytest
 
 import beltdyn as bd
 import beltdyn.theory
+from beltdyn.analyses import ANALYSES
+from beltdyn.kinds import Registry
+from beltdyn.machines.links.link import LINKS
+from beltdyn.machines.loads.load import LOADS
+from beltdyn.machines.profiles.profile import PROFILES
+from beltdyn.machines.tensioners.tensioner import TENSIONERS
 
 
 def run(program: str) -> str:
@@ -59,9 +66,14 @@ def test_the_reference_tells_of_every_name() -> None:
     sections = dict(re.findall(r"currentmodule:: (\S+)\n(.*?)```", reference, flags=re.DOTALL))
     listed = set(re.findall(r"^    (\w+)$", reference, flags=re.MULTILINE))
     modules = {name for name in dir(bd) if isinstance(getattr(bd, name), ModuleType)}
-    assert set(dir(bd)) - modules <= listed
-    assert set(bd.model.__all__) - OF_THE_PACKAGE <= listed
-    assert set(bd.plot.__all__) - {"FIGURES"} <= listed
+    families: list[Registry[Any]] = [LOADS, LINKS, TENSIONERS, PROFILES]
+    kinds = {kind.__name__ for family in families for kind in family.values()}
+    tables = ("load", "hub", "tensioner", "profile", "analysis", "figure")
+    assert all(f"{{{{ kinds.{table} }}}}" in reference for table in tables)
+    assert set(dir(bd)) - modules - set(ANALYSES) <= listed
+    assert kinds <= set(bd.model.__all__)
+    assert set(bd.model.__all__) - OF_THE_PACKAGE - kinds <= listed
+    assert set(bd.plot.__all__) - set(bd.plot.FIGURES) - {"FIGURES"} <= listed
     assert set(bd.derived.__all__) <= listed
     assert set(bd.extend.__all__) == set(re.findall(r"^    (\w+)$", sections["beltdyn.extend"], flags=re.MULTILINE))
 

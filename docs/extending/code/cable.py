@@ -10,6 +10,7 @@ from beltdyn.elements.ancf.shape_functions import bends, slopes
 from beltdyn.elements.kind import ElementKind, Section
 from beltdyn.elements.planar_curve import Density, add_density, begin_tangent, combine, curve_scratch, end_tangent
 from beltdyn.kernel import kernel
+from beltdyn.kinds import register
 from beltdyn.quadrature import Quadrature
 from beltdyn.stretch import stretching
 
@@ -68,19 +69,21 @@ def cable_mass(section: Section, length: FloatArray | float) -> FloatArray:
     return ANCF.mass(section, length)[..., centreline[:, None], centreline]
 
 
-CABLE = ElementKind(
-    name="cable",
-    meaning="for comparison a cubic centerline without shear",
-    element=Cable,
-    coordinates=("r_x", "r_y", "dr_x/dx", "dr_y/dx"),
-    vectors=(0, 2, 4, 6),
-    shift=(1.0, 0.0, 1.0, 0.0),
-    control=ANCF.control,
-    scale=lambda length: (1.0, 1.0, length, length),
-    mass=cable_mass,
-    nodal=lambda place, slope, _bend: np.hstack([place, slope]),
-    energy=cable_energy,
-    force=cable_force,
-    scratch=curve_scratch(4),
-    turned=2,
+CABLE = register(
+    ElementKind(
+        name="cable",
+        meaning="for comparison a cubic centerline without shear",
+        element=Cable,
+        coordinates=("r_x", "r_y", "dr_x/dx", "dr_y/dx"),
+        vectors=(0, 2, 4, 6),
+        shift=(1.0, 0.0, 1.0, 0.0),
+        control=ANCF.control,
+        scale=lambda length: (1.0, 1.0, length, length),
+        mass=cable_mass,
+        nodal=lambda place, slope, _bend: np.hstack([place, slope]),
+        energy=cable_energy,
+        force=cable_force,
+        scratch=curve_scratch(4),
+        turned=2,
+    )
 )

@@ -1,20 +1,21 @@
 import numpy as np
 
 import beltdyn as bd
-from beltdyn.contact.surface import SHAPE
+from beltdyn.contact.surface import KINDS
 from beltdyn.contact.surface.circle import circle_gap
 from beltdyn.contact.surface.lobed import lobed_gap
-from beltdyn.records import records
+from beltdyn.records import row
 
 radius, step = 0.08, 1e-6
-rim = records(SHAPE, lobe_height=[2e-4], lobes=[10.0])[0]
+shape = KINDS["lobed"].constants
+rim = row(shape, lobe_height=2e-4, lobes=10.0)
 for angle in (0.0, 0.1, 0.25, 2.0, -3.0):
     place = 0.0795 * np.array([np.cos(angle), np.sin(angle)])
-    gap = lobed_gap(*place, radius, rim)
+    gap = lobed_gap(rim, *place, radius)
     normal = np.array([gap.normal_x, gap.normal_y])
     tangent = np.array([-normal[1], normal[0]])
     ahead, behind, right, left, up, down = (
-        lobed_gap(*(place + shift), radius, rim)
+        lobed_gap(rim, *(place + shift), radius)
         for axis in (tangent, np.array([1.0, 0.0]), np.array([0.0, 1.0]))
         for shift in (step * axis, -step * axis)
     )
@@ -22,8 +23,8 @@ for angle in (0.0, 0.1, 0.25, 2.0, -3.0):
     assert np.allclose(slope, -normal, atol=1e-6)
     turned = np.array([ahead.normal_x - behind.normal_x, ahead.normal_y - behind.normal_y]) / (2 * step)
     assert np.allclose(turned, gap.curvature * tangent, rtol=1e-4, atol=1e-4)
-    smooth = records(SHAPE, lobe_height=[1e-15], lobes=[10.0])[0]
-    assert np.allclose(lobed_gap(*place, radius, smooth), circle_gap(*place, radius, smooth), atol=1e-10)
+    smooth = row(shape, lobe_height=1e-15, lobes=10.0)
+    assert np.allclose(lobed_gap(smooth, *place, radius), circle_gap(smooth, *place, radius), atol=1e-10)
 
 drive = bd.example("two_pulley")
 surface = {"kind": "lobed", "lobe_height": "1 mm", "lobes": 6}

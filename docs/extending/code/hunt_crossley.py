@@ -2,9 +2,7 @@
 
 from typing import NamedTuple
 
-from beltdyn.contact.normal.law import NormalForce, NormalLaw, register
-from beltdyn.contact.parameter import Parameter
-from beltdyn.kernel import kernel
+from beltdyn.extend import NormalForce, NormalLaw, Parameter, kernel, register
 
 
 class HuntCrossley(NamedTuple):
@@ -30,5 +28,7 @@ def hunt_crossley(law: HuntCrossley, penetration: float, rate: float) -> NormalF
     return NormalForce(force, slope, damping, elastic, energy)
 
 
-_KEY = Parameter("impact_damping", "s/m", "the part of the elastic contact force that a rate of 1 m/s adds to it")
+_KEY = Parameter(
+    "impact_damping", "s/m", "the part of the elastic contact force that a rate of 1 m/s adds to it", example=1.0
+)
 register(NormalLaw("hunt_crossley", HuntCrossley, hunt_crossley, (_KEY,)))

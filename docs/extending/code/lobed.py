@@ -5,15 +5,13 @@ from math import atan2, cos, floor, sin, sqrt
 
 import numpy as np
 
-from beltdyn.contact.parameter import Parameter
-from beltdyn.contact.surface.kind import Gap, SurfaceKind, register
-from beltdyn.kernel import kernel
+from beltdyn.extend import Gap, Parameter, SurfaceKind, kernel, register
 
 _STEPS = 8
 
 
 @kernel
-def lobed_gap(x: float, y: float, radius: float, surface: np.record) -> Gap:
+def lobed_gap(surface: np.record, x: float, y: float, radius: float) -> Gap:
     """Gap of a point at x, y (m) in the frame of the pulley; `lobe_height` is a (m), and `lobes` k, a whole number."""
     height, count = surface.lobe_height, floor(surface.lobes + 0.5)
     angle = atan2(y, x)
@@ -38,7 +36,7 @@ def _reach(parameters: Mapping[str, float]) -> float:
 
 
 _KEYS = (
-    Parameter("lobe_height", "m", "the height of the lobes above the mean radius"),
-    Parameter("lobes", "", "the number of lobes"),
+    Parameter("lobe_height", "m", "the height of the lobes above the mean radius", example=1e-3),
+    Parameter("lobes", "", "the number of lobes", example=6.0),
 )
 register(SurfaceKind("lobed", lobed_gap, _reach, _KEYS))

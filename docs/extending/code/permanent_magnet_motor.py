@@ -6,10 +6,7 @@ import numpy as np
 from pydantic import Field
 
 from beltdyn.arrays import FloatArray
-from beltdyn.kernel import kernel
-from beltdyn.machines.loads.load import Load, LoadTorque, ShaftState, nearer_kink
-from beltdyn.parts.quantity import quantity
-from beltdyn.records import record
+from beltdyn.extend import Load, LoadTorque, ShaftState, kernel, nearer_kink, quantity, record, register
 
 PERMANENT_MAGNET_MOTOR = record(
     voltage="f8",  # U, V
@@ -39,6 +36,7 @@ def limit_reached(constants: np.record, _numbers: FloatArray, shaft: ShaftState,
     return nearest
 
 
+@register
 class PermanentMagnetMotor(Load):
     """A motor with permanent magnets at constant voltage, whose supply limits its current."""
 

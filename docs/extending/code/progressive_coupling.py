@@ -5,10 +5,8 @@ from typing import Annotated, Literal
 import numpy as np
 from pydantic import Field
 
-from beltdyn.kernel import kernel
-from beltdyn.machines.links.link import HubLink, LinkTorque
-from beltdyn.parts.quantity import TorsionalDamping, TorsionalStiffness, quantity
-from beltdyn.records import record
+from beltdyn.extend import HubLink, LinkTorque, kernel, quantity, record, register
+from beltdyn.parts.quantity import TorsionalDamping, TorsionalStiffness
 
 PROGRESSIVE_COUPLING = record(
     stiffness="f8",  # k, N m/rad
@@ -32,6 +30,7 @@ def progressive_coupling(constants: np.record, _scale: float, twist: float, rate
     )
 
 
+@register
 class ProgressiveCoupling(HubLink):
     """A torsional spring that gets stiffer with its twist, and a damper in parallel."""
 

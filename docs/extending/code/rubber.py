@@ -1,4 +1,4 @@
-"""A cord of rubber: N = EA (g - 1 / g^2) / 3, neo-Hooke's law at constant volume."""
+"""A cord of rubber by Mooney (1940) and Rivlin: N = EA (g - 1 / g^2) (1 - s + s / g) / 3, at constant volume."""
 
 from typing import NamedTuple
 
@@ -6,42 +6,46 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from beltdyn.arrays import FloatArray
-from beltdyn.kernel import kernel
-from beltdyn.stretch.law import Stretching, StretchLaw, register
+from beltdyn.extend import Parameter, Stretching, StretchLaw, kernel, register
 
 
 class Rubber(NamedTuple):
-    """Parameters of neo-Hooke's law."""
+    """Parameters of the law of Mooney and Rivlin."""
 
     stiffness: float
     """EA without strain, N."""
+    second_share: float
+    """s, the second constant over the sum of both: C2 / (C1 + C2)."""
 
     def tension(self, stretch: ArrayLike) -> FloatArray:
-        """Tension EA (g - 1 / g^2) / 3, N."""
-        g = np.asarray(stretch, dtype=float)
-        return np.asarray(self.stiffness / 3.0 * (g - g**-2))
+        """Tension, N."""
+        g, s = np.asarray(stretch, dtype=float), self.second_share
+        return np.asarray(self.stiffness / 3.0 * (g - g**-2) * (1.0 - s + s / g))
 
     def tangent_stiffness(self, stretch: ArrayLike) -> FloatArray:
-        """Rate dN/dg = EA (1 + 2 / g^3) / 3, N."""
-        return np.asarray(self.stiffness / 3.0 * (1.0 + 2.0 * np.asarray(stretch, dtype=float) ** -3))
+        """Rate dN/dg, N."""
+        g, s = np.asarray(stretch, dtype=float), self.second_share
+        return np.asarray(self.stiffness / 3.0 * ((1.0 - s) * (1.0 + 2.0 * g**-3) + 3.0 * s * g**-4))
 
     def stretch(self, tension: ArrayLike) -> FloatArray:
-        """Root of g^3 - (3 N / EA) g^2 - 1 = 0, by Newton's method from above, where the cubic is convex."""
-        t = 3.0 * np.asarray(tension, dtype=float) / self.stiffness
-        g = 1.0 + np.maximum(t, 0.0)
+        """Stretch under a tension, by Newton's method, which converges from one side: N(g) is concave."""
+        force = np.asarray(tension, dtype=float)
+        g = np.ones_like(force)
         for _ in range(50):
-            g = g - (g**3 - t * g**2 - 1.0) / (3.0 * g**2 - 2.0 * t * g)
+            g = g - (self.tension(g) - force) / self.tangent_stiffness(g)
         return np.asarray(g)
 
 
 @kernel
 def rubber(law: Rubber, metric: float) -> Stretching:
-    """Strain energy (J/m) and its derivatives (N) in G."""
+    """Strain energy (J/m) and its derivatives (N) in G = g^2."""
+    sixth, s, g = law.stiffness / 6.0, law.second_share, metric**0.5
     return Stretching(
-        law.stiffness / 3.0 * (0.5 * metric + metric**-0.5 - 1.5),
-        law.stiffness / 6.0 * (1.0 - metric**-1.5),
-        law.stiffness / 4.0 * metric**-2.5,
+        sixth * ((1.0 - s) * (metric + 2.0 / g - 3.0) + s * (2.0 * g + 1.0 / metric - 3.0)),
+        sixth * ((1.0 - s) * (1.0 - metric**-1.5) + s * (1.0 / g - metric**-2)),
+        sixth * ((1.0 - s) * 1.5 * metric**-2.5 + s * (2.0 * metric**-3 - 0.5 * metric**-1.5)),
     )
 
 
-register(StretchLaw("rubber", "of a cord of rubber", Rubber, rubber, Rubber))
+_KEY = Parameter("second_share", "", "the second constant of Mooney and Rivlin over the sum of both", example=0.2)
+register(StretchLaw("rubber", "of a cord of rubber", Rubber, rubber, (_KEY,)))

@@ -7,9 +7,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from beltdyn.arrays import FloatArray
-from beltdyn.contact.friction.law import FrictionLaw, register
-from beltdyn.contact.parameter import Parameter
-from beltdyn.kernel import kernel
+from beltdyn.extend import FrictionLaw, Parameter, kernel, register
 
 _FULL = atanh(0.99)
 """Slip velocity over v_c at which 99 % of mu f_n are reached."""
@@ -38,5 +36,5 @@ def smooth(law: Smooth, slip: float, normal: float, friction: float, rim: float)
     return -friction * normal * part, -slope, -friction * part, 0.0
 
 
-_KEY = Parameter("smoothing_velocity", "m/s", "the slip velocity over which smooth friction builds up")
+_KEY = Parameter("smoothing_velocity", "m/s", "the slip velocity over which smooth friction builds up", example=0.05)
 register(FrictionLaw("smooth", Smooth, smooth, (_KEY,)))

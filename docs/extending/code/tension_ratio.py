@@ -3,9 +3,7 @@
 from matplotlib.axes import Axes
 
 from beltdyn.results import Run
-from beltdyn.show.plot.legends import name_lines
-from beltdyn.show.plot.registry import figure
-from beltdyn.show.plot.style import axes_or_new, color, dash, label
+from beltdyn.show.plot import axes_or_new, color, dash, figure, label, name_lines
 
 
 @figure()

@@ -10,7 +10,7 @@ from beltdyn.analyses import ANALYSES, SIMULATE, Analysis
 from beltdyn.designs.processes import SPAWN, LocalProcesses, bare_workers
 from beltdyn.designs.worker import Ending, Work, analyse, begin_batch
 from beltdyn.model import Drive
-from beltdyn.model.drive import refuse_functions
+from beltdyn.model.drive import refuse_functions, refuse_kinds_of_scripts
 from beltdyn.observation.compilation import usable_cores
 from beltdyn.results import Run
 from beltdyn.solvers.progress import BatchProgress
@@ -68,6 +68,7 @@ def analyse_all(
     for file, drive in files.items():
         rule = f"{file.name} runs in another process, which a Python function cannot be passed to"
         refuse_functions(_drive_of(drive), rule, "Call `simulate` or another analysis for this drive alone.")
+        refuse_kinds_of_scripts(_drive_of(drive))
     waiting, work = _longest_first(files), Work(analysis, options, overwrite, finish)
     going = True
 

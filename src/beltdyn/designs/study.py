@@ -19,7 +19,7 @@ from beltdyn.designs.study_table import StudyTable
 from beltdyn.designs.worker import GONE, ThisProcess, Workers, workers_of
 from beltdyn.errors import ModelError, SimulationError
 from beltdyn.model import Drive, ParameterStudy, load
-from beltdyn.model.drive import refuse_functions
+from beltdyn.model.drive import refuse_functions, refuse_kinds_of_scripts
 from beltdyn.model.toml_reader import read_study
 from beltdyn.parts.messages import suggest
 from beltdyn.results import Result
@@ -235,6 +235,7 @@ def study(
     if not isinstance(workers, ThisProcess):
         refuse_functions(drive, "points are computed by other processes, which a Python function cannot be passed to",
                          "Compute them in this process with jobs = 1.")  # fmt: skip
+        refuse_kinds_of_scripts(drive)
     with StudyTable(given, drive, plan, path, overwrite, retry) as table:
         waiting = np.flatnonzero(~table.done).tolist()
         teller = _Teller(table, progress, workers)

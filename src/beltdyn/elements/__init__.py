@@ -1,6 +1,6 @@
 """Belt elements, one kind per file or folder: energy, force, tangent, mass, and the curve for contact.
 
-Importing a kind here puts it on the list.  `kind` says what a kind provides, and `dispatch` has the kernels of all
+Importing a kind here registers it.  `kind` says what a kind provides, and `dispatch` has the kernels of all
 kinds under one name each.
 """
 

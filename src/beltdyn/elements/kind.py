@@ -8,7 +8,7 @@ from typing import Any, NamedTuple, Protocol
 import numpy as np
 
 from beltdyn.arrays import FloatArray
-from beltdyn.kernel import kernel
+from beltdyn.kernel import KernelKinds, kernel
 from beltdyn.quadrature import Quadrature
 from beltdyn.records import record
 from beltdyn.stretch import StretchParameters, stretching
@@ -139,7 +139,7 @@ def as_cubic(angle: FloatArray) -> FloatArray:
 
 @dataclass(frozen=True)
 class ElementKind:
-    """A belt element between two nodes, registered in `ELEMENTS`.
+    """A belt element between two nodes, for `register`.
 
     A node has n coordinates, those of an element are e, shape (2 n,): of its first node, then of its second.  Part of
     them are v vectors of two components that carry the centerline, which consists of one or several Bezier curves.
@@ -215,9 +215,6 @@ class ElementKind:
     cubic_angle: Callable[[FloatArray], FloatArray] = as_cubic
     bent_strain: float = 0.0
 
-    def __post_init__(self) -> None:
-        ELEMENTS[self.name] = self
-
     @property
     def dof(self) -> int:
         """Number of coordinates of a node, n."""
@@ -240,5 +237,5 @@ class ElementKind:
         return record(gradient=f"{size}f8", by_flow=f"{size}f8", tangent=f"({size},{size})f8", **self.scratch)
 
 
-ELEMENTS: dict[str, ElementKind] = {}
+ELEMENTS = KernelKinds[ElementKind]("element", ElementKind, "element")
 """All element kinds by name."""

@@ -30,6 +30,7 @@ from beltdyn.elements.planar_curve import (
     end_tangent,
 )
 from beltdyn.kernel import kernel
+from beltdyn.kinds import register
 from beltdyn.quadrature import Quadrature, gauss_points
 from beltdyn.stretch import stretching
 
@@ -235,21 +236,23 @@ def quintic_damping(
     return stretching, turning
 
 
-QUINTIC = ElementKind(
-    name="quintic",
-    meaning="a quintic centerline without shear, for smooth contact",
-    element=Quintic,
-    coordinates=("r_x", "r_y", "dr_x/dx", "dr_y/dx", "d2r_x/dx2", "d2r_y/dx2"),
-    vectors=(0, 2, 4, 6, 8, 10),
-    shift=(1.0, 0.0, 0.0, 1.0, 0.0, 0.0),
-    control=quintic_control,
-    scale=lambda length: (1.0, 1.0, length, length, length**2, length**2),
-    mass=quintic_mass,
-    nodal=lambda place, slope, bend: np.hstack([place, slope, bend]),
-    energy=quintic_energy,
-    force=quintic_force,
-    damping=quintic_damping,
-    scratch=curve_scratch(6) | curve_damping_scratch(6),
-    turned=2,
-    bent_strain=ANCF.bent_strain,
+QUINTIC = register(
+    ElementKind(
+        name="quintic",
+        meaning="a quintic centerline without shear, for smooth contact",
+        element=Quintic,
+        coordinates=("r_x", "r_y", "dr_x/dx", "dr_y/dx", "d2r_x/dx2", "d2r_y/dx2"),
+        vectors=(0, 2, 4, 6, 8, 10),
+        shift=(1.0, 0.0, 0.0, 1.0, 0.0, 0.0),
+        control=quintic_control,
+        scale=lambda length: (1.0, 1.0, length, length, length**2, length**2),
+        mass=quintic_mass,
+        nodal=lambda place, slope, bend: np.hstack([place, slope, bend]),
+        energy=quintic_energy,
+        force=quintic_force,
+        damping=quintic_damping,
+        scratch=curve_scratch(6) | curve_damping_scratch(6),
+        turned=2,
+        bent_strain=ANCF.bent_strain,
+    )
 )

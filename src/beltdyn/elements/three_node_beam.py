@@ -13,6 +13,7 @@ from beltdyn.arrays import FloatArray
 from beltdyn.elements.kind import ElementKind, Section
 from beltdyn.elements.truss import add_link, link_cubic_angle, link_energy
 from beltdyn.kernel import kernel
+from beltdyn.kinds import register
 from beltdyn.quadrature import Quadrature
 
 # Torsional spring between two links: the bending stiffness of a three-node beam element without rotations
@@ -142,20 +143,22 @@ def _control(length: FloatArray | float) -> FloatArray:
     return np.broadcast_to(both, (*np.shape(length), *both.shape))
 
 
-THREE_NODE_BEAM = ElementKind(
-    name="three-node-beam",
-    meaning="pairs of links with torsional springs, for comparison",
-    element=ThreeNodeBeam,
-    coordinates=("r_x", "r_y"),
-    points=LINKS,
-    vectors=(0, 2, 4),
-    shift=(1.0, 1.0, 1.0),
-    control=_control,
-    scale=lambda _length: (1.0,) * (2 * LINKS),
-    mass=lumped_mass,
-    nodal=lambda place, _slope, _bend: place.reshape(-1, 2 * LINKS),
-    energy=beam_energy,
-    force=beam_force,
-    has_ends=False,
-    cubic_angle=lambda angle: link_cubic_angle(angle / LINKS),
+THREE_NODE_BEAM = register(
+    ElementKind(
+        name="three-node-beam",
+        meaning="pairs of links with torsional springs, for comparison",
+        element=ThreeNodeBeam,
+        coordinates=("r_x", "r_y"),
+        points=LINKS,
+        vectors=(0, 2, 4),
+        shift=(1.0, 1.0, 1.0),
+        control=_control,
+        scale=lambda _length: (1.0,) * (2 * LINKS),
+        mass=lumped_mass,
+        nodal=lambda place, _slope, _bend: place.reshape(-1, 2 * LINKS),
+        energy=beam_energy,
+        force=beam_force,
+        has_ends=False,
+        cubic_angle=lambda angle: link_cubic_angle(angle / LINKS),
+    )
 )

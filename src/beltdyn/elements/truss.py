@@ -7,6 +7,7 @@ import numpy as np
 from beltdyn.arrays import FloatArray
 from beltdyn.elements.kind import ElementKind, Section
 from beltdyn.kernel import kernel
+from beltdyn.kinds import register
 from beltdyn.quadrature import Quadrature
 from beltdyn.stretch import StretchParameters, stretching
 
@@ -106,18 +107,20 @@ def link_cubic_angle(angle: FloatArray) -> FloatArray:
     return np.sqrt(angle) * _CIRCLE**0.25
 
 
-TRUSS = ElementKind(
-    name="truss",
-    meaning="straight links without bending stiffness, for comparison",
-    element=Truss,
-    coordinates=("r_x", "r_y"),
-    vectors=(0, 2),
-    shift=(1.0, 1.0),
-    control=straight_control,
-    scale=lambda _length: (1.0, 1.0),
-    mass=lumped_mass,
-    nodal=lambda place, _slope, _bend: place,
-    energy=truss_energy,
-    force=truss_force,
-    cubic_angle=link_cubic_angle,
+TRUSS = register(
+    ElementKind(
+        name="truss",
+        meaning="straight links without bending stiffness, for comparison",
+        element=Truss,
+        coordinates=("r_x", "r_y"),
+        vectors=(0, 2),
+        shift=(1.0, 1.0),
+        control=straight_control,
+        scale=lambda _length: (1.0, 1.0),
+        mass=lumped_mass,
+        nodal=lambda place, _slope, _bend: place,
+        energy=truss_energy,
+        force=truss_force,
+        cubic_angle=link_cubic_angle,
+    )
 )

@@ -1,5 +1,6 @@
 """Compiled code: the decorator of kernels and the cache of their machine code."""
 
+from beltdyn.kernel.by_kind import choice
 from beltdyn.kernel.by_type import by_type
 from beltdyn.kernel.cache import (
     CACHE_VARIABLE,
@@ -11,7 +12,8 @@ from beltdyn.kernel.cache import (
     kernel_cache,
     source_hash,
 )
-from beltdyn.kernel.decorator import Kernel, choice, interpreted, kernel
+from beltdyn.kernel.decorator import Kernel, interpreted, kernel
+from beltdyn.kernel.kinds import KernelKinds, KindRows, labels
 from beltdyn.kernel.progress import CompilationReport, report_compilation, watch_compilation
 
 __all__ = [
@@ -21,6 +23,8 @@ __all__ = [
     "CompilationReport",
     "Kernel",
     "KernelCacheWarning",
+    "KernelKinds",
+    "KindRows",
     "by_type",
     "choice",
     "compiles_quickly",
@@ -28,6 +32,7 @@ __all__ = [
     "interpreted",
     "kernel",
     "kernel_cache",
+    "labels",
     "report_compilation",
     "source_hash",
     "watch_compilation",

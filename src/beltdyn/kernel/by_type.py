@@ -7,36 +7,25 @@ from typing import Any, ClassVar
 from beltdyn.kernel.cache import compiles_quickly
 
 
-class ByType:
+class Dispatch:
     """Several kernels with one name.
 
     Parameters
     ----------
-    kernels
-        The kernel for each class of named tuples.
     name
-        What error messages call it.
+        Its name in error messages.
     """
 
-    unregistered: ClassVar[list["ByType"]] = []
-    """Kernels not yet registered with plain compilation."""
+    unregistered: ClassVar[list["Dispatch"]] = []
+    """Those not yet registered with plain compilation."""
 
-    def __init__(self, kernels: Mapping[type, Callable[..., Any]], name: str) -> None:
-        self.kernels: dict[Any, Any] = dict(kernels)
+    def __init__(self, name: str) -> None:
         self.__name__ = name
         self.unregistered.append(self)
 
-    def __call__(self, subject: Any, *rest: Any) -> Any:
-        """Call the kernel for the type of the first argument."""
-        return self.kernels[type(subject)](subject, *rest)
-
     def kernel_for(self, subject: Any, *_rest: Any) -> Any:
         """The kernel for a Numba type of the first argument."""
-        chosen = self.kernels.get(getattr(subject, "instance_class", None))
-        if chosen is None:
-            known = ", ".join(kind.__name__ for kind in self.kernels)
-            raise TypeError(f"{self.__name__} takes {known}, not {subject}. Register a kernel for it.")
-        return chosen
+        raise NotImplementedError
 
     @property
     def _numba_type_(self) -> Any:
@@ -50,6 +39,26 @@ class ByType:
         from beltdyn.kernel.quick import choice_type
 
         return choice_type(self.kernel_for)
+
+
+class ByType(Dispatch):
+    """Kernels for classes of named tuples; classes may be added later."""
+
+    def __init__(self, kernels: Mapping[type, Callable[..., Any]], name: str) -> None:
+        super().__init__(name)
+        self.kernels: Mapping[Any, Any] = kernels
+
+    def __call__(self, subject: Any, *rest: Any) -> Any:
+        """Call the kernel for the type of the first argument."""
+        return self.kernels[type(subject)](subject, *rest)
+
+    def kernel_for(self, subject: Any, *_rest: Any) -> Any:
+        """The kernel for a Numba type of the first argument."""
+        chosen = self.kernels.get(getattr(subject, "instance_class", None))
+        if chosen is None:
+            known = ", ".join(kind.__name__ for kind in self.kernels)
+            raise TypeError(f"{self.__name__} takes {known}, not {subject}. Register a kernel for it.")
+        return chosen
 
 
 def by_type(kernels: Mapping[type, Callable[..., Any]], name: str) -> Callable[..., Any]:

@@ -10,8 +10,9 @@ import numba
 from numba.core import event
 from numba.extending import overload
 
-from beltdyn.kernel.by_type import ByType
+from beltdyn.kernel.by_type import Dispatch
 from beltdyn.kernel.cache import compiles_quickly, holds_kernels, kernel_cache
+from beltdyn.kernel.fingerprint import own_classes
 from beltdyn.kernel.progress import CompilationCount
 from beltdyn.kernel.seal import SealedFolder, setting
 
@@ -33,9 +34,11 @@ def new_dispatcher(function: Callable[..., Any], inline: bool) -> Any:
         return QuickDispatcher(function, {"nopython": True, **OPTIONS}, inline, kernel_cache())
     _say_once()
     sealed = _sealed_folder()
-    while ByType.unregistered:
-        _register(ByType.unregistered.pop())
+    while Dispatch.unregistered:
+        _register(Dispatch.unregistered.pop())
     dispatcher = numba.njit(forceinline=inline, **OPTIONS)(function)
+    if own_classes():  # Numba's cache would take a changed law for the same
+        return dispatcher
     with setting("CACHE_DIR", str(sealed.folder)), suppress(RuntimeError):  # no file holds what was typed
         dispatcher.enable_caching()
     return _Sealing(dispatcher, sealed)
@@ -59,8 +62,8 @@ class _Sealing:
         return getattr(self._dispatcher, name)
 
 
-def _register(choice: ByType) -> None:
-    """Tell Numba which kernel a choice by type selects."""
+def _register(choice: Dispatch) -> None:
+    """Tell Numba which kernel a choice by type stands for."""
     overload(choice, jit_options=OPTIONS, strict=False)(
         lambda subject, *rest: choice.kernel_for(subject, *rest).py_func
     )

@@ -1,13 +1,15 @@
 """The one decorator of compiled code.  Numba is imported at the first call of a kernel, not where it is written."""
 
 import functools
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable
 from contextvars import ContextVar
 from typing import Any, Generic, ParamSpec, TypeVar, cast, overload
+from weakref import WeakSet
 
 P = ParamSpec("P")
 R = TypeVar("R")
 _interpreting = ContextVar("_interpreting", default=False)
+_kernels: WeakSet["Kernel[..., Any]"] = WeakSet()
 
 
 class Kernel(Generic[P, R]):
@@ -24,6 +26,7 @@ class Kernel(Generic[P, R]):
     def __init__(self, function: Callable[P, R], inline: bool) -> None:
         self.py_func, self.inline = function, inline
         functools.update_wrapper(self, function)
+        _kernels.add(self)
 
     def __call__(self, *args: P.args, **kwargs: P.kwargs) -> R:
         """Call the compiled function, or inside of `interpreted` the function itself."""
@@ -45,6 +48,12 @@ class Kernel(Generic[P, R]):
     def _numba_type_(self) -> Any:
         """Type by which other kernels know this one."""
         return self.dispatcher._numba_type_
+
+
+def forget_compiled() -> None:
+    """Compile all kernels anew where they are called next."""
+    for one in _kernels:
+        vars(one).pop("dispatcher", None)
 
 
 @overload
@@ -69,19 +78,3 @@ def interpreted(function: Callable[P, R]) -> Callable[P, R]:
             _interpreting.reset(token)
 
     return run
-
-
-# A kernel that dispatches a row of a table to the function of its kind
-
-
-def choice(name: str, functions: Mapping[str, Callable[..., Any]], others: Sequence[str]) -> Callable[..., Any]:
-    """Make a kernel that calls one of several by kind."""
-    arguments = ", ".join(others)
-    lines = [f"def {name}(row, {arguments}):"]
-    for number, kind in enumerate(functions):
-        condition = f"if row.kind == {number}: " if number < len(functions) - 1 else ""
-        lines.append(f"    {condition}return of_{kind}(row.{kind}, {arguments})")
-    namespace: dict[str, Any] = {f"of_{kind}": function for kind, function in functions.items()}
-    namespace["__name__"] = __name__
-    exec(compile("\n".join(lines), __file__, "exec"), namespace)
-    return kernel(inline=True)(namespace[name])

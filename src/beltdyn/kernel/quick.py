@@ -7,6 +7,7 @@ with all that it calls, and kept on disk.
 
 import gc
 import hashlib
+import io
 import pickle
 import re
 import sys
@@ -23,10 +24,11 @@ from numba.core.caching import NullCache
 from numba.core.codegen import JITCodeLibrary
 from numba.core.compiler import Compiler, CompileResult
 from numba.core.registry import CPUDispatcher
-from numba.core.serialize import dumps
+from numba.core.serialize import NumbaPickler
 from numba.core.types.misc import unliteral
 
 from beltdyn.kernel.cache import ENTRY
+from beltdyn.kernel.fingerprint import fingerprint, is_own, mark_of, marked, marks_in
 from beltdyn.kernel.seal import read_sealed, setting, warn_of_damage, write_sealed
 
 _NO_EXTRAS = {"no_cfunc_wrapper": True, "no_rewrites": True, "_nrt": False}
@@ -158,8 +160,10 @@ class _Cache(NullCache):  # type: ignore[misc]
     def __init__(self, function: Any, folder: Path) -> None:
         file = function.__code__.co_filename
         self._folder = folder
-        self._name = f"{Path(file).stem}.{re.sub('[^A-Za-z0-9_.]', '', function.__qualname__)[-80:]}"
-        self._source = (numba.__version__, sys.version_info[:3], file, *_fingerprint(function))
+        stem, name = (re.sub("[^A-Za-z0-9_.]", "", text)[-80:] for text in (Path(file).stem, function.__qualname__))
+        self._name = f"{stem}.{name}"
+        own = (fingerprint([function]),) if is_own(function) else ()
+        self._source = (numba.__version__, sys.version_info[:3], file, *own, *_fingerprint(function))
 
     @property
     def cache_path(self) -> str:
@@ -172,7 +176,7 @@ class _Cache(NullCache):  # type: ignore[misc]
         return self._folder / f"{self._name}-{digest[:16]}{ENTRY}"
 
     def _key(self, sig: Any, target_context: Any) -> tuple[Any, ...]:
-        return sig, target_context.codegen().magic_tuple(), self._source
+        return sig, target_context.codegen().magic_tuple(), self._source, sorted(marks_in(sig))
 
     def load_overload(self, sig: Any, target_context: Any) -> Any:
         """Load the machine code for some types of arguments; None where there is none."""
@@ -181,7 +185,7 @@ class _Cache(NullCache):  # type: ignore[misc]
         if content is None:
             return None
         try:
-            key, stored = pickle.loads(content)
+            key, stored = _Unpickler(io.BytesIO(content)).load()
             return CompileResult._rebuild(target_context, *stored) if key == self._key(sig, target_context) else None
         except Exception:  # whatever an entry of other libraries lets the unpickler or LLVM raise
             warn_of_damage(path.parent)
@@ -195,6 +199,29 @@ class _Cache(NullCache):  # type: ignore[misc]
         entry = f'define void @"{data.fndesc.llvm_cpython_wrapper_name}"() {{ ret void }}'
         stored = (name, kind, (machine_code, parse_assembly(entry).as_bitcode())), *rest
         write_sealed(self.entry(sig, data.target_context), dumps((self._key(sig, data.target_context), stored)))
+
+
+class _Pickler(NumbaPickler):  # type: ignore[misc]
+    """Numba's, by which classes of users' laws are kept by their marks: those of a script have no other name."""
+
+    def persistent_id(self, value: Any) -> str | None:
+        """The mark of a class."""
+        return mark_of(value)
+
+
+class _Unpickler(pickle.Unpickler):
+    """Finds classes by their marks."""
+
+    def persistent_load(self, mark: str) -> type:
+        """The class of a mark."""
+        return marked(mark)
+
+
+def dumps(value: Any) -> bytes:
+    """Bytes of a value."""
+    with io.BytesIO() as buffer:
+        _Pickler(buffer, protocol=4).dump(value)
+        return buffer.getvalue()
 
 
 def _fingerprint(function: Any) -> tuple[Any, ...]:

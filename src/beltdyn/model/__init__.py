@@ -30,6 +30,10 @@ from beltdyn.machines import (
     Step,
     Table,
 )
+from beltdyn.machines.links.link import LINKS
+from beltdyn.machines.loads.load import LOADS
+from beltdyn.machines.profiles.profile import PROFILES
+from beltdyn.machines.tensioners.tensioner import TENSIONERS
 from beltdyn.model.advice import advise, describe_time, off_the_stop, unstable_balance
 from beltdyn.model.alignment import Alignment, alignment
 from beltdyn.model.belt import Belt
@@ -122,3 +126,9 @@ __all__ = [
     "unresolved",
     "unstable_balance",
 ]
+
+for _family in (LINKS, LOADS, PROFILES, TENSIONERS):
+    for _kind in _family.values():
+        if _kind.__name__ not in __all__:  # of a file that was added to the package
+            globals()[_kind.__name__] = _kind
+            __all__ += [_kind.__name__]

@@ -4,7 +4,7 @@ from collections.abc import Mapping
 from functools import cached_property
 from math import pi, sin, sqrt
 from types import MappingProxyType
-from typing import TYPE_CHECKING, Annotated, Any, Literal, Self
+from typing import Annotated, Any, Literal, Self
 
 import numpy as np
 from pydantic import (
@@ -41,6 +41,7 @@ from beltdyn.model.catalogue import Entry, read_catalogue
 from beltdyn.model.fatigue import CordFatigue, RibFatigue
 from beltdyn.model.rating import RatedBelt
 from beltdyn.model.stretch_curve import StretchCurve
+from beltdyn.parts.kind_fields import LawKeys, NameOf
 from beltdyn.parts.part import Part
 from beltdyn.parts.quantity import (
     Angle,
@@ -57,17 +58,10 @@ from beltdyn.parts.quantity import (
 )
 from beltdyn.stretch import LAWS, StretchParameters
 
-_MEANINGS = ", ".join(f'"{kind.name}" ({kind.meaning})' for kind in ELEMENTS.values())
+_ELEMENTS = ", ".join(f'"{kind.name}" ({kind.meaning})' for kind in ELEMENTS.values())
+_LAWS = ", ".join(f'"{law.name}" ({law.meaning})' for law in LAWS.values())
 _NORMAL_SECTIONS = 20.0
 """Shear stiffness S over EA that keeps sections normal: slip on small pulleys errs by about (T / S) EI / EA R^2."""
-_LAWS = ", ".join(f'"{law.name}" ({law.meaning})' for law in LAWS.values())
-
-if TYPE_CHECKING:
-    ElementName = str
-    StretchLawName = str
-else:
-    ElementName = Literal[tuple(ELEMENTS)]
-    StretchLawName = Literal[tuple(LAWS)]
 
 _SIDES = MappingProxyType(dict.fromkeys(("back", "backside", "flat", "smooth"), "outside")) | dict.fromkeys(
     ("front", "ribs", "ribbed", "grooves", "grooved"), "inside"
@@ -169,7 +163,7 @@ class Belt(Part):
         gt=0,
         description="the normal force per meter of belt and meter of compression, if known, in N/m^2",
     )
-    stretch_law: StretchLawName = Field("green", description=f"the law of tension over stretch: {_LAWS}")
+    stretch_law: Annotated[str, NameOf(LAWS)] = Field("green", description=f"the law of tension over stretch: {_LAWS}")
     stretch_curve: StretchCurve | None = Field(
         None, description="the measured curve of tension over strain, instead of the axial stiffness"
     )
@@ -208,9 +202,9 @@ class Belt(Part):
         "centerline, as on a staying mesh",
     )
     elements: Count | None = Field(None, ge=3, le=10_000, description="the number of belt elements")
-    discretization: ElementName | None = Field(
+    discretization: Annotated[str, NameOf(ELEMENTS)] | None = Field(
         None,
-        description=f"the kind of elements: {_MEANINGS}; by default quintic on a staying mesh, ancf on a travelling "
+        description=f"the kind of elements: {_ELEMENTS}; by default quintic on a staying mesh, ancf on a travelling "
         "mesh",
     )
     integration: Literal["full", "reduced"] = Field(
@@ -294,14 +288,15 @@ class Belt(Part):
 
     @model_validator(mode="after")
     def _has_what_its_law_of_stretch_needs(self) -> Self:
-        if LAWS[self.stretch_law].from_points and self.stretch_curve is None:
+        LAW_KEYS.check(self)
+        if LAWS[self.stretch_law].through is not None and self.stretch_curve is None:
             raise ValueError(
                 f'stretch_law = "{self.stretch_law}" needs a curve. Give [belt.stretch_curve] with strains and '
                 "tensions, or a file"
             )
         if self.stretch_curve is None:
             return self
-        if not LAWS[self.stretch_law].from_points:
+        if LAWS[self.stretch_law].through is None:
             raise ValueError(
                 f'stretch_curve is incompatible with stretch_law = "{self.stretch_law}". Remove it, or set '
                 'stretch_law = "measured"'
@@ -465,7 +460,10 @@ class Belt(Part):
         """Parameters of the law of stretch, with tension over stretch and its inverse."""
         if self.stretch_curve is not None:
             return self.stretch_curve.parameters
-        made: StretchParameters = LAWS[self.stretch_law].make(self.youngs_modulus * self.area * self.axial_factor)
+        law = LAWS[self.stretch_law]
+        given = {one.name: getattr(self, one.name) for one in law.parameters}
+        own = (one.default if given[one.name] is None else given[one.name] for one in law.parameters)
+        made: StretchParameters = law.record(self.youngs_modulus * self.area * self.axial_factor, *own)
         return made
 
     def local_stiffness(self, tension: float) -> float:
@@ -497,3 +495,7 @@ class Belt(Part):
     def rotary_inertia(self) -> float:
         """Rotary inertia per length of the unstretched belt, ρ I, kg m."""
         return self.density * self.second_moment
+
+
+LAW_KEYS = LawKeys(Belt, "stretch_law", LAWS)
+"""The keys of the stretch laws."""

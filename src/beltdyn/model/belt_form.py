@@ -17,6 +17,7 @@ from beltdyn.model.catalogue import Entry, find_entry, read_catalogue
 from beltdyn.model.stretch_curve import with_initial_slope
 from beltdyn.parts.part import Part
 from beltdyn.parts.quantity import AxialStiffness, BendingStiffness, Count, Length, MassPerLength
+from beltdyn.stretch import LAWS
 
 _POISSONS_RATIO = 0.3
 MATERIAL = ("density", "youngs_modulus", "axial_factor", "bending_factor")
@@ -40,13 +41,18 @@ LOSS_FACTORS = ("stretch_loss_factor", "bending_loss_factor")
 """In the order of `DAMPING_TIMES`; each strain has one or the other."""
 LOSSES = (*DAMPING_TIMES, *LOSS_FACTORS, "compression_loss_factor")
 
-STRETCH = ("stretch_law", "stretch_curve")
 FATIGUE = ("cord_fatigue", "rib_fatigue")
 _NUMBERS = (
     *("pitch_offset", "back_offset", "wedge_angle", "friction", *_FORCES, "smallest_diameter"),
     *("largest_fleeting_angle", *LOSSES),
 )
 TAKEN_OVER = (*_NUMBERS, *FATIGUE)
+
+
+def stretch_keys() -> tuple[str, ...]:
+    """The law of stretch, its curve, and the keys of the laws."""
+    parameters = (parameter.name for law in LAWS.values() for parameter in law.parameters)
+    return ("stretch_law", "stretch_curve", *parameters)
 
 
 class Stiffnesses(Part):
@@ -133,7 +139,7 @@ def _by_material(data: Mapping[str, Any], base: Path | None) -> Mapping[str, Any
         for pair in zip(DAMPING_TIMES, LOSS_FACTORS, strict=True):
             if any(key in values for key in pair):
                 section = {key: value for key, value in section.items() if key not in pair}
-        if any(key in data for key in (*STRETCH, "axial_stiffness")):
+        if any(key in data for key in (*stretch_keys(), "axial_stiffness")):
             section.pop("stretch_curve", None)
         elif "stretch_curve" in section:
             values["stretch_law"] = "measured"
@@ -148,7 +154,7 @@ def in_new_form(arguments: Mapping[str, Any], changes: Mapping[str, Any], own: M
     """Reduce the arguments of a changed belt to one form, that of the changes."""
     gone: set[str] = set()
     if any(key in changes for key in Sold.model_fields):
-        gone = {*MATERIAL, "width", "thickness", "poissons_ratio", "contact_stiffness", *TAKEN_OVER, *STRETCH}
+        gone = {*MATERIAL, "width", "thickness", "poissons_ratio", "contact_stiffness", *TAKEN_OVER, *stretch_keys()}
         own = {}
     elif any(key in changes for key in OWN):
         gone = {*MATERIAL}
@@ -159,7 +165,7 @@ def in_new_form(arguments: Mapping[str, Any], changes: Mapping[str, Any], own: M
     elif "stretch_law" in changes:
         gone |= {"stretch_curve"}
     elif "stretch_curve" in arguments and "axial_stiffness" in changes:
-        gone |= {*STRETCH}
+        gone |= {*stretch_keys()}
     kept = {key: value for key, value in arguments.items() if key in changes or key not in gone}
     without = {"axial_stiffness"} if "stretch_curve" in kept else set()
     return {key: value for key, value in own.items() if key not in without} | kept
@@ -232,8 +238,8 @@ def describe_forms(schema: dict[str, Any]) -> None:
 SIZES = ("ribs", "diameter", "width")
 """Measures by which belts are sold."""
 
-_SECTION = (*MATERIAL, *OWN, "width", "thickness", "contact_stiffness", *TAKEN_OVER, *STRETCH)
-"""Values of a profile, or their replacements."""
+_SECTION = (*MATERIAL, *OWN, "width", "thickness", "contact_stiffness", *TAKEN_OVER)
+"""Values of a profile, or their replacements, beside those of its stretch law."""
 
 
 def as_sold(data: Any, belt: Any, base: Path | None) -> dict[str, Any] | None:
@@ -244,7 +250,7 @@ def as_sold(data: Any, belt: Any, base: Path | None) -> dict[str, Any] | None:
     sold = Sold.model_validate({key: given[key] for key in Sold.model_fields if key in given}).arguments
     if sold.get("catalogue") is not None:
         sold["catalogue"] = str(((base or Path()) / sold["catalogue"]).resolve())
-    return sold | {key: getattr(belt, key) for key in _SECTION if key in given}
+    return sold | {key: getattr(belt, key) for key in (*_SECTION, *stretch_keys()) if key in given}
 
 
 def changes_as_sold(section: Mapping[str, Any], changes: Mapping[str, Any]) -> bool:
@@ -274,4 +280,4 @@ def section_with(section: Mapping[str, Any], changes: Mapping[str, Any]) -> dict
 
 def without_section(arguments: Mapping[str, Any]) -> dict[str, Any]:
     """Arguments of a belt without those of a profile."""
-    return {key: value for key, value in arguments.items() if key not in _SECTION}
+    return {key: value for key, value in arguments.items() if key not in (*_SECTION, *stretch_keys())}

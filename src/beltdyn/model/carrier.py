@@ -8,7 +8,7 @@ import numpy as np
 from beltdyn.arrays import FloatArray
 from beltdyn.kernel import interpreted
 from beltdyn.machines.tensioners.registry import tensioner_row
-from beltdyn.machines.tensioners.tensioner import MovingTensioner, Tensioner
+from beltdyn.machines.tensioners.tensioner import TENSIONERS, MovingTensioner, Tensioner
 from beltdyn.model.path import Path
 from beltdyn.model.pulley import Pulley
 
@@ -24,21 +24,27 @@ class Carrier:
     tensioner : MovingTensioner
         The tensioner.
     row : record
-        The row of `beltdyn.machines.tensioners.registry.TENSIONER` that kernels get, without weight.
+        Its row of `beltdyn.machines.tensioners.registry.TENSIONER_ROWS`, without weight.
     """
 
     pulley: int
     tensioner: MovingTensioner
     row: np.record
 
+    @property
+    def constants(self) -> np.record:
+        """The constants of its kind."""
+        constants: np.record = self.row[TENSIONERS.label(type(self.tensioner))]
+        return constants
+
     def place(self, position: float) -> tuple[FloatArray, FloatArray]:
         """Center of the pulley at a position q (m, rad), and its derivative with respect to q."""
-        center = interpreted(type(self.tensioner).center_at)(self.row[self.tensioner.kind], position)
+        center = interpreted(type(self.tensioner).center_at)(self.constants, position)
         return np.array([center.x, center.y]), np.array([center.dx, center.dy])
 
     def force(self, position: float) -> float:
         """Force of spring and stops at a position (m, rad): N, or N m for an arm."""
-        return float(interpreted(type(self.tensioner).force_at)(self.row[self.tensioner.kind], position, 0.0).force)
+        return float(interpreted(type(self.tensioner).force_at)(self.constants, position, 0.0).force)
 
 
 def carriers_of(tensioners: Sequence[Tensioner], names: Sequence[str], path: Path) -> list[Carrier]:

@@ -27,7 +27,7 @@ from beltdyn.parts.quantity import (
     Time,
 )
 from beltdyn.parts.text_file import LONGEST_TOML, parse_toml, read_text, shorten
-from beltdyn.stretch import LAWS
+from beltdyn.stretch import Linear
 
 
 class Entry(Part):
@@ -102,7 +102,7 @@ class Entry(Part):
     def measured_stretch(self) -> float:
         """Stretch of the belt while its nominal length is measured, with half of the force in each strand."""
         curve = self.stretch_curve
-        law = LAWS["linear"].make(self.axial_stiffness) if curve is None else curve.parameters
+        law = Linear(self.axial_stiffness) if curve is None else curve.parameters
         return float(law.stretch(0.5 * (self.measuring_force or 0.0)))
 
     @model_validator(mode="before")

@@ -1,73 +1,22 @@
 """The contact between belt and pulleys: penalty normal force and creep-rate friction."""
 
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Iterable, Iterator
 from typing import TYPE_CHECKING, Annotated, Any, Literal, Self
 
-from pydantic import Field, create_model, model_validator
+from pydantic import Field, model_validator
 
 from beltdyn.contact.friction import LAWS as FRICTION_LAWS
-from beltdyn.contact.friction import FrictionLaw, FrictionParameters
+from beltdyn.contact.friction import FrictionParameters
 from beltdyn.contact.normal import LAWS as NORMAL_LAWS
-from beltdyn.contact.normal import NormalLaw, NormalParameters
-from beltdyn.contact.parameter import Parameter
+from beltdyn.contact.normal import NormalParameters
 from beltdyn.errors import ModelError
+from beltdyn.kinds import Parameter
+from beltdyn.parts.kind_fields import LawKeys, NameOf
 from beltdyn.parts.part import Part
-from beltdyn.parts.quantity import Count, Length, LineDamping, LineStiffness, Ratio, quantity
+from beltdyn.parts.quantity import Count, Length, LineDamping, LineStiffness, Ratio
 
 
-class Penalty(Part):
-    """Contact stiffness and damping, common to all laws of the normal force."""
-
-    either = ("stiffness", "allowed_penetration")
-
-    stiffness: LineStiffness | None = Field(
-        None, gt=0, description="the normal force per meter of belt and meter of penetration, in N/m^2"
-    )
-    allowed_penetration: Length | None = Field(
-        None,
-        gt=0,
-        description="the largest penetration of the belt at rest, instead of stiffness, in m",
-    )
-    damping: LineDamping | None = Field(
-        None, ge=0, description="the normal force per meter of belt and penetration rate in m/s, in N*s/m^2"
-    )
-
-
-def _choice(laws: Iterable[str], default: str, meaning: str) -> Any:
-    """Field that names one of several laws."""
-    return Literal[tuple(sorted(laws, key=lambda name: (name != default, name)))], Field(default, description=meaning)
-
-
-def _keys(laws: Mapping[str, FrictionLaw] | Mapping[str, NormalLaw]) -> dict[str, Any]:
-    """Fields of the parameters of all laws."""
-    return {parameter.name: _field(parameter) for law in laws.values() for parameter in law.parameters}
-
-
-def _field(parameter: Parameter) -> Any:
-    """Field of a parameter; None where its law is not chosen."""
-    meaning = f"{parameter.meaning}, in {parameter.unit}" if parameter.unit else parameter.meaning
-    number = Annotated[float, quantity(parameter.unit)]
-    return number | None, Field(None, gt=parameter.above, description=meaning)
-
-
-_NORMAL = "the normal force: never tensile, or as published, which may be tensile where the belt leaves"
-_Laws: Any = create_model(
-    "_Laws",
-    __base__=Penalty,
-    normal_law=_choice(NORMAL_LAWS, "no_pull", _NORMAL),
-    **_keys(NORMAL_LAWS),
-    friction=(
-        Ratio | None,
-        Field(
-            None, ge=0, description="the coefficient of friction, without the wedge effect; by default that of the belt"
-        ),
-    ),
-    friction_law=_choice(FRICTION_LAWS, "relative_creep", "the friction law"),
-    **_keys(FRICTION_LAWS),
-)
-
-
-class Contact(_Laws, Penalty):
+class Contact(Part):
     """Penalty contact with friction, the same on every pulley.
 
     Stiffness, damping and the creep ratio of friction are numerical parameters. If omitted they are None, and chosen by
@@ -84,14 +33,34 @@ class Contact(_Laws, Penalty):
     0.5
     """
 
-    if TYPE_CHECKING:  # the fields that the laws make
-        normal_law: str
-        friction: float | None
-        friction_law: str
+    if TYPE_CHECKING:  # the keys of the laws
 
         def __init__(self, **keys: Any) -> None: ...
         def __getattr__(self, parameter: str) -> Any: ...
 
+    either = ("stiffness", "allowed_penetration")
+
+    stiffness: LineStiffness | None = Field(
+        None, gt=0, description="the normal force per meter of belt and meter of penetration, in N/m^2"
+    )
+    allowed_penetration: Length | None = Field(
+        None,
+        gt=0,
+        description="the largest penetration of the belt at rest, instead of stiffness, in m",
+    )
+    damping: LineDamping | None = Field(
+        None, ge=0, description="the normal force per meter of belt and penetration rate in m/s, in N*s/m^2"
+    )
+    normal_law: Annotated[str, NameOf(NORMAL_LAWS, "no_pull")] = Field(
+        "no_pull",
+        description="the normal force: never tensile, or as published, which may be tensile where the belt leaves",
+    )
+    friction: Ratio | None = Field(
+        None, ge=0, description="the coefficient of friction, without the wedge effect; by default that of the belt"
+    )
+    friction_law: Annotated[str, NameOf(FRICTION_LAWS, "relative_creep")] = Field(
+        "relative_creep", description="the friction law"
+    )
     moment_arm: Literal["rim", "point"] = Field(
         "rim",
         description="the moment arm of friction about the shaft: the effective radius, for which friction never "
@@ -117,18 +86,8 @@ class Contact(_Laws, Penalty):
 
     @model_validator(mode="after")
     def _has_the_parameters_of_its_laws(self) -> Self:
-        for kind, laws in (("normal", NORMAL_LAWS), ("friction", FRICTION_LAWS)):
-            chosen = getattr(self, f"{kind}_law")
-            own = {parameter.name: parameter for parameter in laws[chosen].parameters}
-            for key, owner in ((key.name, law.name) for law in laws.values() for key in law.parameters):
-                if key not in own and getattr(self, key) is not None:
-                    raise ValueError(
-                        f'{key} belongs to the {kind} law "{owner}", not to "{chosen}". '
-                        f'Remove it, or set {kind}_law = "{owner}"'
-                    )
-            for key, parameter in own.items():
-                if getattr(self, key) is None and parameter.default is None and not parameter.found:
-                    raise ValueError(f'{key} is missing, but the {kind} law "{chosen}" needs it. Give {key}')
+        for keys in LAW_KEYS:
+            keys.check(self)
         return self
 
     @property
@@ -172,3 +131,7 @@ class Contact(_Laws, Penalty):
             value = getattr(self, parameter.name)
             value = parameter.default if value is None else value
             yield self.given(parameter.name) if value is None else value
+
+
+LAW_KEYS = LawKeys(Contact, "normal_law", NORMAL_LAWS), LawKeys(Contact, "friction_law", FRICTION_LAWS)
+"""The keys of the laws of contact."""

@@ -1,6 +1,6 @@
 """The drive: belt, pulleys, contact and settings of the simulation."""
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterable, Mapping
 from functools import cached_property
 from importlib import import_module
 from typing import Any, ClassVar, Self
@@ -26,6 +26,7 @@ from beltdyn.model.rating import RatedBelt
 from beltdyn.model.routing import radii, span_names
 from beltdyn.model.simulation import Frame, Limits, Simulation, Steady, choose_frame, element_of
 from beltdyn.parts.change import changed_arguments
+from beltdyn.parts.kind_fields import Chosen, chosen_kinds
 from beltdyn.parts.part import Part
 from beltdyn.parts.quantity import Acceleration, Title, Words
 from beltdyn.parts.text_file import parse_toml
@@ -91,10 +92,11 @@ class Drive(Part):
 
     __str__ = __repr__
 
-    def __reduce__(self) -> tuple[Callable[[str], "Drive"], tuple[str]]:
-        """Travel between processes as a drive file, which holds no functions of Python."""
+    def __reduce__(self) -> tuple[Callable[..., "Drive"], tuple[str, tuple[str, ...]]]:
+        """Travel between processes as a drive file, with the modules that register its own kinds."""
         refuse_functions(self, "other processes get a drive as text, without functions", "run it in this process")
-        return drive_of_text, (self.text,)
+        refuse_kinds_of_scripts(self)
+        return drive_of_text, (self.text, tuple(dict.fromkeys(kind.origin for kind in self.own_kinds)))
 
     @model_validator(mode="after")
     def _has_friction(self) -> Self:
@@ -189,6 +191,11 @@ class Drive(Part):
     def reference(self) -> int:
         """Number of the reference pulley of slip: the driver, or the first pulley without a driver."""
         return self.driver or 0
+
+    @property
+    def own_kinds(self) -> list[Chosen]:
+        """Kinds of the drive from outside the package."""
+        return [kind for kind in chosen_kinds(self) if kind.is_own]
 
     @property
     def path_ends(self) -> tuple[PathEnd, ...]:
@@ -344,11 +351,23 @@ class Drive(Part):
         return {key: value for key, value in data.items() if value != {}}
 
 
-def drive_of_text(text: str) -> Drive:
-    """The drive of a text by `Drive.text`."""
+def drive_of_text(text: str, modules: Iterable[str] = ()) -> Drive:
+    """The drive of a text by `Drive.text`, after the import of modules that register its kinds."""
+    for module in modules:
+        import_module(module)
     drive = Drive.model_validate(parse_toml(text))
     drive._source = text
     return drive
+
+
+def refuse_kinds_of_scripts(drive: Drive) -> None:
+    """Make sure that other processes can import the modules that register the kinds of a drive."""
+    for kind in drive.own_kinds:
+        if kind.origin == "__main__":
+            raise ModelError(
+                f"the {kind} is registered by the script itself, which other processes do not run. Move it to a module "
+                "beside the script and import that, or run the drive in this process."
+            )
 
 
 def has_functions(drive: Drive) -> bool:

@@ -2,15 +2,15 @@
 
 import math
 from collections.abc import Mapping, Sequence
+from functools import cache
 from types import MappingProxyType
-from typing import TYPE_CHECKING, Annotated, Any, Literal, Self, Union
+from typing import TYPE_CHECKING, Annotated, Any, Literal, Self
 
 import numpy as np
 from pydantic import ConfigDict, Field, create_model, field_validator, model_validator
 from pydantic.fields import FieldInfo
 
 from beltdyn.arrays import FloatArray
-from beltdyn.contact.parameter import Parameter
 from beltdyn.contact.surface import KINDS, SurfaceKind
 from beltdyn.machines.links.registry import AnyHubLink
 from beltdyn.machines.loads.registry import AnyLoad
@@ -19,8 +19,9 @@ from beltdyn.machines.profiles.profile import Profile
 from beltdyn.machines.profiles.registry import SpeedProfile, TorqueProfile
 from beltdyn.model.belt import Belt, Side
 from beltdyn.model.contact import Contact
+from beltdyn.parts.kind_fields import OneOf, key_field
 from beltdyn.parts.part import Part
-from beltdyn.parts.quantity import Angle, Coordinate, Inertia, Length, Mass, Name, Ratio, quantity
+from beltdyn.parts.quantity import Angle, Coordinate, Inertia, Length, Mass, Name, Ratio
 
 # Surfaces of pulleys other than smooth circles, a part for each kind
 
@@ -44,29 +45,17 @@ class Surface(Part):
         return KINDS[self.kind].reach(self.parameters)
 
 
-def _field(parameter: Parameter) -> Any:
-    """Field of a parameter."""
-    meaning = f"{parameter.meaning}, in {parameter.unit}" if parameter.unit else parameter.meaning
-    default: dict[str, Any] = {} if parameter.default is None else {"default": parameter.default}
-    return Annotated[float, quantity(parameter.unit)], Field(gt=parameter.above, description=meaning, **default)
-
-
-def _part(kind: SurfaceKind) -> type[Surface]:
+@cache
+def surface_part(kind: SurfaceKind) -> type[Surface]:
     """Part of a kind of surface."""
-    fields = {parameter.name: _field(parameter) for parameter in kind.parameters}
+    fields: dict[str, Any] = {parameter.name: (float, key_field(parameter)) for parameter in kind.parameters}
     title = "".join(word.capitalize() for word in kind.name.split("_"))
     named: Any = (Literal[kind.name], Field(kind.name, description="the kind of surface"))
     part: type[Surface] = create_model(f"{title}Surface", __base__=Surface, kind=named, **fields)
     return part
 
 
-SURFACES = {kind.name: _part(kind) for kind in KINDS.values()}
-"""Parts of surfaces by the names of their kinds."""
-
-if TYPE_CHECKING:
-    AnySurface = Surface
-else:
-    AnySurface = Annotated[Union[tuple(SURFACES.values())], Field(discriminator="kind")]  # noqa: UP007
+AnySurface = Annotated[Surface, OneOf(KINDS, surface_part)]
 
 
 _SPATIAL = 3

@@ -1,7 +1,8 @@
 """Settings of a run: duration, outputs, start and integrator."""
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass
+from importlib import import_module
 from math import floor, inf
 from pathlib import Path
 from typing import Annotated, Any, Literal, NamedTuple, Self
@@ -11,8 +12,10 @@ from pydantic import Discriminator, Field, Tag, ValidationInfo, field_validator,
 
 from beltdyn.arrays import BoolArray, FloatArray, IntArray
 from beltdyn.elements import ANCF, QUINTIC
+from beltdyn.kinds import Registry, register
 from beltdyn.model.belt import Belt
 from beltdyn.model.contact import Contact
+from beltdyn.parts.kind_fields import NameOf
 from beltdyn.parts.messages import apart
 from beltdyn.parts.part import Part
 from beltdyn.parts.quantity import Force, Ratio, Time
@@ -198,6 +201,37 @@ _FIELDS = 100
 """Approximate number of field outputs without a given interval."""
 
 
+# The time integrators that a drive may name
+
+
+class IntegratorKind(NamedTuple):
+    """A time integrator, for `register`."""
+
+    name: str
+    """Its name in a drive file."""
+    make: str | Callable[["Simulation"], Any]
+    """From the settings of a run an object of the protocol `Integrator`; as "MODULE:FUNCTION" it is imported at its
+    first use."""
+
+    def made(self, settings: "Simulation") -> Any:
+        """The integrator for the settings of a run."""
+        if not isinstance(self.make, str):
+            return self.make(settings)
+        module, _, function = self.make.partition(":")
+        return getattr(import_module(module), function)(settings)
+
+
+INTEGRATORS = Registry[IntegratorKind]("integrator", IntegratorKind)
+"""All integrators by name."""
+
+for _kind in (
+    IntegratorKind("generalized_alpha", "beltdyn.transient.simulate:generalized_alpha"),
+    *(IntegratorKind(name, "beltdyn.transient.simulate:standard") for name in ("cvode", "ida", "bdf", "radau")),
+    # one line each
+):
+    register(_kind)
+
+
 class Simulation(Part):
     """Settings of a transient simulation, from time zero or a later instant.
 
@@ -250,9 +284,7 @@ class Simulation(Part):
         description="the time of speeds, torques and schedules at the start of a run from steady running or from an "
         "earlier run, in s; by default 0, or the instant of the earlier run",
     )
-    integrator: Literal["generalized_alpha", "cvode", "ida", "bdf", "radau"] = Field(
-        "generalized_alpha", description="the time integrator"
-    )
+    integrator: Annotated[str, NameOf(INTEGRATORS)] = Field("generalized_alpha", description="the time integrator")
     spectral_radius: Ratio = Field(
         0.6, ge=0, le=1, description="the spectral radius of generalized_alpha at infinite frequency, 0 to 1"
     )

@@ -11,7 +11,7 @@ from pydantic import ConfigDict, Field, ValidationError, ValidationInfo, model_v
 from beltdyn.parts.part import Part
 from beltdyn.parts.quantity import Force, Ratio
 from beltdyn.parts.table_file import check_points, describe_file, take_file
-from beltdyn.stretch import LAWS, StretchParameters
+from beltdyn.stretch import StretchParameters, through
 
 
 class StretchCurve(Part):
@@ -70,8 +70,7 @@ class StretchCurve(Part):
     @cached_property
     def parameters(self) -> StretchParameters:
         """Parameters of the law of stretch."""
-        made: StretchParameters = LAWS["measured"].make(*self._points)
-        return made
+        return through(*self._points)
 
 
 def with_initial_slope(data: Any, base: Path | None) -> Any:

@@ -18,7 +18,7 @@ from beltdyn.observation.band_limit import BandLimit
 from beltdyn.observation.compilation import compile_kernels
 from beltdyn.observation.observer import WORKS, Arrays, Observer
 from beltdyn.results import RECORDED, FileRecorder, Layout, MemoryRecorder, Recorder, Run, Status, provenance
-from beltdyn.results.provenance import mesh_used
+from beltdyn.results.provenance import mesh_used, own_kinds
 from beltdyn.results.recorder import status_after
 from beltdyn.results.schema import FILTER_REACH, FILTERED, TIMES
 from beltdyn.signals import uninterrupted
@@ -158,10 +158,8 @@ class Recording:
         self._prepared, self._system, self._progress = prepared, system, progress
         self._path = Path(output) if output is not None else None
         self._title, self._about = title, attributes
-        layout, origin = (
-            result_layout(prepared, system),
-            provenance(prepared.drive.text, title) | self._mesh() | attributes,
-        )
+        layout, origin = result_layout(prepared, system), provenance(prepared.drive.text, title)
+        origin |= own_kinds(prepared.drive) | self._mesh() | attributes
         self._recorder: Recorder = (
             FileRecorder(self._path, layout, origin, overwrite) if self._path else MemoryRecorder(layout, origin)
         )
@@ -252,7 +250,8 @@ class Recording:
         """Note that the state at the beginning is known."""
         layout = result_layout(prepared, system)
         if prepared.drive is not self._prepared.drive:
-            origin = provenance(prepared.drive.text, self._title) | self._mesh()
+            drive = prepared.drive
+            origin = provenance(drive.text, self._title) | own_kinds(drive) | self._mesh()
             attributes = origin | {"drive_as_given": self._prepared.drive.text, **self._about}
             self._recorder.revise(layout, attributes)
         if unstable:

@@ -24,10 +24,22 @@ _EXAMPLES = "\n\nExamples\n--------\n"
 _NAMES = {float: "float", int: "int", bool: "bool", str: "str"}
 
 
+_OWN_WORDS: dict[type, str] = {}
+"""Docstrings of parts as written."""
+
+
+def describe(part: "type[Part]") -> None:
+    """Give docstring and signature of a part the arguments that it takes now."""
+    _OWN_WORDS.setdefault(part, inspect.cleandoc(part.__doc__ or ""))
+    part.__doc__ = document(part, part.alternatives())
+    part.__signature__ = signature(part, part.alternatives())
+    part._optional.cache_clear()
+
+
 def document(part: type[BaseModel], others: Mapping[str, FieldInfo]) -> str:
     """Docstring of a part with numpydoc sections of its constructor's arguments."""
     fields = {field.alias or name: field for name, field in part.model_fields.items()}
-    told, heading, examples = inspect.cleandoc(part.__doc__ or "").partition(_EXAMPLES)
+    told, heading, examples = _OWN_WORDS[part].partition(_EXAMPLES)
     return told + _section("Parameters", fields) + _section("Other Parameters", others) + heading + examples
 
 
@@ -87,15 +99,22 @@ def _literal(value: object) -> str:
     return f'"{value}"' if isinstance(value, str) else repr(value)
 
 
+def _choice(values: typing.Iterable[Any]) -> str:
+    """A choice among values."""
+    return "{" + ", ".join(map(_literal, values)) + "}"
+
+
 def _type(annotation: Any, metadata: typing.Sequence[Any] = ()) -> str:
     """A type in words: what may be given, without None."""
     origin, inner = typing.get_origin(annotation), typing.get_args(annotation)
+    if choices := next((one.choices for one in metadata if hasattr(one, "choices")), None):
+        return _choice(choices)
     if isinstance(annotation, typing.TypeVar):
         return "float"
     if origin is Annotated:
         return _type(inner[0], inner[1:])
     if origin is Literal:
-        return "{" + ", ".join(_literal(value) for value in inner) + "}"
+        return _choice(inner)
     if origin in (typing.Union, types.UnionType):
         named = [_type(one, metadata) for one in inner if one is not types.NoneType]
         return " or ".join(dict.fromkeys(named))
@@ -162,8 +181,7 @@ class Part(BaseModel):
     @classmethod
     def __pydantic_init_subclass__(cls, **_: Any) -> None:
         """Tell of each argument in the docstring and in the signature."""
-        cls.__doc__ = document(cls, cls.alternatives())
-        cls.__signature__ = signature(cls, cls.alternatives())
+        describe(cls)
 
     @classmethod
     def __pydantic_on_complete__(cls) -> None:

@@ -101,6 +101,11 @@ def option_names(schema: Mapping[str, Any]) -> dict[str, dict[str, Any]]:
     return {option.get("$ref", option.get("type", "")).split("/")[-1]: option for option in options}
 
 
+def forget_schemas() -> None:
+    """Make the schemas of models anew: kinds were registered."""
+    _schema_of.cache_clear()
+
+
 @cache
 def _schema_of(model: type[BaseModel]) -> dict[str, Any]:
     """The JSON schema of a model, which takes longer to make than a drive to be read."""

@@ -14,6 +14,7 @@ import numpy as np
 from beltdyn.analyses import RUN
 from beltdyn.arrays import FloatArray
 from beltdyn.elements import ANCF, QUINTIC
+from beltdyn.kinds import Registry
 from beltdyn.model import ERROR_LIMITS, Drive, Prepared, Running, elements_needed, layer_lengths, mesh_errors
 from beltdyn.model.simulation import Frame, unused_settings
 from beltdyn.results.schema import FORMAT, Recorded
@@ -120,6 +121,27 @@ def provenance(drive_text: str, title: str, kind: str = RUN) -> dict[str, str]:
         "python_version": platform.python_version(),
         "created": datetime.now(UTC).isoformat(timespec="seconds"),
     }
+
+
+_OWN_KINDS = "own_kinds"
+"""Attribute of the kinds of a drive from outside the package: family, name and module, a line each."""
+
+
+def own_kinds(drive: Drive) -> dict[str, str]:
+    """Attribute of the kinds of a drive from outside the package; none without any."""
+    lines = [f"{kind.kinds.family}\t{kind.name}\t{kind.origin}" for kind in drive.own_kinds]
+    return {_OWN_KINDS: "\n".join(dict.fromkeys(lines))} if lines else {}
+
+
+def unknown_kinds(attributes: Mapping[str, Any]) -> list[str]:
+    """Kinds of a result that are not registered here, in words, with the modules that register them."""
+    families = {registry.family: registry for registry in Registry.families}
+    lines = [line.split("\t") for line in str(attributes.get(_OWN_KINDS, "")).splitlines()]
+    return [
+        f'{family} "{name}" of {"a script" if origin == "__main__" else f"the module {origin}"}'
+        for family, name, origin in lines
+        if name not in families.get(family, {})
+    ]
 
 
 @cache

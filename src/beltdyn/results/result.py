@@ -11,10 +11,11 @@ from numpy.typing import ArrayLike
 from beltdyn.analyses import STEADY_KINDS
 from beltdyn.errors import ModelError
 from beltdyn.model import Drive, Prepared, loads, prepare
+from beltdyn.parts.messages import listing
 from beltdyn.results.atomic import atomic_path, unreadable
 from beltdyn.results.dataset import is_result, kind_of
 from beltdyn.results.netcdf import write_dataset
-from beltdyn.results.provenance import STAYING, mesh_used, provenance
+from beltdyn.results.provenance import STAYING, mesh_used, own_kinds, provenance, unknown_kinds
 from beltdyn.results.schema import Variable
 
 if TYPE_CHECKING:
@@ -32,8 +33,8 @@ class Result:
     ----------
     dataset : xarray.Dataset
         Labeled variables; its attributes include ``kind``, ``drive``, ``status`` and ``warnings``.
-    drive : Drive
-        The drive that was analyzed.
+    drive : Drive or ModelError
+        The drive that was analyzed, or why it cannot be read.
     path : Path or None
         The result file, or None for a result in memory.
 
@@ -43,8 +44,8 @@ class Result:
     ('run', 'Belt drive')
     """
 
-    def __init__(self, dataset: "xr.Dataset | None", drive: Drive, path: Path | None = None) -> None:
-        self.drive, self.path = drive, path
+    def __init__(self, dataset: "xr.Dataset | None", drive: Drive | ModelError, path: Path | None = None) -> None:
+        self._drive, self.path = drive, path
         self._dataset = dataset
 
     def __repr__(self) -> str:
@@ -53,7 +54,8 @@ class Result:
         except (ModelError, OSError):
             said = "its file cannot be read any more"
         file = "" if self.path is None else f", {self.path}"
-        return f'{type(self).__name__} of "{self.drive.title}": {said}{file}'
+        title = self._drive.title if isinstance(self._drive, Drive) else "a drive with kinds not registered here"
+        return f'{type(self).__name__} of "{title}": {said}{file}'
 
     @property
     def _extent(self) -> str:
@@ -70,6 +72,19 @@ class Result:
     def prepared(self) -> Prepared:
         """The drive with all that it leaves open; see `prepare`."""
         return prepare(self.drive)
+
+    @property
+    def drive(self) -> Drive:
+        """The drive that was analyzed.
+
+        Raises
+        ------
+        ModelError
+            If it has a kind that is not registered here.
+        """
+        if isinstance(self._drive, ModelError):
+            raise self._drive
+        return self._drive
 
     @property
     def dataset(self) -> "xr.Dataset":
@@ -168,15 +183,20 @@ def build_result(
     def labelled(parts: Mapping[str, tuple[Variable, ArrayLike]]) -> dict[str, tuple[object, ...]]:
         return {name: (variable.dims, values, variable.attributes) for name, (variable, values) in parts.items()}
 
-    origin = provenance(drive.text, f"Belt drive, {kind}", kind)
+    origin = provenance(drive.text, f"Belt drive, {kind}", kind) | own_kinds(drive)
     if kind in STEADY_KINDS:
         origin |= mesh_used(drive, STAYING)
     attributes = origin | {"status": "completed", "warnings": "\n".join(warnings)}
     return Result(xr.Dataset(labelled(variables), labelled(coordinates), attributes), drive)
 
 
-def drive_of(dataset: "xr.Dataset", path: Path) -> Drive:
-    """Read the drive of a result file."""
+def drive_of(dataset: "xr.Dataset", path: Path) -> Drive | ModelError:
+    """Read the drive of a result file, or say which of its kinds are not registered."""
+    if unknown := unknown_kinds(dataset.attrs):
+        return ModelError(
+            f"the drive of {path} has the {listing(unknown)}, not registered here. Its dataset can be used; to use the "
+            "drive, figures and checks, import what registers it before opening the file."
+        )
     try:
         return loads(dataset.attrs["drive"], base=path.parent)
     except ValueError as error:

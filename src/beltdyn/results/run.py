@@ -124,7 +124,7 @@ class Run(Result):
     ('completed', ('time', 'pulley'))
     """
 
-    def __init__(self, dataset: "xr.Dataset | None", drive: Drive, path: Path | None = None) -> None:
+    def __init__(self, dataset: "xr.Dataset | None", drive: Drive | ModelError, path: Path | None = None) -> None:
         super().__init__(dataset, drive, path)
         self._stamp = None if path is None else stamp(path)
 
@@ -305,7 +305,8 @@ def _run(path: Path, dataset: "xr.Dataset") -> Run:
     """The run of a dataset, which is closed if it is refused."""
     try:
         drive = drive_of(dataset, path)
-        if list(dataset["pulley"].values) != [pulley.name for pulley in drive.pulleys]:
+        names = list(dataset["pulley"].values)
+        if isinstance(drive, Drive) and names != [pulley.name for pulley in drive.pulleys]:
             raise ModelError(unreadable(path, ValueError("its pulleys do not match its drive")))
     except ModelError:
         dataset.close()

@@ -10,5 +10,5 @@ from beltdyn.stretch.linear import Linear as Linear
 from beltdyn.stretch.measured import Measured as Measured
 from beltdyn.stretch.measured import through as through
 
-stretching = by_type({law.record: law.stretching for law in LAWS.values()}, "stretching")
+stretching = by_type(LAWS.by_class("stretching"), "stretching")
 """Strain energy of stretch per reference length and its derivatives in G = q . q; see `StretchLaw.stretching`."""

@@ -7,7 +7,8 @@ from numpy.typing import ArrayLike
 
 from beltdyn.arrays import FloatArray
 from beltdyn.kernel import kernel
-from beltdyn.stretch.law import Stretching, StretchLaw, register
+from beltdyn.kinds import register
+from beltdyn.stretch.law import Stretching, StretchLaw
 
 
 class Green(NamedTuple):
@@ -60,4 +61,4 @@ def green(law: Green, metric: float) -> Stretching:
     )
 
 
-register(StretchLaw("green", "as published, by Green's strain", Green, green, Green))
+register(StretchLaw("green", "as published, by Green's strain", Green, green))

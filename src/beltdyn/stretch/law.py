@@ -1,4 +1,4 @@
-"""The contract of stretch laws, and their register."""
+"""The contract of stretch laws, and their registry."""
 
 from collections.abc import Callable
 from typing import Any, NamedTuple, Protocol
@@ -6,6 +6,8 @@ from typing import Any, NamedTuple, Protocol
 from numpy.typing import ArrayLike
 
 from beltdyn.arrays import FloatArray
+from beltdyn.kernel import KernelKinds
+from beltdyn.kinds import Parameter
 
 
 class StretchParameters(Protocol):
@@ -37,26 +39,21 @@ class Stretching(NamedTuple):
 
 
 class StretchLaw(NamedTuple):
-    """A registered stretch law."""
+    """A stretch law, for `register`."""
 
     name: str
     """Its name in a drive file."""
     meaning: str
     """A short description."""
     record: type[Any]
-    """Class of its parameters, a named tuple."""
+    """Class of its parameters, a named tuple that begins with `stiffness`, EA in N."""
     stretching: Callable[[Any, float], Stretching]
     """Kernel: from parameters and G the energy and its exact derivatives."""
-    make: Callable[..., Any]
-    """Parameters from the axial stiffness EA (N) of a belt, or from measured points."""
-    from_points: bool = False
-    """Whether it is made from measured strains and tensions (N)."""
+    parameters: tuple[Parameter, ...] = ()
+    """Its keys in a drive file, in the order of the fields of the record behind `stiffness`."""
+    through: Callable[[ArrayLike, ArrayLike], Any] | None = None
+    """Its parameters from measured strains and tensions (N), if it is a law of measured points."""
 
 
-LAWS: dict[str, StretchLaw] = {}
+LAWS = KernelKinds[StretchLaw]("stretch law", StretchLaw, "record")
 """All stretch laws by name."""
-
-
-def register(law: StretchLaw) -> None:
-    """Register a stretch law."""
-    LAWS[law.name] = law

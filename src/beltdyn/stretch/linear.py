@@ -7,7 +7,8 @@ from numpy.typing import ArrayLike
 
 from beltdyn.arrays import FloatArray
 from beltdyn.kernel import kernel
-from beltdyn.stretch.law import Stretching, StretchLaw, register
+from beltdyn.kinds import register
+from beltdyn.stretch.law import Stretching, StretchLaw
 
 
 class Linear(NamedTuple):
@@ -49,4 +50,4 @@ def linear(law: Linear, metric: float) -> Stretching:
     )
 
 
-register(StretchLaw("linear", "tension proportional to elongation", Linear, linear, Linear))
+register(StretchLaw("linear", "tension proportional to elongation", Linear, linear))

@@ -11,7 +11,8 @@ from numpy.typing import ArrayLike
 
 from beltdyn.arrays import FloatArray
 from beltdyn.kernel import kernel
-from beltdyn.stretch.law import Stretching, StretchLaw, register
+from beltdyn.kinds import register
+from beltdyn.stretch.law import Stretching, StretchLaw
 
 _LEAST_SLOPE = 0.05
 """Slope at an end of the curve over that of the straight line to the next point, at least: the three-point formula
@@ -113,4 +114,4 @@ def measured(law: Measured, metric: float) -> Stretching:
     return Stretching(energy, 0.5 * force / g, 0.25 * (stiffness - force / g) / metric)
 
 
-register(StretchLaw("measured", "a curve of tension over elongation", Measured, measured, through, from_points=True))
+register(StretchLaw("measured", "a curve of tension over elongation", Measured, measured, through=through))

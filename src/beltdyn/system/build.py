@@ -9,12 +9,12 @@ from beltdyn.arrays import FloatArray
 from beltdyn.contact.friction import ForceSlope
 from beltdyn.contact.law import ContactLaw
 from beltdyn.contact.normal import NoPull
-from beltdyn.contact.surface import KINDS, SHAPE, RoundRims, ShapedRims
+from beltdyn.contact.surface import KINDS, SHAPES, RoundRims, ShapedRims
 from beltdyn.errors import ModelError
 from beltdyn.machines import Tensioner
 from beltdyn.model import Belt, Contact, Path, Prepared, Pulley
 from beltdyn.model.hysteresis import Passing, passing_strains, rolling_resistances
-from beltdyn.model.pulley import SURFACES, friction_on
+from beltdyn.model.pulley import friction_on, surface_part
 from beltdyn.model.routing import radii as effective_radii
 from beltdyn.quadrature import Quadrature, gauss_points, lobatto_points
 from beltdyn.records import records
@@ -210,14 +210,13 @@ def _contact_law(contact: Contact | None) -> ContactLaw:
 
 def _rims(pulleys: Sequence[Pulley], radii: FloatArray) -> RoundRims | ShapedRims:
     """Surfaces of the pulleys."""
-    surfaces = [pulley.surface or SURFACES["circle"]() for pulley in pulleys]
+    surfaces = [pulley.surface or surface_part(KINDS["circle"])() for pulley in pulleys]
     if all(surface.kind == "circle" for surface in surfaces):
         return RoundRims(radii)
-    table = records(SHAPE, reach=[surface.reach for surface in surfaces])
-    for row, surface in zip(table, surfaces, strict=True):
-        row["kind"] = list(KINDS).index(surface.kind)
-        for name, value in surface.parameters.items():
-            row[name] = value
+    kinds = [KINDS[surface.kind] for surface in surfaces]
+    table = records(SHAPES.row_type(kinds), reach=[surface.reach for surface in surfaces])
+    for row, kind, surface in zip(table, kinds, surfaces, strict=True):
+        SHAPES.fill(row, kind, surface.parameters)
     return ShapedRims(radii, table)
 
 

@@ -11,10 +11,10 @@ from beltdyn.machines import MovingTensioner, Tensioner
 from beltdyn.machines.links.registry import PlacedLink, link_rows
 from beltdyn.machines.loads.shaft import ShaftLoads, shaft_loads
 from beltdyn.machines.profiles.functions import NO_SCHEDULE, Profiles, profile_rows
-from beltdyn.machines.tensioners.registry import TENSIONER
+from beltdyn.machines.tensioners.registry import TENSIONER_ROWS
 from beltdyn.model import Path, Pulley
 from beltdyn.model.carrier import carriers_of
-from beltdyn.records import Records, records
+from beltdyn.records import Records, as_values, records
 from beltdyn.system.arrays import BODY, PULLEY
 
 
@@ -154,13 +154,14 @@ def _switching_numbers(pulleys: Sequence[Pulley]) -> tuple[list[tuple[int, int]]
 def _tensioners(
     pulleys: Sequence[Pulley], tensioners: Sequence[Tensioner], path: Path | None, gravity: tuple[float, float]
 ) -> Records:
-    """Rows of `TENSIONER` of those that move."""
+    """Rows of those that move."""
     moving = _moving(pulleys, tensioners)
     if moving and path is None:
         raise ModelError("the path is missing: a tensioner needs it for its direction of take-up.")
     carriers = carriers_of(tensioners, [pulley.name for pulley in pulleys], path) if path else []
-    table = records(TENSIONER, pulley=[carrier.pulley for carrier in carriers])
+    kinds = TENSIONER_ROWS.row_type(type(carrier.tensioner) for carrier in carriers)
+    table = records(kinds, pulley=[carrier.pulley for carrier in carriers])
     for number, (carrier, mass) in enumerate(zip(carriers, carried_masses(pulleys, tensioners), strict=True)):
-        table[number] = carrier.row
+        TENSIONER_ROWS.fill(table[number], type(carrier.tensioner), as_values(carrier.constants))
         table.weight[number] = mass * np.array(gravity)
     return table

@@ -11,7 +11,6 @@ from beltdyn.model import Belt
 from beltdyn.quadrature import Quadrature, gauss_points, lobatto_points
 from beltdyn.system.arrays import System
 
-_KINDS = {kind.element: kind for kind in ELEMENTS.values()}
 _REDUCED = 3
 """Lobatto points of reduced integration: exact for the bending of a cubic, not for its stretching."""
 
@@ -97,7 +96,7 @@ def _elastic_points(belt: Belt) -> Quadrature:
 
 def element_kind(system: System) -> ElementKind:
     """Kind of the elements of a system."""
-    return _KINDS[type(system.element)]
+    return next(kind for kind in ELEMENTS.labelled.values() if kind.element is type(system.element))
 
 
 def curve_lengths(system: System) -> FloatArray:

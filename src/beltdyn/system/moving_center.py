@@ -196,7 +196,7 @@ def with_movers(system: System, pulleys: list[int]) -> System:
     table, count = system.pulleys.copy(), len(system.tensioners)
     carriers = np.resize(system.tensioners, count + len(pulleys)) if count else records(TENSIONER, pulley=pulleys)
     for number, pulley in enumerate(pulleys, count):
-        carriers[number] = free_slide(pulley, tuple(system.pulleys.center[pulley]))
+        carriers[number] = free_slide(carriers.dtype, pulley, tuple(system.pulleys.center[pulley]))
         table.carrier[pulley] = number
     own = records(BODY, inertia=np.zeros(len(pulleys)), kinetic=0.0, unknown=-1, reach=1.0)
     return system._replace(

@@ -26,6 +26,7 @@ from beltdyn.contact.surface import RoundRims, ShapedRims
 from beltdyn.elements import ELEMENTS, Section
 from beltdyn.errors import ModelError
 from beltdyn.kernel.cache import PACKAGE, source_hash
+from beltdyn.kernel.kinds import own_labels
 from beltdyn.machines.loads.shaft import ShaftLoads
 from beltdyn.machines.profiles.functions import Profiles
 from beltdyn.model import Drive, Prepared, prepare
@@ -242,12 +243,6 @@ def _type(node: Any) -> np.dtype[Any]:
 _HEAD = "beltdyn checkpoint"
 _LONGEST_HEAD = 200
 
-LAWS: tuple[type, ...] = (
-    *(law.record for laws in (FRICTION_LAWS, NORMAL_LAWS, STRETCH_LAWS) for law in laws.values()),
-    *(kind.element for kind in ELEMENTS.values()),
-)
-"""Parameters of laws and elements."""
-
 STATE = (IntegratorState, Trial, Profiles)
 """What an integration changes as it goes."""
 
@@ -355,7 +350,7 @@ def checkpoint_file(path: Path) -> Path:
 def write_checkpoint(path: Path, point: Checkpoint) -> None:
     """Write a checkpoint."""
     with atomic_path(path, is_checkpoint) as temporary:
-        temporary.write_bytes(f"{_HEAD} {_made_by()}\n".encode() + _PACKING.pack(point))
+        temporary.write_bytes(f"{_HEAD} {_made_by()}\n".encode() + _packing().pack(point))
 
 
 def read_checkpoint(path: Path) -> Checkpoint:
@@ -374,11 +369,11 @@ def read_checkpoint(path: Path) -> Checkpoint:
     made_by = head.decode(errors="replace").removeprefix(_HEAD).strip()
     if made_by != _made_by():
         raise ModelError(
-            f"{path} was written by another version than this one ({version('beltdyn')}), and a run can only be "
-            "resumed by the same version. Install the version that started the run, or run the drive again."
+            f"{path} was written by another version than this one ({version('beltdyn')}), or with other kinds of your "
+            "own, and a run can only be resumed by the same. Use those that started the run, or run the drive again."
         )
     try:
-        point = _PACKING.unpack(content)
+        point = _packing().unpack(content)
     except ModelError as error:
         raise ModelError(f"{path} is damaged ({error}). Run the drive again.") from error
     if not isinstance(point, Checkpoint):
@@ -394,8 +389,13 @@ def is_checkpoint(path: Path) -> bool:
 
 
 def _made_by() -> str:
-    """Identity of the version, within which runs resume identically."""
-    return f"{version('beltdyn')} {source_hash(PACKAGE)}"
+    """What tells apart versions whose runs go on differently."""
+    own = hashlib.sha256(" ".join(sorted(own_labels())).encode()).hexdigest()[:16]
+    return " ".join([version("beltdyn"), source_hash(PACKAGE), *([own] if own_labels() else [])])
 
 
-_PACKING = Packing((Checkpoint, *LAWS, *STATE, *_SYSTEM, *_INTEGRATION, *_RECORDING))
+def _packing() -> Packing:
+    """With the classes of all laws and elements that are registered."""
+    laws = (law.record for laws in (FRICTION_LAWS, NORMAL_LAWS, STRETCH_LAWS) for law in laws.values())
+    elements = (kind.element for kind in ELEMENTS.values())
+    return Packing((Checkpoint, *laws, *elements, *STATE, *_SYSTEM, *_INTEGRATION, *_RECORDING))

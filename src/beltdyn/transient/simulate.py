@@ -1,12 +1,13 @@
 """Simulation of a drive over time."""
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable
 from pathlib import Path
-from typing import get_args
+from typing import cast
 
 from beltdyn.errors import ConvergenceError, ModelError
 from beltdyn.model import Drive, Simulation, prepare
 from beltdyn.model.drive import has_functions
+from beltdyn.model.simulation import INTEGRATORS
 from beltdyn.observation.compilation import compile_kernels
 from beltdyn.observation.observer import Arrays
 from beltdyn.observation.recording import Recording
@@ -199,19 +200,15 @@ def _steady_losses(drive: Drive) -> dict[str, object]:
 
 def choose_integrator(drive: Drive) -> Integrator:
     """The integrator that a drive file asks for."""
-    return INTEGRATORS[drive.simulation.integrator](drive.simulation)
+    made: Integrator = INTEGRATORS[drive.simulation.integrator].made(drive.simulation)
+    return made
 
 
-def _generalized_alpha(settings: Simulation) -> Integrator:
+def generalized_alpha(settings: Simulation) -> Integrator:
+    """The method of this package with the settings of a drive."""
     return GeneralizedAlpha(settings.spectral_radius, settings.rtol, settings.max_step)
 
 
-def _standard(name: Name) -> Callable[[Simulation], Integrator]:
-    return lambda settings: StandardIntegrator(name, settings.rtol, settings.max_step)
-
-
-INTEGRATORS: Mapping[str, Callable[[Simulation], Integrator]] = {
-    "generalized_alpha": _generalized_alpha,
-    **{name: _standard(name) for name in get_args(Name)},
-}
-"""The integrators by their names in a drive file."""
+def standard(settings: Simulation) -> Integrator:
+    """A method of SUNDIALS or SciPy with the settings of a drive."""
+    return StandardIntegrator(cast(Name, settings.integrator), settings.rtol, settings.max_step)

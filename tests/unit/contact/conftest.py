@@ -8,10 +8,10 @@ from hypothesis import strategies as st
 
 from beltdyn.arrays import FloatArray
 from beltdyn.contact.bezier import fill_bernstein
-from beltdyn.contact.friction import LAWS, CoefficientSlope, ForceSlope, FrictionParameters, RelativeCreep
+from beltdyn.contact.friction import LAWS, FrictionParameters
 from beltdyn.contact.law import ContactLaw, PulleyState
 from beltdyn.contact.normal import NoPull
-from beltdyn.contact.surface import KINDS, SHAPE, Round, ShapedRims, surface_at
+from beltdyn.contact.surface import KINDS, SHAPE, SHAPES, Round, ShapedRims, surface_at
 from beltdyn.records import records
 
 
@@ -23,7 +23,8 @@ def pulley() -> PulleyState:
 @pytest.fixture(scope="session")
 def eccentric() -> Callable[[float], PulleyState]:
     """The same pulley with a rim that is 4 mm eccentric, at an angle."""
-    table = records(SHAPE, kind=[list(KINDS).index("eccentric")], eccentricity=[4e-3], eccentric_angle=[0.3])
+    table = records(SHAPE, reach=[4e-3])
+    SHAPES.fill(table[0], KINDS["eccentric"], {"eccentricity": 4e-3, "eccentric_angle": 0.3})
 
     def at(angle: float) -> PulleyState:
         surface = surface_at(ShapedRims(np.array([0.1]), table), 0, angle)
@@ -32,17 +33,12 @@ def eccentric() -> Callable[[float], PulleyState]:
     return at
 
 
-FRICTION: dict[str, FrictionParameters] = {
-    "force_slope": ForceSlope(300.0),
-    "coefficient_slope": CoefficientSlope(0.4),
-    "relative_creep": RelativeCreep(0.5, 0.1),
-}
-
-
 @pytest.fixture(scope="session", params=sorted(LAWS))
 def friction(request: pytest.FixtureRequest) -> FrictionParameters:
-    """Every friction law."""
-    return FRICTION[request.param]
+    """Every friction law with usual parameters, smoothed so that the points of tests are not all saturated."""
+    law = LAWS[request.param]
+    made: FrictionParameters = law.record(*(parameter.example for parameter in law.parameters)).smoothed(40.0)
+    return made
 
 
 @pytest.fixture(scope="session")

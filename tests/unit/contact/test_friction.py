@@ -38,7 +38,8 @@ def test_opposes_slip_within_the_coulomb_limit(friction: FrictionParameters, sli
     assert abs(force) <= MU * normal * (1 + 1e-15)
 
 
-@given(st.floats(-10.0, 10.0), st.floats(0.1, 1e4))
+@pytest.mark.parametrize("friction", ["coefficient_slope", "force_slope", "relative_creep"], indirect=True)
+@given(ratio=st.floats(-10.0, 10.0), normal=st.floats(0.1, 1e4))
 def test_equals_its_clipped_line(friction: FrictionParameters, ratio: float, normal: float) -> None:
     force = force_at(friction, ratio * break_away(friction, normal), normal)[0]
     assert force == pytest.approx(-MU * normal * np.clip(ratio, -1, 1), rel=1e-12)

@@ -14,14 +14,12 @@ RATES = st.floats(-5.0, 5.0)
 DEPTHS = st.floats(0.0, 1e-3)
 
 
-@pytest.fixture(params=[NO_PULL, PUBLISHED], ids=["no_pull", "published"])
+@pytest.fixture(params=LAWS)
 def law(request: pytest.FixtureRequest) -> NormalParameters:
-    parameters: NormalParameters = request.param
+    """Every law, with the examples of its own parameters."""
+    kind = LAWS[request.param]
+    parameters: NormalParameters = kind.record(STIFFNESS, DAMPING, *(own.example for own in kind.parameters))
     return parameters
-
-
-def test_every_law_is_tried() -> None:
-    assert {law.record for law in LAWS.values()} == {NoPull, Published}
 
 
 @pytest.mark.parametrize(

@@ -8,7 +8,18 @@ import pytest
 from beltdyn.arrays import FloatArray
 from beltdyn.contact.contact_zone import out_of_reach, touching_intervals, zone_scratch
 from beltdyn.contact.law import PulleyState
-from beltdyn.contact.surface import KINDS, SHAPE, Gap, Round, Shaped, ShapedRims, outer_radius, shaped_gap, surface_at
+from beltdyn.contact.surface import (
+    KINDS,
+    SHAPE,
+    SHAPES,
+    Gap,
+    Round,
+    Shaped,
+    ShapedRims,
+    outer_radius,
+    shaped_gap,
+    surface_at,
+)
 from beltdyn.records import records
 
 RADIUS, ECCENTRICITY, DIRECTION = 0.1, 4e-3, 0.3
@@ -20,9 +31,10 @@ ROUNDING = 1e-15
 @pytest.fixture(scope="module")
 def rims() -> ShapedRims:
     """An eccentric pulley behind a round one."""
-    kinds = [list(KINDS).index(name) for name in ("circle", "eccentric")]
-    shapes = {"eccentricity": [0.0, ECCENTRICITY], "eccentric_angle": [0.0, DIRECTION], "reach": [0.0, ECCENTRICITY]}
-    return ShapedRims(np.array([0.05, RADIUS]), records(SHAPE, kind=kinds, **shapes))
+    table = records(SHAPE, reach=[0.0, ECCENTRICITY])
+    SHAPES.fill(table[0], KINDS["circle"], {})
+    SHAPES.fill(table[1], KINDS["eccentric"], {"eccentricity": ECCENTRICITY, "eccentric_angle": DIRECTION})
+    return ShapedRims(np.array([0.05, RADIUS]), table)
 
 
 @pytest.fixture

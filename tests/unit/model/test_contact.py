@@ -31,7 +31,8 @@ def test_the_laws_get_what_is_given() -> None:
 
 @pytest.mark.parametrize("law", NORMAL_LAWS)
 def test_every_law_of_the_normal_force_can_be_chosen(law: str) -> None:
-    found = Contact(**GIVEN, normal_law=law).normal_parameters
+    own = {parameter.name: parameter.example for parameter in NORMAL_LAWS[law].parameters}
+    found = Contact(**GIVEN, normal_law=law, **own).normal_parameters
     assert isinstance(found, NORMAL_LAWS[law].record)
 
 

@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 
 from beltdyn.errors import ModelError
-from beltdyn.machines.links.registry import KINDS as LINKS
-from beltdyn.machines.loads.registry import KINDS as LOADS
+from beltdyn.machines.links.link import LINKS
+from beltdyn.machines.loads.load import LOADS
 from beltdyn.machines.profiles.functions import NO_SCHEDULE, profile_value
 from beltdyn.model import Belt, FixedTensioner, Pulley, RotaryTensioner, SlidingTensioner
 from beltdyn.model.routing import lay_path

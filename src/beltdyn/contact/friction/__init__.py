@@ -8,7 +8,7 @@ from beltdyn.contact.friction.law import FrictionParameters as FrictionParameter
 from beltdyn.contact.friction.relative_creep import RelativeCreep as RelativeCreep
 from beltdyn.kernel import by_type, kernel
 
-_pressed = by_type({law.record: law.force for law in LAWS.values()}, "friction_force")
+_pressed = by_type(LAWS.by_class("force"), "friction_force")
 
 
 @kernel

@@ -6,9 +6,9 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from beltdyn.arrays import FloatArray
-from beltdyn.contact.friction.law import FrictionLaw, register
-from beltdyn.contact.parameter import Parameter
+from beltdyn.contact.friction.law import FrictionLaw
 from beltdyn.kernel import kernel
+from beltdyn.kinds import Parameter, register
 
 
 class CoefficientSlope(NamedTuple):
@@ -58,5 +58,5 @@ def coefficient_slope(
     return -ratio * slip * normal, -ratio * normal, -ratio * slip, 0.0
 
 
-_KEY = Parameter("creep_velocity", "m/s", "the slip velocity at which friction saturates")
+_KEY = Parameter("creep_velocity", "m/s", "the slip velocity at which friction saturates", example=0.01)
 register(FrictionLaw("coefficient_slope", CoefficientSlope, coefficient_slope, (_KEY,)))

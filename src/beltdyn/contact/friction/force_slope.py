@@ -6,9 +6,9 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from beltdyn.arrays import FloatArray
-from beltdyn.contact.friction.law import FrictionLaw, register
-from beltdyn.contact.parameter import Parameter
+from beltdyn.contact.friction.law import FrictionLaw
 from beltdyn.kernel import kernel
+from beltdyn.kinds import Parameter, register
 
 
 class ForceSlope(NamedTuple):
@@ -58,5 +58,5 @@ def force_slope(
     return -sign * limit, 0.0, -sign * friction, 0.0
 
 
-_KEY = Parameter("creep_rate_factor", "kg/(m*s)", "the slope of the friction force over the slip velocity")
+_KEY = Parameter("creep_rate_factor", "kg/(m*s)", "the slope of the friction force over the slip velocity", example=1e5)
 register(FrictionLaw("force_slope", ForceSlope, force_slope, (_KEY,)))

@@ -1,4 +1,4 @@
-"""The contract of friction laws, and their register."""
+"""The contract of friction laws, and their registry."""
 
 from collections.abc import Callable
 from typing import Any, NamedTuple, Protocol
@@ -6,7 +6,8 @@ from typing import Any, NamedTuple, Protocol
 from numpy.typing import ArrayLike
 
 from beltdyn.arrays import FloatArray
-from beltdyn.contact.parameter import Parameter
+from beltdyn.kernel import KernelKinds
+from beltdyn.kinds import Parameter
 
 
 class FrictionParameters(Protocol):
@@ -20,7 +21,7 @@ class FrictionParameters(Protocol):
 
 
 class FrictionLaw(NamedTuple):
-    """A registered friction law."""
+    """A friction law, for `register`."""
 
     name: str
     """Its name in a drive file."""
@@ -33,10 +34,5 @@ class FrictionLaw(NamedTuple):
     """Its keys in a drive file, in the order of the fields of the record."""
 
 
-LAWS: dict[str, FrictionLaw] = {}
+LAWS = KernelKinds[FrictionLaw]("friction law", FrictionLaw, "record")
 """All friction laws by their names."""
-
-
-def register(law: FrictionLaw) -> None:
-    """Register a friction law."""
-    LAWS[law.name] = law

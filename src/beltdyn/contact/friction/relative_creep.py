@@ -11,9 +11,9 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from beltdyn.arrays import FloatArray
-from beltdyn.contact.friction.law import FrictionLaw, register
-from beltdyn.contact.parameter import Parameter
+from beltdyn.contact.friction.law import FrictionLaw
 from beltdyn.kernel import kernel
+from beltdyn.kinds import Parameter, register
 
 
 class RelativeCreep(NamedTuple):
@@ -69,6 +69,10 @@ def relative_creep(
     return force, -share * normal, -share * slip, -force * law.creep_ratio * scaled / (creep * creep)
 
 
-_RATIO = Parameter("creep_ratio", "", "the slip velocity at which friction saturates, over the rim speed", found=True)
-_STANDSTILL = Parameter("standstill_creep", "m/s", "the same slip velocity on a pulley at standstill", found=True)
-register(FrictionLaw("relative_creep", RelativeCreep, relative_creep, (_RATIO, _STANDSTILL)))
+_KEYS = (
+    Parameter(
+        "creep_ratio", "", "the slip velocity at which friction saturates, over the rim speed", found=True, example=0.01
+    ),
+    Parameter("standstill_creep", "m/s", "the same slip velocity on a pulley at standstill", found=True, example=0.001),
+)
+register(FrictionLaw("relative_creep", RelativeCreep, relative_creep, _KEYS))

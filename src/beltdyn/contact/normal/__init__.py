@@ -8,7 +8,7 @@ from beltdyn.contact.normal.no_pull import NoPull as NoPull
 from beltdyn.contact.normal.published import Published as Published
 from beltdyn.kernel import by_type, kernel
 
-_pressed = by_type({law.record: law.force for law in LAWS.values()}, "normal_force")
+_pressed = by_type(LAWS.by_class("force"), "normal_force")
 
 
 @kernel

@@ -1,9 +1,10 @@
-"""The contract of laws of the normal force, and their register."""
+"""The contract of laws of the normal force, and their registry."""
 
 from collections.abc import Callable
 from typing import Any, NamedTuple, Protocol, Self
 
-from beltdyn.contact.parameter import Parameter
+from beltdyn.kernel import KernelKinds
+from beltdyn.kinds import Parameter
 
 
 class NormalParameters(Protocol):
@@ -37,7 +38,7 @@ class NormalForce(NamedTuple):
 
 
 class NormalLaw(NamedTuple):
-    """A registered law of the normal force."""
+    """A law of the normal force, for `register`."""
 
     name: str
     """Its name in a drive file."""
@@ -49,10 +50,5 @@ class NormalLaw(NamedTuple):
     """Its keys in a drive file beside `stiffness` and `damping`, in the order of the further fields of the record."""
 
 
-LAWS: dict[str, NormalLaw] = {}
+LAWS = KernelKinds[NormalLaw]("normal law", NormalLaw, "record")
 """All laws of the normal force by their names."""
-
-
-def register(law: NormalLaw) -> None:
-    """Register a law of the normal force."""
-    LAWS[law.name] = law

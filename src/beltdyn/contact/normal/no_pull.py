@@ -2,8 +2,9 @@
 
 from typing import NamedTuple
 
-from beltdyn.contact.normal.law import NormalForce, NormalLaw, register
+from beltdyn.contact.normal.law import NormalForce, NormalLaw
 from beltdyn.kernel import kernel
+from beltdyn.kinds import register
 
 
 class NoPull(NamedTuple):

@@ -1,15 +1,12 @@
 """Surfaces of pulleys: the smooth circle, and kinds that depend on the pulley angle, one per file.
 
-Importing a kind here puts it on the list.  A drive whose pulleys are all round has a system of its own type, whose
+Importing a kind here registers it.  A drive whose pulleys are all round has a system of its own type, whose
 kernels know of nothing else.
 """
 
 from collections.abc import Callable
-from functools import reduce
 from math import cos, sin
 from typing import Any, NamedTuple
-
-import numpy as np
 
 from beltdyn.arrays import FloatArray
 from beltdyn.contact.surface import circle as circle
@@ -17,15 +14,13 @@ from beltdyn.contact.surface import eccentric as eccentric
 from beltdyn.contact.surface.kind import KINDS as KINDS
 from beltdyn.contact.surface.kind import Gap as Gap
 from beltdyn.contact.surface.kind import SurfaceKind as SurfaceKind
-from beltdyn.kernel import by_type, kernel
-from beltdyn.records import Records, record
+from beltdyn.kernel import KindRows, by_type, choice, kernel
+from beltdyn.records import Records
 
-SHAPE = record(
-    kind="i8",  # number of the kind in the list
-    reach="f8",  # how far the surface goes beyond it, m
-    **{parameter.name: "f8" for kind in KINDS.values() for parameter in kind.parameters},
-)
-"""The surface of a pulley; only the parameters of its kind are used."""
+SHAPES = KindRows(KINDS, lambda kind: kind.constants, reach="f8")
+"""Rows of surfaces: how far each goes beyond the effective radius (m), its kind, and the parameters of that."""
+SHAPE = SHAPES.row_type()
+"""The row of a surface of the package."""
 
 
 class RoundRims(NamedTuple):
@@ -93,20 +88,7 @@ outer_radius: Callable[[Any], float] = by_type({Round: _circle_reach, Shaped: _s
 """Radius of the circle around a surface, about the shaft, m."""
 
 
-def _either(others: Any, numbered: tuple[int, Any]) -> Any:
-    """Kernel of one kind where it is the one, and of the others elsewhere."""
-    number, gap = numbered
-
-    @kernel
-    def choose(x: float, y: float, radius: float, shape: np.record) -> Gap:
-        found: Gap = gap(x, y, radius, shape) if shape.kind == number else others(x, y, radius, shape)
-        return found
-
-    return choose
-
-
-_GAPS = [kind.gap for kind in KINDS.values()]
-_gap_of_kind = reduce(_either, list(enumerate(_GAPS))[1:], _GAPS[0])
+gap_of_kind = choice("gap_of_kind", KINDS.functions("gap"), ["x", "y", "radius"])
 
 
 @kernel
@@ -121,6 +103,6 @@ def shaped_gap(surface: Shaped, x: float, y: float) -> Gap:
         Place against the shaft, m.
     """
     c, s = surface.cosine, surface.sine
-    own = _gap_of_kind(c * x + s * y, c * y - s * x, surface.radius, surface.table[surface.row])
+    own = gap_of_kind(surface.table[surface.row], c * x + s * y, c * y - s * x, surface.radius)
     nx, ny = own.normal_x, own.normal_y
     return Gap(own.penetration, c * nx - s * ny, s * nx + c * ny, own.curvature)

@@ -4,12 +4,13 @@ from math import sqrt
 
 import numpy as np
 
-from beltdyn.contact.surface.kind import Gap, SurfaceKind, register
+from beltdyn.contact.surface.kind import Gap, SurfaceKind
 from beltdyn.kernel import kernel
+from beltdyn.kinds import register
 
 
 @kernel
-def circle_gap(x: float, y: float, radius: float, surface: np.record) -> Gap:
+def circle_gap(_surface: np.record, x: float, y: float, radius: float) -> Gap:
     """Gap of a point at x, y against the shaft (m) against a circle of the effective radius R (m)."""
     distance = sqrt(x * x + y * y)
     return Gap(radius - distance, x / distance, y / distance, 1.0 / distance)

@@ -5,23 +5,23 @@ from math import cos, sin, sqrt
 
 import numpy as np
 
-from beltdyn.contact.parameter import Parameter
-from beltdyn.contact.surface.kind import Gap, SurfaceKind, register
+from beltdyn.contact.surface.kind import Gap, SurfaceKind
 from beltdyn.kernel import kernel
+from beltdyn.kinds import Parameter, register
 
 
 @kernel
-def eccentric_gap(x: float, y: float, radius: float, surface: np.record) -> Gap:
+def eccentric_gap(surface: np.record, x: float, y: float, radius: float) -> Gap:
     """Gap of a point: as on a circle about its own center.
 
     Parameters
     ----------
+    surface
+        With `eccentricity` (m) and `eccentric_angle` (rad).
     x, y
         Place of the point against the shaft, in the frame of the pulley, m.
     radius
         Effective radius R, m.
-    surface
-        With `eccentricity` (m) and `eccentric_angle` (rad).
     """
     dx = x - surface.eccentricity * cos(surface.eccentric_angle)
     dy = y - surface.eccentricity * sin(surface.eccentric_angle)
@@ -34,7 +34,9 @@ def _reach(parameters: Mapping[str, float]) -> float:
 
 
 _KEYS = (
-    Parameter("eccentricity", "m", "the distance of the rim's center from the shaft"),
-    Parameter("eccentric_angle", "rad", "the direction of the rim's center at the start", above=None, default=0.0),
+    Parameter("eccentricity", "m", "the distance of the rim's center from the shaft", example=1e-3),
+    Parameter(
+        "eccentric_angle", "rad", "the direction of the rim's center at the start", above=None, default=0.0, example=0.3
+    ),
 )
 register(SurfaceKind("eccentric", eccentric_gap, _reach, _KEYS))

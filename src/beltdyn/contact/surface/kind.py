@@ -1,9 +1,13 @@
-"""The contract of shaped pulley surfaces, and their register."""
+"""The contract of shaped pulley surfaces, and their registry."""
 
 from collections.abc import Callable, Mapping
 from typing import Any, NamedTuple
 
-from beltdyn.contact.parameter import Parameter
+import numpy as np
+
+from beltdyn.kernel import KernelKinds
+from beltdyn.kinds import Parameter
+from beltdyn.records import record
 
 
 class Gap(NamedTuple):
@@ -19,23 +23,23 @@ class Gap(NamedTuple):
 
 
 class SurfaceKind(NamedTuple):
-    """A registered kind of surface."""
+    """A kind of pulley surface, for `register`."""
 
     name: str
     """Its name in a drive file."""
-    gap: Callable[[float, float, float, Any], Gap]
-    """Kernel: the gap of a point from its place x, y against the shaft in the frame that turns with the pulley (m), the
-    effective radius (m), and the parameters as fields of a record."""
+    gap: Callable[[Any, float, float, float], Gap]
+    """Kernel: the gap of a point from the parameters as fields of a record, its place x, y against the shaft in the
+    frame that turns with the pulley (m), and the effective radius (m)."""
     reach: Callable[[Mapping[str, float]], float]
     """Largest deviation beyond the effective radius, m, from the parameters."""
     parameters: tuple[Parameter, ...]
     """Its keys in a drive file, and the fields of the record."""
 
+    @property
+    def constants(self) -> np.dtype[np.void]:
+        """The record of its parameters."""
+        return record(**{parameter.name: "f8" for parameter in self.parameters} or {"unused": "f8"})
 
-KINDS: dict[str, SurfaceKind] = {}
-"""All kinds of surfaces but the smooth circle, by their names."""
 
-
-def register(kind: SurfaceKind) -> None:
-    """Register a kind of surface."""
-    KINDS[kind.name] = kind
+KINDS = KernelKinds[SurfaceKind]("surface", SurfaceKind)
+"""All kinds of surfaces by their names."""

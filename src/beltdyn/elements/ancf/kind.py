@@ -7,6 +7,7 @@ from beltdyn.elements.ancf.elastic_force import ELASTIC_WORKSPACE, element_energ
 from beltdyn.elements.ancf.element import Ancf
 from beltdyn.elements.ancf.material_damping import DAMPING_WORKSPACE, damping_force
 from beltdyn.elements.kind import ElementKind, Section
+from beltdyn.kinds import register
 
 # Constant mass matrix of the belt element (kinetic energy of Eq. 2; section 4)
 
@@ -65,21 +66,23 @@ def _upright(place: FloatArray, slope: FloatArray, _bend: FloatArray) -> FloatAr
     return np.hstack([place, slope, normal / np.linalg.norm(slope, axis=1, keepdims=True)])
 
 
-ANCF = ElementKind(
-    name="ancf",
-    meaning="the paper's element",
-    element=Ancf,
-    coordinates=("r_x", "r_y", "dr_x/dx", "dr_y/dx", "dr_x/dy", "dr_y/dy"),
-    vectors=(0, 2, 6, 8),
-    shift=(1.0, 0.0, 1.0, 0.0),
-    control=_hermite_control,
-    scale=lambda length: (1.0, 1.0, length, length, length, length),
-    mass=element_mass,
-    nodal=_upright,
-    energy=element_energy,
-    force=element_force,
-    damping=damping_force,
-    scratch={"elastic": ELASTIC_WORKSPACE, "damping": DAMPING_WORKSPACE},
-    turned=4,
-    bent_strain=-1.5,  # least energy of Eq. 14, EA e^2 / 2 + EI (1 + 3 e) / (2 R^2) at a small strain e
+ANCF = register(
+    ElementKind(
+        name="ancf",
+        meaning="the paper's element",
+        element=Ancf,
+        coordinates=("r_x", "r_y", "dr_x/dx", "dr_y/dx", "dr_x/dy", "dr_y/dy"),
+        vectors=(0, 2, 6, 8),
+        shift=(1.0, 0.0, 1.0, 0.0),
+        control=_hermite_control,
+        scale=lambda length: (1.0, 1.0, length, length, length, length),
+        mass=element_mass,
+        nodal=_upright,
+        energy=element_energy,
+        force=element_force,
+        damping=damping_force,
+        scratch={"elastic": ELASTIC_WORKSPACE, "damping": DAMPING_WORKSPACE},
+        turned=4,
+        bent_strain=-1.5,  # least energy of Eq. 14, EA e^2 / 2 + EI (1 + 3 e) / (2 R^2) at a small strain e
+    )
 )

@@ -12,6 +12,7 @@ import numpy as np
 from pydantic import Field
 
 from beltdyn.kernel import kernel
+from beltdyn.kinds import register
 from beltdyn.machines.links.link import HubLink, LinkTorque
 from beltdyn.machines.profiles.registry import Schedule
 from beltdyn.parts.quantity import Torque, TorsionalDamping
@@ -37,6 +38,7 @@ def friction_clutch(constants: np.record, scale: float, _twist: float, rate: flo
     return LinkTorque(torque, 0.0, slope, by_schedule, 0.0, torque * rate)
 
 
+@register
 class FrictionClutch(HubLink):
     """A clutch that transmits torque up to its capacity and slips above it.
 
@@ -74,6 +76,7 @@ def one_way_clutch(constants: np.record, _scale: float, _twist: float, rate: flo
     return LinkTorque(torque, 0.0, slope, 0.0, 0.0, torque * rate)
 
 
+@register
 class OneWayClutch(HubLink):
     """An overrunning clutch, which drives the body behind it in one sense only and lets it run ahead.
 

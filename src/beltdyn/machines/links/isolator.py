@@ -6,6 +6,7 @@ import numpy as np
 from pydantic import Field
 
 from beltdyn.kernel import kernel
+from beltdyn.kinds import register
 from beltdyn.machines.links.link import HubLink, LinkTorque
 from beltdyn.parts.quantity import TorsionalDamping, TorsionalStiffness
 from beltdyn.records import record
@@ -30,6 +31,7 @@ def isolator(constants: np.record, _scale: float, twist: float, rate: float) -> 
     )
 
 
+@register
 class Isolator(HubLink):
     """A torsional spring and damper in parallel.
 

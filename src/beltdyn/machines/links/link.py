@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING, Any, ClassVar, NamedTuple
 import numpy as np
 from pydantic import Field
 
+from beltdyn.kernel import KernelKinds
 from beltdyn.machines.profiles.profile import Profile
 from beltdyn.parts.part import Part
 from beltdyn.parts.quantity import Inertia
@@ -55,3 +56,7 @@ class HubLink(Part):
     def factor(self) -> Profile | None:
         """Its schedule, if it has one."""
         return getattr(self, "schedule", None)
+
+
+LINKS = KernelKinds[type[HubLink]]("hub coupling", HubLink)
+"""All kinds of couplings by name."""

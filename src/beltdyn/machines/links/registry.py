@@ -1,34 +1,31 @@
 """Links of any kind: their field type, their rows, and the kernel that evaluates them."""
 
 from collections.abc import Sequence
-from typing import TYPE_CHECKING, NamedTuple
+from typing import Annotated, NamedTuple
 
 import numpy as np
 
-from beltdyn.kernel import choice, kernel
-from beltdyn.machines import links as kinds
-from beltdyn.machines.family import any_of, constants_of, kinds_in
-from beltdyn.machines.links.link import HubLink, LinkTorque
+import beltdyn.machines.links  # noqa: F401  whose kinds register themselves
+from beltdyn.kernel import KindRows, choice, kernel
+from beltdyn.machines.links.link import LINKS, HubLink, LinkTorque
 from beltdyn.machines.profiles.functions import Profiles, schedule_value
-from beltdyn.records import Records, fill, record, records
+from beltdyn.parts.kind_fields import OneOf
+from beltdyn.records import Records, records
 
-KINDS = kinds_in(kinds)
+AnyHubLink = Annotated[HubLink, OneOf(LINKS)]
 
-if TYPE_CHECKING:
-    AnyHubLink = HubLink
-else:
-    AnyHubLink = any_of(KINDS)
-
-LINK = record(
+LINK_ROWS = KindRows(
+    LINKS,
+    lambda kind: kind.constants,
     front="i8",  # body on the belt's side: 0 to P - 1 are the rims, then come the hub bodies
     back="i8",  # body behind it
     schedule="i8",  # number of the profile that multiplies it, or `NO_SCHEDULE`
-    kind="i8",  # place among `KINDS`
-    **constants_of(KINDS),
 )
-"""A link of a hub chain, with the constants of its kind; those of the others are zero."""
+"""Rows of links of hub chains, with the constants of their kinds; those of others are zero."""
+LINK = LINK_ROWS.row_type()
+"""The row of a link of the package."""
 
-torque_of_kind = choice("torque_of_kind", {k: v.torque_at for k, v in KINDS.items()}, ["scale", "twist", "rate"])
+torque_of_kind = choice("torque_of_kind", LINKS.functions("torque_at"), ["scale", "twist", "rate"])
 
 
 class PlacedLink(NamedTuple):
@@ -45,10 +42,10 @@ class PlacedLink(NamedTuple):
 
 def link_rows(placed: Sequence[PlacedLink]) -> Records:
     """Rows of `LINK` of some links."""
-    table, names = records(LINK, front=[one.front for one in placed]), list(KINDS)
+    table = records(LINK_ROWS.row_type(type(one.link) for one in placed), front=[one.front for one in placed])
     for row, one in zip(table, placed, strict=True):
-        row.back, row.schedule, row.kind = one.back, one.schedule, names.index(one.link.kind)
-        fill(row[one.link.kind], one.link.values(one.turning))
+        row.back, row.schedule = one.back, one.schedule
+        LINK_ROWS.fill(row, type(one.link), one.link.values(one.turning))
     return table
 
 

@@ -14,6 +14,7 @@ from pydantic import Field
 
 from beltdyn.arrays import FloatArray
 from beltdyn.kernel import kernel
+from beltdyn.kinds import register
 from beltdyn.machines.loads.load import Load, LoadTorque, ShaftState
 from beltdyn.machines.profiles.profile import Profile
 from beltdyn.machines.profiles.registry import BrakingProfile, ForceProfile
@@ -51,6 +52,7 @@ def standstill(constants: np.record, _numbers: FloatArray, shaft: ShaftState, ri
     return 0.0 if ahead and constants.forward != constants.backward else np.inf
 
 
+@register
 class Brake(Load):
     """A disc, shoe or plate brake, clamped over time, whose torque opposes the motion.
 
@@ -81,6 +83,7 @@ class Brake(Load):
         return self.torque
 
 
+@register
 class BandBrake(Load):
     """A band brake on a drum on the shaft, with one end fixed and the other pulled over time.
 

@@ -10,6 +10,7 @@ from beltdyn.arrays import FloatArray
 from beltdyn.errors import ModelError
 from beltdyn.kernel import kernel
 from beltdyn.kernel.callback import address_of, call_at
+from beltdyn.kinds import register
 from beltdyn.machines.loads.load import Load, LoadTorque, ShaftState
 from beltdyn.parts.quantity import AngularSpeed, Ratio
 from beltdyn.records import record
@@ -52,6 +53,7 @@ def torque_of_function(constants: np.record, _numbers: FloatArray, shaft: ShaftS
     return LoadTorque(torque, (more - less) / (2.0 * _STEP), (faster - slower) / (2.0 * rise), 0.0)
 
 
+@register
 class FunctionLoad(Load):
     """A torque as a Python function of time (s), angle (rad) and speed (rad/s) of the shaft; not for drive files.
 

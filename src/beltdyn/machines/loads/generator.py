@@ -11,6 +11,7 @@ from pydantic import Field
 
 from beltdyn.arrays import FloatArray
 from beltdyn.kernel import kernel
+from beltdyn.kinds import register
 from beltdyn.machines.loads.load import Load, LoadTorque, ShaftState, nearer_kink
 from beltdyn.machines.profiles.profile import Profile
 from beltdyn.machines.profiles.registry import PowerProfile
@@ -59,6 +60,7 @@ def next_end_of_regulation(constants: np.record, _numbers: FloatArray, shaft: Sh
     return nearest
 
 
+@register
 class Generator(Load):
     """A generator or alternator of regulated voltage, which draws the demanded power at any speed.
 

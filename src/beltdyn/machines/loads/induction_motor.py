@@ -18,6 +18,7 @@ from pydantic import Field, model_validator
 
 from beltdyn.arrays import FloatArray
 from beltdyn.kernel import kernel
+from beltdyn.kinds import register
 from beltdyn.machines.loads.load import Load, LoadTorque, ShaftState, nearer_kink
 from beltdyn.machines.loads.motor import kloss_over_slip
 from beltdyn.machines.profiles.profile import Profile
@@ -104,6 +105,7 @@ def limit_reached(constants: np.record, _numbers: FloatArray, shaft: ShaftState,
     return nearest
 
 
+@register
 class InductionMotor(Load):
     """An induction motor by catalogue data, which drives below its synchronous speed and brakes above it.
 

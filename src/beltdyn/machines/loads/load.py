@@ -7,7 +7,7 @@ import numpy as np
 from pydantic import Field
 
 from beltdyn.arrays import FloatArray
-from beltdyn.kernel import interpreted, kernel
+from beltdyn.kernel import KernelKinds, interpreted, kernel
 from beltdyn.machines.profiles.harmonic import Harmonic
 from beltdyn.machines.profiles.profile import Profile
 from beltdyn.machines.profiles.registry import Schedule
@@ -184,3 +184,7 @@ class Load(Part):
     def driven_speed(self) -> float:
         """Speed up to which it drives the shaft, rad/s; zero for a load."""
         return 0.0
+
+
+LOADS = KernelKinds[type[Load]]("load", Load)
+"""All kinds of loads by name."""

@@ -11,6 +11,7 @@ from pydantic import Field, model_validator
 
 from beltdyn.arrays import FloatArray
 from beltdyn.kernel import kernel
+from beltdyn.kinds import register
 from beltdyn.machines.loads.load import Load, LoadTorque, ShaftState, StateRate
 from beltdyn.machines.profiles.profile import Profile
 from beltdyn.machines.profiles.registry import SpeedProfile
@@ -49,6 +50,7 @@ def kloss(constants: np.record, _numbers: FloatArray, shaft: ShaftState) -> Load
     return LoadTorque(torque, 0.0, -by_slip / constants.synchronous_speed, 0.0)
 
 
+@register
 class Motor(Load):
     """An induction motor after Kloss, which drives below its synchronous speed and brakes above it.
 
@@ -126,6 +128,7 @@ def servo_rate(constants: np.record, numbers: FloatArray, shaft: ShaftState) -> 
     return StateRate(rate, found.by_speed / gain, (by_state - integral) / gain, by_state)
 
 
+@register
 class ServoMotor(Load):
     """A servo motor, or any motor with a speed controller, which holds a set speed within its torque limit.
 

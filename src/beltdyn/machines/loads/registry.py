@@ -1,35 +1,31 @@
 """Loads of any kind: their field type, and the kernels that evaluate them."""
 
-from typing import TYPE_CHECKING
+from typing import Annotated
 
-from beltdyn.kernel import choice
-from beltdyn.machines import loads as kinds
-from beltdyn.machines.family import any_of, constants_of, kinds_in
-from beltdyn.machines.loads.load import Load
-from beltdyn.records import record
+import beltdyn.machines.loads  # noqa: F401  whose kinds register themselves
+from beltdyn.kernel import KindRows, choice
+from beltdyn.machines.loads.load import LOADS, Load
+from beltdyn.parts.kind_fields import OneOf
 
-KINDS = kinds_in(kinds)
-
-if TYPE_CHECKING:
-    AnyLoad = Load
-else:
-    AnyLoad = any_of(KINDS)
+AnyLoad = Annotated[Load, OneOf(LOADS)]
 
 NO_STATE = -1
 """Place of the state of a load without one."""
 
-SHAFT_LOAD = record(
+SHAFT_LOADS = KindRows(
+    LOADS,
+    lambda kind: kind.constants,
     schedule="i8",  # number of the profile that multiplies it, or `NO_SCHEDULE`
     command="i8",  # number of the profile whose value it gets, or `NO_SCHEDULE`
     state="i8",  # place of its controller's state among the bodies, or `NO_STATE`
     number="i8",  # place of its first number; the last is that before the first of the next row
     harmonic="i8",  # its first harmonic over the shaft angle, alike
     order="f8",  # the highest order over the shaft angle
-    kind="i8",  # place among `KINDS`
-    **constants_of(KINDS),
 )
-"""A load on a shaft, with the constants of its kind; those of the others are zero."""
+"""Rows of loads on shafts, with the constants of their kinds; those of others are zero."""
+SHAFT_LOAD = SHAFT_LOADS.row_type()
+"""The row of a load of the package."""
 
-torque_of_kind = choice("torque_of_kind", {k: v.torque_at for k, v in KINDS.items()}, ["numbers", "shaft"])
-rate_of_kind = choice("rate_of_kind", {k: v.rate_at for k, v in KINDS.items()}, ["numbers", "shaft"])
-kink_of_kind = choice("kink_of_kind", {k: v.next_kink for k, v in KINDS.items()}, ["numbers", "shaft", "rising"])
+torque_of_kind = choice("torque_of_kind", LOADS.functions("torque_at"), ["numbers", "shaft"])
+rate_of_kind = choice("rate_of_kind", LOADS.functions("rate_at"), ["numbers", "shaft"])
+kink_of_kind = choice("kink_of_kind", LOADS.functions("next_kink"), ["numbers", "shaft", "rising"])

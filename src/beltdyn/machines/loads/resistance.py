@@ -9,6 +9,7 @@ from pydantic import Field, model_validator
 
 from beltdyn.arrays import FloatArray
 from beltdyn.kernel import kernel
+from beltdyn.kinds import register
 from beltdyn.machines.loads.brake import BRAKE, braking_torque
 from beltdyn.machines.loads.load import Load, LoadTorque, ShaftState
 from beltdyn.machines.profiles.profile import Profile
@@ -42,6 +43,7 @@ def resistance(constants: np.record, _numbers: FloatArray, shaft: ShaftState) ->
     return LoadTorque(-torque, 0.0, -(dry + constants.linear + 2.0 * constants.quadratic * size), 0.0)
 
 
+@register
 class Resistance(Load):
     """A torque that opposes the motion of the shaft: constant (dry friction), linear or quadratic in speed.
 
@@ -72,6 +74,7 @@ class Resistance(Load):
 # A fan or centrifugal pump by its catalogue: M = -M_n ((1 - b) (omega / omega_n)^2 + b) against the motion
 
 
+@register
 class Fan(Load):
     """A fan, blower or centrifugal pump, with a torque quadratic in speed plus friction.
 
@@ -106,6 +109,7 @@ class Fan(Load):
 # A displacement pump, as with gears, vanes or pistons: M = -p V / (2 pi eta), against the motion
 
 
+@register
 class Pump(Load):
     """A displacement pump (gear, vane or piston), whose torque follows the pressure at any speed.
 

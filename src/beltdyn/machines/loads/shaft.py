@@ -7,12 +7,12 @@ from typing import NamedTuple
 import numpy as np
 
 from beltdyn.arrays import FloatArray, IntArray
-from beltdyn.kernel import kernel
-from beltdyn.machines.loads.load import Load, LoadTorque, ShaftState, StateRate
-from beltdyn.machines.loads.registry import KINDS, NO_STATE, SHAFT_LOAD, kink_of_kind, rate_of_kind, torque_of_kind
+from beltdyn.kernel import kernel, labels
+from beltdyn.machines.loads.load import LOADS, Load, LoadTorque, ShaftState, StateRate
+from beltdyn.machines.loads.registry import NO_STATE, SHAFT_LOADS, kink_of_kind, rate_of_kind, torque_of_kind
 from beltdyn.machines.profiles.functions import Profiles, command_value, profile_bend, profile_value, schedule_value
 from beltdyn.machines.profiles.harmonic import harmonic_factor, harmonic_rows
-from beltdyn.records import Records, fill, offsets, records
+from beltdyn.records import Records, offsets, records
 
 
 class ShaftLoads(NamedTuple):
@@ -33,24 +33,23 @@ def shaft_loads(loads: Sequence[Sequence[Load]], profiles: Sequence[tuple[int, i
     found = [load for group in loads for load in group]
     first, harmonic = harmonic_rows([load.harmonics for load in found])
     own = [np.asarray(load.numbers, dtype=float) for load in found]
-    table = records(SHAFT_LOAD, harmonic=first, number=offsets(map(len, own)))
-    names = list(KINDS)
+    table = records(SHAFT_LOADS.row_type(map(type, found)), harmonic=first, number=offsets(map(len, own)))
     for row, load, (factor, command) in zip(table[:-1], found, profiles, strict=True):
-        row.kind, row.schedule, row.command = names.index(load.kind), factor, command
+        row.schedule, row.command = factor, command
         row.order, row.state = max(load.orders, default=0.0), NO_STATE
         if load.state_lag is not None:
             row.state, first_state = first_state, first_state + 1
-        fill(row[load.kind], load.values())
+        SHAFT_LOADS.fill(row, type(load), load.values())
     return ShaftLoads(offsets(map(len, loads)), table, np.concatenate([np.zeros(0), *own]), harmonic)
 
 
 def mean_loads(loads: ShaftLoads) -> ShaftLoads:
     """Loads by their means over shaft angles."""
-    table, numbers, kinds = loads.table.copy(), loads.numbers.copy(), list(KINDS.items())
+    table, numbers, kinds = loads.table.copy(), loads.numbers.copy(), labels(loads.table.dtype)
     for row, following in pairwise(loads.table):
-        name, kind = kinds[row.kind]
+        label = kinds[row.kind]
         own = slice(row.number, following.number)
-        numbers[own] = kind.mean_numbers(row[name], numbers[own])
+        numbers[own] = LOADS.labelled[label].mean_numbers(row[label], numbers[own])
     table["harmonic"] = 0
     return loads._replace(table=table, numbers=numbers)
 

@@ -10,6 +10,7 @@ from pydantic import ConfigDict, Field, ValidationInfo, model_validator
 
 from beltdyn.arrays import FloatArray
 from beltdyn.kernel import kernel
+from beltdyn.kinds import register
 from beltdyn.machines.loads.load import Load, LoadTorque, ShaftState, nearer_kink
 from beltdyn.machines.profiles.functions import first_above
 from beltdyn.parts.quantity import Angle, AngularSpeed, Torque
@@ -63,6 +64,7 @@ def next_point(constants: np.record, numbers: FloatArray, shaft: ShaftState, ris
     return numbers[below] if below >= 0 else np.inf
 
 
+@register
 class LoadTable(Load):
     """A torque over speed, linear between points, constant before the first and after the last.
 
@@ -280,6 +282,7 @@ def _slopes_over_speed(speeds: FloatArray, torques: FloatArray) -> FloatArray:
     return np.asarray(PchipInterpolator(speeds, torques).derivative()(speeds))
 
 
+@register
 class AngleTable(_OverAngle):
     """A torque over the shaft angle, smooth through points and periodic.
 
@@ -316,6 +319,7 @@ class AngleTable(_OverAngle):
         return (0.0,), np.array(self.torques)[:, None]
 
 
+@register
 class AngleSpeedTable(_OverAngle):
     """A torque over shaft angle and speed, smooth through points, periodic, constant outside the speeds.
 

@@ -11,6 +11,7 @@ from typing_extensions import TypeVar
 
 from beltdyn.arrays import FloatArray
 from beltdyn.kernel import interpreted, kernel
+from beltdyn.kinds import Registry
 from beltdyn.parts.part import Part
 from beltdyn.records import Records, record
 
@@ -96,6 +97,10 @@ class Profile(Part, Generic[Value]):
         ends = np.concatenate([[0.0, end], starts[(starts > 0.0) & (starts < end)]])
         after = np.nextafter(ends, np.inf)
         return float(np.max(np.abs(self.at(np.concatenate([ends, after[after <= end]])))))
+
+
+PROFILES = Registry[type[Profile]]("profile", Profile)
+"""All kinds of profiles by name."""
 
 
 @kernel(inline=True)

@@ -5,6 +5,7 @@ from typing import ClassVar, Generic, Literal, Self, cast
 import numpy as np
 from pydantic import Field, model_validator
 
+from beltdyn.kinds import register
 from beltdyn.machines.profiles.profile import SEGMENT, Profile, Value
 from beltdyn.parts.quantity import Time
 from beltdyn.records import Records, records
@@ -12,6 +13,7 @@ from beltdyn.records import Records, records
 # A constant value
 
 
+@register
 class Constant(Profile[Value], Generic[Value]):
     """The same value at all times.
 
@@ -53,6 +55,7 @@ class Rise(Profile[Value], Generic[Value]):
 # A linear rise (Eq. 28)
 
 
+@register
 class Ramp(Rise[Value], Generic[Value]):
     """A linear rise from zero at `start` to `value` at `end`, Eq. (28).
 
@@ -74,6 +77,7 @@ class Ramp(Rise[Value], Generic[Value]):
 # A step from one value to another
 
 
+@register
 class Step(Profile[Value], Generic[Value]):
     """The value `before` until `time`, and `value` after it.
 
@@ -100,6 +104,7 @@ class Step(Profile[Value], Generic[Value]):
 # A smooth rise along half a cosine
 
 
+@register
 class CosineRamp(Rise[Value], Generic[Value]):
     """A smooth rise from zero at `start` to `value` at `end`, along half a cosine from start to end.
 
@@ -125,6 +130,7 @@ class CosineRamp(Rise[Value], Generic[Value]):
         )
 
 
+@register
 class CosineRampPublished(Rise[Value], Generic[Value]):
     """The rise of Eq. (29) as printed: its cosine runs from time zero to `end`, so it jumps at `start`.
 

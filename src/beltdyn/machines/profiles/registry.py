@@ -4,9 +4,9 @@ from typing import TYPE_CHECKING, Annotated
 
 from pydantic import BeforeValidator, Field
 
-from beltdyn.machines import profiles as kinds
-from beltdyn.machines.family import any_of, kinds_in
-from beltdyn.machines.profiles.profile import Profile
+import beltdyn.machines.profiles  # noqa: F401  whose kinds register themselves
+from beltdyn.machines.profiles.profile import PROFILES, Profile
+from beltdyn.parts.kind_fields import OneOf
 from beltdyn.parts.quantity import AngularSpeed, Force, Frequency, Power, Pressure, Torque, quantity
 
 Factor = Annotated[float, quantity(""), Field(ge=0, le=1)]
@@ -26,17 +26,16 @@ if TYPE_CHECKING:
     PowerProfile = Profile[float]
     PressureProfile = Profile[float]
 else:
-    KINDS = kinds_in(kinds)
 
     def _constant(given):
         """A number, or text with a unit, is a constant."""
         return {"kind": "constant", "value": given} if _is_value(given) else given
 
-    def _of(value, kinds=KINDS):
+    def _of(value, where=lambda _: True):
         """Type of a field that takes a profile of a quantity."""
-        return Annotated[any_of({name: kind[value] for name, kind in kinds.items()}), BeforeValidator(_constant)]
+        return Annotated[Profile, OneOf(PROFILES, lambda kind: kind[value], where), BeforeValidator(_constant)]
 
-    Schedule = _of(Factor, {name: kind for name, kind in KINDS.items() if kind.multiplies})
+    Schedule = _of(Factor, lambda kind: kind.multiplies)
     SpeedProfile = _of(AngularSpeed)
     TorqueProfile = _of(Torque)
     FrequencyProfile = _of(Frequency)

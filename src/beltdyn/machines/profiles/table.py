@@ -5,12 +5,14 @@ from typing import Any, Generic, Literal, Self
 import numpy as np
 from pydantic import ConfigDict, Field, ValidationInfo, model_validator
 
+from beltdyn.kinds import register
 from beltdyn.machines.profiles.profile import SEGMENT, Profile, Value
 from beltdyn.parts.quantity import Time
 from beltdyn.parts.table_file import check_points, describe_file, take_file
 from beltdyn.records import Records, records
 
 
+@register
 class Table(Profile[Value], Generic[Value]):
     """Linear between points, constant before the first and after the last.
 

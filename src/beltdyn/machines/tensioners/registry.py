@@ -1,40 +1,40 @@
 """Tensioners of any kind: their field type, their rows, and the kernels that evaluate them."""
 
-from typing import TYPE_CHECKING
+from typing import Annotated
 
 import numpy as np
 
+import beltdyn.machines.tensioners  # noqa: F401  whose kinds register themselves
 from beltdyn.arrays import FloatArray
-from beltdyn.kernel import choice
-from beltdyn.machines import tensioners as kinds
-from beltdyn.machines.family import any_of, constants_of, kinds_in
-from beltdyn.machines.tensioners.tensioner import MovingTensioner, Tensioner
-from beltdyn.records import fill, record, row
+from beltdyn.kernel import KindRows, choice
+from beltdyn.machines.tensioners.tensioner import TENSIONERS, MovingTensioner, Tensioner
+from beltdyn.parts.kind_fields import OneOf
+from beltdyn.records import row
 
-KINDS = kinds_in(kinds)
+AnyTensioner = Annotated[Tensioner, OneOf(TENSIONERS)]
 
-if TYPE_CHECKING:
-    AnyTensioner = Tensioner
-else:
-    AnyTensioner = any_of(KINDS)
 
-_MOVING = {name: kind for name, kind in KINDS.items() if issubclass(kind, MovingTensioner)}
+def _moves(kind: type[Tensioner]) -> bool:
+    return issubclass(kind, MovingTensioner)
 
-TENSIONER = record(
+
+TENSIONER_ROWS = KindRows(
+    TENSIONERS,
+    lambda kind: kind.constants if _moves(kind) else None,
     pulley="i8",  # the pulley that it carries
     weight="2f8",  # force of gravity on tensioner and pulley, as if at the center of the pulley, N
     push="f8",  # constant force on its coordinate from outside, N or N m
-    kind="i8",  # place among the kinds that move
-    **constants_of(_MOVING),
 )
-"""A spring-loaded tensioner with the constants of its kind; those of other kinds are zero."""
+"""Rows of spring-loaded tensioners with the constants of their kinds; those of others are zero."""
+TENSIONER = TENSIONER_ROWS.row_type()
+"""The row of a tensioner of the package."""
 
-tensioner_center = choice("tensioner_center", {k: v.center_at for k, v in _MOVING.items()}, ["q"])
-tensioner_force = choice("tensioner_force", {k: v.force_at for k, v in _MOVING.items()}, ["q", "velocity"])
+tensioner_center = choice("tensioner_center", TENSIONERS.functions("center_at", _moves), ["q"])
+tensioner_force = choice("tensioner_force", TENSIONERS.functions("force_at", _moves), ["q", "velocity"])
 
 
 def tensioner_row(tensioner: MovingTensioner, pulley: int, center: FloatArray, gradient: FloatArray) -> np.record:
-    """Row of `TENSIONER` of a tensioner, without weight.
+    """Row of a tensioner, without weight.
 
     Parameters
     ----------
@@ -50,14 +50,15 @@ def tensioner_row(tensioner: MovingTensioner, pulley: int, center: FloatArray, g
     ValueError
         If it cannot tension the belt.
     """
-    made = row(TENSIONER, pulley=pulley, kind=list(_MOVING).index(tensioner.kind))
-    fill(made[tensioner.kind], tensioner.values(center, gradient))
+    made = row(TENSIONER_ROWS.row_type([type(tensioner)]), pulley=pulley)
+    TENSIONER_ROWS.fill(made, type(tensioner), tensioner.values(center, gradient))
     return made
 
 
-def free_slide(pulley: int, center: tuple[float, float]) -> np.record:
-    """Row of `TENSIONER` of a carrier that slides along a line without spring, friction and stops."""
-    made = row(TENSIONER, pulley=pulley, kind=list(_MOVING).index("sliding"))
+def free_slide(row_type: np.dtype[np.void], pulley: int, center: tuple[float, float]) -> np.record:
+    """Row of a type for a carrier that slides along a line without spring, friction and stops."""
+    made = row(row_type, pulley=pulley)
     spring = {"creep_speed": 1.0, "lower": -np.inf, "upper": np.inf}
-    fill(made["sliding"], {"center": center, "direction": (1.0, 0.0), "spring": spring})
+    values = {"center": center, "direction": (1.0, 0.0), "spring": spring}
+    TENSIONER_ROWS.fill(made, TENSIONERS["sliding"], values)
     return made

@@ -9,6 +9,7 @@ from pydantic import Field
 
 from beltdyn.arrays import FloatArray
 from beltdyn.kernel import kernel
+from beltdyn.kinds import register
 from beltdyn.machines.tensioners.tensioner import LEAST_LEVERAGE, SPRING, Center, MovingTensioner
 from beltdyn.parts.quantity import (
     Angle,
@@ -45,6 +46,7 @@ def rotary_center(constants: np.record, q: float) -> Center:
     return Center(x + ax, y + ay, -sense * ay, sense * ax, -ax, -ay)
 
 
+@register
 class RotaryTensioner(MovingTensioner):
     """A pulley on an arm, pressed against the belt by a torsional spring at the pivot.
 

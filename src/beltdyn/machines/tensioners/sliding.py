@@ -8,6 +8,7 @@ from pydantic import Field
 
 from beltdyn.arrays import FloatArray
 from beltdyn.kernel import kernel
+from beltdyn.kinds import register
 from beltdyn.machines.tensioners.tensioner import LEAST_LEVERAGE, SPRING, Center, Direction, MovingTensioner
 from beltdyn.parts.quantity import Coordinate, Damping, Force, Mass, Speed, Stiffness
 from beltdyn.records import record
@@ -27,6 +28,7 @@ def sliding_center(constants: np.record, q: float) -> Center:
     return Center(x + q * ux, y + q * uy, ux, uy, 0.0, 0.0)
 
 
+@register
 class SlidingTensioner(MovingTensioner):
     """A pulley sliding along a line, pressed by a spring in `direction`.
 

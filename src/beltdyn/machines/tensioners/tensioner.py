@@ -9,7 +9,8 @@ import numpy as np
 from pydantic import AfterValidator, Field, model_validator
 
 from beltdyn.arrays import FloatArray
-from beltdyn.kernel import kernel
+from beltdyn.kernel import KernelKinds, kernel
+from beltdyn.kinds import register
 from beltdyn.parts.part import Part
 from beltdyn.parts.quantity import Coordinate, Name, Ratio
 from beltdyn.records import record
@@ -264,6 +265,11 @@ class MovingTensioner(Tensioner):
 # A tensioner set before the drive runs
 
 
+TENSIONERS = KernelKinds[type[Tensioner]]("tensioner", Tensioner)
+"""All kinds of tensioners by name."""
+
+
+@register
 class FixedTensioner(Tensioner):
     """A pulley moved along a line before the drive runs, and held there.
 

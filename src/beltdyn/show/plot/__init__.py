@@ -1,5 +1,7 @@
 """Figures of a run: ``f(run, ax=None) -> Axes``; labels and units come from its dataset. And the layout of a drive."""
 
+from typing import Any
+
 from beltdyn.show.plot.animation import animate as animate
 from beltdyn.show.plot.contact import contact_forces as contact_forces
 from beltdyn.show.plot.contact import contact_pressure as contact_pressure
@@ -19,6 +21,7 @@ from beltdyn.show.plot.history import tensioners as tensioners
 from beltdyn.show.plot.history import torques as torques
 from beltdyn.show.plot.layout import layout as layout
 from beltdyn.show.plot.layout import save_layout as save_layout
+from beltdyn.show.plot.legends import name_lines as name_lines
 from beltdyn.show.plot.life import belt_history as belt_history
 from beltdyn.show.plot.life import damage_shares as damage_shares
 from beltdyn.show.plot.operating_points import efficiency_map as efficiency_map
@@ -32,6 +35,9 @@ from beltdyn.show.plot.pulleys import powers as powers
 from beltdyn.show.plot.pulleys import slip as slip
 from beltdyn.show.plot.pulleys import slip_safety as slip_safety
 from beltdyn.show.plot.registry import FIGURES as FIGURES
+from beltdyn.show.plot.registry import always as always
+from beltdyn.show.plot.registry import figure as figure
+from beltdyn.show.plot.registry import over_time as over_time
 from beltdyn.show.plot.stretch import save_stretch as save_stretch
 from beltdyn.show.plot.stretch import stretch as stretch
 from beltdyn.show.plot.study import parallel_coordinates as parallel_coordinates
@@ -39,6 +45,10 @@ from beltdyn.show.plot.study import study_contour as study_contour
 from beltdyn.show.plot.study import study_lines as study_lines
 from beltdyn.show.plot.study_effects import sobol_indices as sobol_indices
 from beltdyn.show.plot.study_effects import tornado as tornado
+from beltdyn.show.plot.style import axes_or_new as axes_or_new
+from beltdyn.show.plot.style import color as color
+from beltdyn.show.plot.style import dash as dash
+from beltdyn.show.plot.style import label as label
 from beltdyn.show.plot.sweep import orders as orders
 from beltdyn.show.plot.sweep import waterfall as waterfall
 from beltdyn.show.plot.vibration import animate_modes as animate_modes
@@ -49,12 +59,27 @@ from beltdyn.show.plot.vibration import response as response
 
 __all__ = [
     "FIGURES",
+    "always",
     "animate",
     "animate_modes",
+    "axes_or_new",
+    "color",
+    "dash",
+    "figure",
+    "label",
     "layout",
+    "name_lines",
+    "over_time",
     "save_all",
     "save_layout",
     "save_stretch",
     "stretch",
     *FIGURES,
 ]
+
+
+def __getattr__(name: str) -> Any:
+    """A figure that was registered later."""
+    if name in FIGURES:
+        return FIGURES[name].draw
+    raise AttributeError(f"module {__name__!r} has no attribute {name!r}")

@@ -12,6 +12,7 @@ from matplotlib.figure import Figure
 
 from beltdyn.analyses import RUN
 from beltdyn.errors import ModelError
+from beltdyn.kinds import Registry
 from beltdyn.results import Result, Run
 from beltdyn.results.schema import runs_steadily
 from beltdyn.show.plot.headline import headlines, overlay, write_headline
@@ -49,6 +50,10 @@ class Registered:
 
     Attributes
     ----------
+    name : str
+        Its name.
+    draw : callable
+        ``draw(result, ..., ax=None) -> Axes``.
     arrange : callable
         ``arrange(results, choice) -> Figure``: all its panels on one page, of one result or more.
     by_default : callable
@@ -59,13 +64,15 @@ class Registered:
         Whether it shows several results together.
     """
 
+    name: str
+    draw: Callable[..., Axes]
     arrange: Callable[[Result | Sequence[Result], Choice], Figure]
     by_default: Callable[[Any], bool]
     of: tuple[str, ...]
     compares: bool
 
 
-FIGURES: dict[str, Registered] = {}
+FIGURES = Registry[Registered]("figure", Registered)
 """All figures by name."""
 
 
@@ -138,7 +145,7 @@ def figure(
             write_headline(made, headlines(results))
             return made
 
-        FIGURES[name] = Registered(page, by_default, of, bool(compares))
+        FIGURES.add(Registered(name, drawn, page, by_default, of, bool(compares)), draw.__module__)
         return drawn
 
     return register

@@ -8,7 +8,7 @@ from matplotlib.axes import Axes
 from beltdyn.model import Entry
 from beltdyn.show.plot.figures import save
 from beltdyn.show.plot.style import COLORS, INK, axes_or_new, dash, new_figure, styled
-from beltdyn.stretch import LAWS
+from beltdyn.stretch import Linear
 
 _BEYOND = 1.1
 """Largest strain that is drawn, over the last one that was measured."""
@@ -42,7 +42,7 @@ def stretch(entry: Entry, name: str = "", ax: Axes | None = None) -> Axes:
     'Strain [%]'
     """
     ax, curve = axes_or_new(ax), entry.stretch_curve
-    law = LAWS["linear"].make(entry.axial_stiffness) if curve is None else curve.parameters
+    law = Linear(entry.axial_stiffness) if curve is None else curve.parameters
     strain = np.linspace(0.0, _LARGEST if curve is None else _BEYOND * curve.strains[-1], 200)
     tension = law.tension(1.0 + strain)
     ax.plot(100.0 * strain, tension, color=COLORS[0], label="in a drive")

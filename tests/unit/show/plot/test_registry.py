@@ -8,14 +8,14 @@ from matplotlib.figure import Figure
 from beltdyn.errors import ModelError
 from beltdyn.results import Run
 from beltdyn.show import plot
-from beltdyn.show.plot.registry import FIGURES, Choice, Registered, always, figure, on_request, over_time
+from beltdyn.show.plot.registry import FIGURES, Choice, always, figure, on_request, over_time
 from beltdyn.show.plot.style import INK, axes_or_new
 
 
 def test_a_figure_is_known_by_the_name_of_its_function_and_drawn_in_the_style(
     run: Run, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr("beltdyn.show.plot.registry.FIGURES", known := dict(FIGURES))
+    monkeypatch.setattr(FIGURES, "_kinds", dict(before := dict(FIGURES)))
     seen = []
 
     @figure(always, of=("modes", "run"))
@@ -24,9 +24,9 @@ def test_a_figure_is_known_by_the_name_of_its_function_and_drawn_in_the_style(
         seen.append(mpl.rcParams["text.color"])
         return axes_or_new(ax)
 
-    assert set(known) - set(FIGURES) == {"mine"}
-    assert mine.__doc__ == "Draw nothing."
-    made = known["mine"]
+    assert set(FIGURES) - set(before) == {"mine"}
+    assert (mine.__doc__, plot.mine) == ("Draw nothing.", mine)
+    made = FIGURES["mine"]
     assert (made.of, made.by_default) == (("modes", "run"), always)
     assert isinstance(made.arrange(run, Choice()), Figure)
     assert seen == [INK]
@@ -34,8 +34,7 @@ def test_a_figure_is_known_by_the_name_of_its_function_and_drawn_in_the_style(
 
 
 def test_a_figure_lays_itself_out_for_what_is_chosen(run: Run, monkeypatch: pytest.MonkeyPatch) -> None:
-    known: dict[str, Registered] = {}
-    monkeypatch.setattr("beltdyn.show.plot.registry.FIGURES", known)
+    monkeypatch.setattr(FIGURES, "_kinds", {})
     asked = []
 
     def arrange(draw: object, run: Run, choice: Choice) -> Figure:
@@ -46,7 +45,7 @@ def test_a_figure_lays_itself_out_for_what_is_chosen(run: Run, monkeypatch: pyte
     def mine(run: Run, ax: Axes | None = None) -> Axes:
         raise AssertionError
 
-    known["mine"].arrange(run, Choice(1, "belt_speed"))
+    FIGURES["mine"].arrange(run, Choice(1, "belt_speed"))
     assert asked == [Choice(1, "belt_speed", ("driver", "driven"))]
 
 

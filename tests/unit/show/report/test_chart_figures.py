@@ -1,11 +1,14 @@
 """Figures of a report."""
 
+from dataclasses import replace
+
 import pytest
+from matplotlib.figure import Figure
 
 from beltdyn.errors import ModelError
 from beltdyn.results import Run
 from beltdyn.show.plot.figures import chosen_by_default
-from beltdyn.show.plot.registry import FIGURES, Registered
+from beltdyn.show.plot.registry import FIGURES
 from beltdyn.show.report.chart import charted
 
 
@@ -21,11 +24,11 @@ def test_figures_of_lines_have_charts_and_others_have_none(run: Run) -> None:
 def test_a_figure_that_cannot_be_drawn_says_why(run: Run, monkeypatch: pytest.MonkeyPatch) -> None:
     """As contact forces of drives with other pulleys."""
 
-    def refuse(*_: object) -> None:
+    def refuse(*_: object) -> Figure:
         raise ModelError("the pulley is not in this drive.")
 
     for name in chosen_by_default([run]):
-        monkeypatch.setitem(FIGURES, name, Registered(refuse, lambda _: True, ("run",), True))  # type: ignore[arg-type]
+        monkeypatch.setitem(FIGURES._kinds, name, replace(FIGURES[name], arrange=refuse))
     shown, charts = charted([run])
     assert {one.missing for one in shown} == {"the pulley is not in this drive."}
     assert charts == {}

@@ -1,0 +1,65 @@
+from beltdyn.analyses import Analysis
+from beltdyn.contact.friction.law import FrictionLaw
+from beltdyn.contact.normal.law import NormalForce, NormalLaw
+from beltdyn.contact.surface.kind import Gap, SurfaceKind
+from beltdyn.elements.kind import ElementKind
+from beltdyn.kernel import kernel
+from beltdyn.kinds import Parameter, register
+from beltdyn.machines.links.link import HubLink, LinkTorque
+from beltdyn.machines.loads.load import Load, LoadTorque, ShaftState, StateRate, nearer_kink
+from beltdyn.machines.profiles.profile import SEGMENT, Profile, Value
+from beltdyn.machines.tensioners.tensioner import SPRING, Center, MovingTensioner, TensionerForce
+from beltdyn.model.simulation import IntegratorKind
+from beltdyn.parts.quantity import quantity
+from beltdyn.records import record, records
+from beltdyn.results.result import build_result
+from beltdyn.results.schema import Variable
+from beltdyn.show.plot.registry import figure
+from beltdyn.solvers.generalized_alpha import GeneralizedAlpha
+from beltdyn.solvers.progress import BatchProgress, Progress
+from beltdyn.solvers.standard import ErrorControl, FixedSteps, StandardIntegrator, StepError, Stepwise
+from beltdyn.stretch.law import Stretching, StretchLaw
+
+__all__ = [
+    "SEGMENT",
+    "SPRING",
+    "Analysis",
+    "BatchProgress",
+    "Center",
+    "ElementKind",
+    "ErrorControl",
+    "FixedSteps",
+    "FrictionLaw",
+    "Gap",
+    "GeneralizedAlpha",
+    "HubLink",
+    "IntegratorKind",
+    "LinkTorque",
+    "Load",
+    "LoadTorque",
+    "MovingTensioner",
+    "NormalForce",
+    "NormalLaw",
+    "Parameter",
+    "Profile",
+    "Progress",
+    "ShaftState",
+    "StandardIntegrator",
+    "StateRate",
+    "StepError",
+    "Stepwise",
+    "StretchLaw",
+    "Stretching",
+    "SurfaceKind",
+    "TensionerForce",
+    "Value",
+    "Variable",
+    "build_result",
+    "figure",
+    "kernel",
+    "nearer_kink",
+    "quantity",
+    "record",
+    "records",
+    "register",
+]

@@ -1,0 +1,151 @@
+"""Registries of kinds that have kernels, and the tables by which kernels choose one of them."""
+
+from collections.abc import Callable, Iterable, Mapping
+from typing import Any, NamedTuple, TypeVar
+
+import numpy as np
+
+from beltdyn.errors import ModelError
+from beltdyn.kernel.cache import compiles_quickly
+from beltdyn.kernel.decorator import Kernel, forget_compiled
+from beltdyn.kernel.fingerprint import declare, fingerprint
+from beltdyn.kinds import Registry, name_of
+from beltdyn.records import fill, record
+
+K = TypeVar("K")
+
+
+class _View(NamedTuple):
+    """A table of kernels that grows with the registry."""
+
+    attribute: str
+    key: Callable[[Any], Any]
+    where: Callable[[Any], bool]
+    table: dict[Any, Any]
+
+
+class KernelKinds(Registry[K]):
+    """The kinds of a family whose functions are kernels, for `beltdyn.kernel.by_type` and `choice`.
+
+    The label of a kind from outside the package has the fingerprint of its kernels, so that kernels which call an
+    edited law of the same name are others.
+
+    Parameters
+    ----------
+    family, contract
+        As for `Registry`.
+    record
+        Attribute of the kinds with the class of their parameters; empty where there is none.
+    """
+
+    def __init__(self, family: str, contract: type, record: str = "") -> None:
+        super().__init__(family, contract)
+        self._record = record
+        self._labels: dict[int, tuple[K, str]] = {}
+        self.labelled: dict[str, K] = {}
+        """All kinds by their labels, replaced ones too."""
+        self._views: list[_View] = []
+
+    def label(self, kind: K) -> str:
+        """Name of a kind, with a fingerprint where it comes from outside the package."""
+        return self._labels[id(kind)][1]
+
+    def add(self, kind: K, origin: str) -> None:
+        """As for `Registry`; the functions of a kind must be kernels."""
+        for view in self._views:
+            self._require_kernel(kind, view)
+        super().add(kind, origin)
+        name, classes = name_of(kind), [getattr(kind, self._record)] if self._record else []
+        own = self.is_own(name)
+        label = f"{name}_{fingerprint([*kernels_of(kind), *classes])}" if own else name
+        self._labels[id(kind)], self.labelled[label] = (kind, label), kind
+        for view in self._views:
+            self._enter(view, label, kind)
+        for parameters in classes if own else ():
+            declare(parameters, f"{self.family} {label}")
+            if not compiles_quickly():
+                forget_compiled()
+
+    def functions(self, attribute: str, where: Callable[[K], bool] = lambda _: True) -> dict[str, Any]:
+        """Kernels of the kinds by label; kinds that are registered later are added."""
+        return self._table(attribute, None, where)
+
+    def by_class(self, attribute: str) -> dict[type, Any]:
+        """Kernels of the kinds by the class of their parameters; kinds that are registered later are added."""
+        return self._table(attribute, lambda kind: getattr(kind, self._record), lambda _: True)
+
+    def _table(self, attribute: str, key: Callable[[Any], Any] | None, where: Callable[[Any], bool]) -> dict[Any, Any]:
+        view = _View(attribute, key or self.label, where, {})
+        self._views.append(view)
+        for label, kind in self.labelled.items():
+            self._enter(view, label, kind)
+        return view.table
+
+    def _enter(self, view: _View, label: str, kind: K) -> None:
+        if view.where(kind):
+            view.table[view.key(kind)] = getattr(kind, view.attribute)
+
+    def _require_kernel(self, kind: K, view: _View) -> None:
+        if view.where(kind) and not isinstance(getattr(kind, view.attribute, None), Kernel):
+            raise ModelError(
+                f'the {self.family} "{name_of(kind)}" cannot be registered: {view.attribute} must be a kernel. '
+                "Decorate its function with @kernel."
+            )
+
+
+def own_labels() -> list[str]:
+    """Labels of all kinds with kernels from outside the package."""
+    families = (one for one in Registry.families if isinstance(one, KernelKinds))
+    return [family.label(kind) for family in families for name, kind in family.items() if family.is_own(name)]
+
+
+def kernels_of(kind: Any) -> list[Kernel[..., Any]]:
+    """Kernels of a kind: fields of an object, or attributes of a class and its bases."""
+    holders = kind.__mro__ if isinstance(kind, type) else [kind]
+    values = [value for holder in holders for value in _attributes(holder)]
+    return [value for value in values if isinstance(value, Kernel)]
+
+
+def _attributes(holder: Any) -> Iterable[Any]:
+    return holder if isinstance(holder, tuple) else vars(holder).values()
+
+
+class KindRows:
+    """Rows with constants of one of several kinds: those of the package, and own ones of a user where they are used.
+
+    So a user's kind changes the type of a row, and the kernels that take it, only in drives that have it.
+
+    Parameters
+    ----------
+    kinds
+        The registry.
+    constants
+        The record of the constants of a kind; None where a kind has none.
+    fields
+        The other fields, behind which `kind` has the place of the kind among those of the row.
+    """
+
+    def __init__(
+        self, kinds: KernelKinds[Any], constants: Callable[[Any], np.dtype[np.void] | None], **fields: str
+    ) -> None:
+        self._kinds, self._constants, self._fields = kinds, constants, fields
+
+    def row_type(self, used: Iterable[Any] = ()) -> np.dtype[np.void]:
+        """Type of the rows for some kinds."""
+        own = dict.fromkeys(kind for kind in used if self._kinds.is_own(name_of(kind)))
+        kinds = (*(kind for name, kind in self._kinds.items() if not self._kinds.is_own(name)), *own)
+        constants = {self._kinds.label(kind): self._constants(kind) for kind in kinds}
+        known = {label: kind for label, kind in constants.items() if kind is not None}
+        return record(**self._fields, kind="i8", **known)
+
+    def fill(self, row: np.record, kind: Any, values: Mapping[str, Any]) -> None:
+        """Set the kind of a row, and its constants."""
+        label = self._kinds.label(kind)
+        row.kind = labels(row.dtype).index(label)
+        fill(row[label], values)
+
+
+def labels(row_type: np.dtype[np.void]) -> list[str]:
+    """Fields of the constants of the kinds of a row, in their order."""
+    names = list(row_type.names or ())
+    return names[names.index("kind") + 1 :]
