@@ -39,20 +39,20 @@ class Canvas(Element, component="canvas.js"):
 
     def __init__(self, on_act: Callable[[Mapping[str, Any]], None], on_choose: Callable[[object], None]) -> None:
         super().__init__()
-        self._props["scene"] = {}
-        self._props["selected"] = -1
-        self._props["live"] = None
+        self.props["scene"] = {}
+        self.props["selected"] = -1
+        self.props["live"] = None
         self.on("act", lambda event: on_act(_told(event)))
         self.on("choose", lambda event: on_choose(_told(event).get("number")))
 
     def keep(self, text: str, name: str) -> None:
         """Pass the drive file to the browser, which offers it for download if the server ends."""
-        self._props["text"], self._props["name"] = text, name
+        self.props["text"], self.props["name"] = text, name
 
     def show(self, scene: Mapping[str, Any], selected: int | None) -> None:
         """Show a scene with a highlighted pulley."""
-        self._props["scene"] = dict(scene)
-        self._props["selected"] = -1 if selected is None else selected
+        self.props["scene"] = dict(scene)
+        self.props["selected"] = -1 if selected is None else selected
         self.update()
         self.run_method("follow", None)
 
@@ -62,7 +62,7 @@ class Canvas(Element, component="canvas.js"):
 
     def watch(self, seen: "Glimpse | None") -> None:
         """Show a snapshot of a run instead of the belt at rest, or the drive again with None."""
-        self._props["live"] = None if seen is None else seen.drawn
+        self.props["live"] = None if seen is None else seen.drawn
         self.update()
 
     def fit(self) -> None:

@@ -7,13 +7,16 @@ from typing import Any, NamedTuple
 import numpy as np
 from matplotlib.artist import Artist
 from matplotlib.axes import Axes
+from matplotlib.backend_bases import GraphicsContextBase, RendererBase
 from matplotlib.collections import Collection, LineCollection, PathCollection, PolyCollection
 from matplotlib.colors import to_hex
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from matplotlib.patches import Patch, StepPatch
+from matplotlib.path import Path
 from matplotlib.text import Annotation
-from numpy.typing import NDArray
+from matplotlib.transforms import Transform
+from numpy.typing import ArrayLike, NDArray
 
 from beltdyn.errors import ModelError
 from beltdyn.results import Result
@@ -26,7 +29,6 @@ from beltdyn.show.plot.view import LIMIT
 
 _BINS = 700
 """Parts of a line, of each of which least and largest values are kept."""
-_DASHES = {"-": "solid", "--": "dashed", ":": "dotted", "-.": "dashdot"}
 _SMALL = "11px"
 _MARKS = {"o": "circle", "x": "x", "s": "square", "^": "triangle", "D": "diamond"}
 _MARK = 6
@@ -152,10 +154,25 @@ def name_the_rest(chart: Any, ax: Axes, named: Sequence[Named]) -> list[Named]:
     return [Named(text, _sample(chart, handle)) for handle, text in said if handle is not None and text not in known]
 
 
+class _Pen(RendererBase):
+    """Notes the dashes with which a line is drawn: matplotlib tells them to renderers alone."""
+
+    dashes: ArrayLike | None = None
+
+    def draw_path(self, gc: GraphicsContextBase, path: Path, transform: Transform, rgbFace: Any = None) -> None:
+        self.dashes = gc.get_dashes()[1]
+
+    def draw_markers(self, *_: Any) -> None:
+        pass
+
+
 def dashes(line: Line2D) -> Any:
     """The dashes of a line as they are on paper."""
-    style = getattr(line, "_unscaled_dash_pattern", (0, None))[1]
-    return [max(1, round(2.0 * part)) for part in style] if style else _DASHES.get(str(line.get_linestyle()), "solid")
+    pen = _Pen()
+    line.draw(pen)
+    if pen.dashes is None:
+        return "solid"
+    return [max(1, round(2.0 * part / line.get_linewidth())) for part in np.asarray(pen.dashes).tolist()]
 
 
 def thinned(x: NDArray[Any], values: NDArray[Any], bins: int = _BINS) -> tuple[NDArray[Any], NDArray[Any]]:
