@@ -66,6 +66,8 @@ _PULLEY_SUMMARY = (
     "slip safety [1]",
     "wrap angle [rad]",
     "hub load [N]",
+    "rated power [W]",
+    "utilization [1]",
 )
 _SPAN_SUMMARY = ("span", "tension [N]", "least tension [N]", "largest tension [N]", "belt speed [m/s]")
 _LOSS_SUMMARY = ("cause", "power [W]", "share of the power input [1]", "energy since the start [J]")
