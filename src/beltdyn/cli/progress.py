@@ -10,8 +10,6 @@ from rich.console import Console
 from rich.progress import BarColumn, Progress, Task, TaskID, TextColumn, TimeRemainingColumn
 from rich.text import Text
 
-from beltdyn.kernel import watch_compilation
-
 if TYPE_CHECKING:
     from beltdyn.solvers.progress import BatchProgress
     from beltdyn.solvers.progress import Progress as SolverProgress
@@ -148,6 +146,8 @@ class _Remaining(TimeRemainingColumn):
 @contextmanager
 def _bar() -> Iterator[Progress]:
     """A bar with a description, a state in words and the remaining time; one more while kernels are compiled."""
+    from beltdyn.kernel import watch_compilation
+
     columns = (
         TextColumn("{task.description}"),
         BarColumn(),

@@ -402,7 +402,7 @@ def test_message(case: Case, drive_text: str, folder: Path, refuse: Refuse) -> N
         (["demo", "folder", "layout"], 'beltdyn demo takes no argument "layout". See beltdyn demo --help.'),
         (["simulate", "--nosuch", "a.toml"], "--nosuch"),
         (["check"], "FILE requires an argument"),
-        (["simulate"], 'Unknown command "simulate"'),
+        (["simulat"], 'Unknown command "simulat"'),
     ],
 )
 def test_words_that_do_not_fit_the_command(words: list[str], said: str, refuse: Refuse) -> None:

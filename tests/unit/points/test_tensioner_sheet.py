@@ -115,7 +115,7 @@ def test_what_a_designer_is_warned_of(slide: Drive, tmp_path: Path) -> None:
     assert result.dataset.failure.sel(state="worn belt") != ""
     assert result.dataset.failure.sel(state="nominal belt") == ""
     found = bd.open_result(result.save(tmp_path / "sheet.nc"))
-    assert (found.kind, found.dataset.attrs["pulley"]) == ("tensioner", "tail")
+    assert (found.kind, found.dataset.attrs["pulley"]) == ("tensioner_sheet", "tail")
 
 
 def test_what_has_no_sheet(slide: Drive, drive: Drive) -> None:

@@ -51,7 +51,7 @@ def test_a_run_of_a_file_reads_it_when_it_is_asked_for(
         assert (run.status, run.outputs) == (opened.status, opened.outputs) == ("completed", 11)
         assert run.warnings == opened.warnings
         assert run.resolution == opened.resolution
-        assert summarize(run).pulleys == summarize(opened).pulleys
+        assert repr(summarize(run).pulleys) == repr(summarize(opened).pulleys)  # in which NaN is as NaN
     with run.dataset as dataset:
         assert dataset.sizes["time"] == 11
     replaced = record(11)
