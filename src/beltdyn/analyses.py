@@ -17,18 +17,12 @@ SIMULATE = "simulate"
 
 
 class Analysis(NamedTuple):
-    """The location of an analysis, without importing it.
-
-    Attributes
-    ----------
-    place : str
-        "MODULE:FUNCTION"; the function is ``beltdyn.FUNCTION`` too.
-    purpose : str
-        What it computes, in one line for the help of the command line.
-    """
+    """The location of an analysis, without importing it."""
 
     place: str
+    """"MODULE:FUNCTION"; the function is ``beltdyn.FUNCTION`` too."""
     purpose: str
+    """What it computes, in one line for the help of the command line."""
 
     @property
     def name(self) -> str:

@@ -70,10 +70,12 @@ def compile_for_another(arguments: BinaryIO) -> None:
 
 
 def _report(process: "subprocess.Popen[str]") -> None:
-    """Report the progress that a process prints."""
-    for line in process.stdout or ():
-        done, total = map(int, line.split())
-        report_compilation(process.pid, done, total)
+    """Report the progress that a process prints, up to its end."""
+    assert process.stdout is not None
+    with process.stdout as lines:
+        for line in lines:
+            done, total = map(int, line.split())
+            report_compilation(process.pid, done, total)
 
 
 @contextmanager

@@ -22,7 +22,7 @@ def sheet() -> Result:
     size |= {"tension_after_tensioning": [180.0, 280.0], "tension_after_yielding": [290.0, 380.0]}
     variables = {name: (COLUMNS[name].variable(True), np.array(values)) for name, values in size.items()}
     names = {"state": (Variable(("state",), "1", "State", "str"), ["longest belt", "nominal belt"])}
-    result = build_result("tensioner", drive, variables, names)
+    result = build_result("tensioner_sheet", drive, variables, names)
     result.dataset.attrs["pulley"] = "tensioner"
     return result
 
@@ -45,5 +45,5 @@ def test_both_panels_are_saved(sheet: Result, tmp_path: Path) -> None:
 
 
 def test_runs_have_no_sheet(drive: Drive) -> None:
-    with pytest.raises(ModelError, match="shows results of tensioner; these are of static"):
+    with pytest.raises(ModelError, match="shows results of tensioner_sheet; these are of equilibrium"):
         plot.tensioner_sheet(bd.equilibrium(drive))
