@@ -34,7 +34,7 @@ OPTIONS: dict[str, dict[str, Any]] = {
     "traction": {"slip": "0.01 %"},
     "duty": {"table": "duty.csv"},
     "life": {"table": "duty.csv"},
-    "tensioner": {"tolerance": "1 mm", "wear": "2 mm"},
+    "tensioner_sheet": {"tolerance": "1 mm", "wear": "2 mm"},
     "rating": {"service_factor": 1.2},
     "sensitivity": {"of": "efficiency", "numbers": "belt.length"},
     "modes": {"count": 2},
@@ -59,7 +59,7 @@ def fitting(name: str, drive: Drive) -> Drive:
     """The drive with what an analysis asks for."""
     if name == RUN:
         return short(drive, 0.005)
-    if name == "tensioner":
+    if name == "tensioner_sheet":
         slide = {"kind": "sliding", "pulley": "driven", "direction": [1, 0], "mass": 1.0, "preload": 60.0}
         return drive.replace(tensioner=[slide])
     if name == "life":
