@@ -354,7 +354,7 @@ def test_the_page_on_figures_names_every_one() -> None:
     for name in FIGURES.keys() & set(named):
         assert name in (others if FIGURES[name].by_default is on_request else essential), name
     assert "{{ kinds.figure }}" in (ROOT / "docs" / "reference.md").read_text(encoding="utf-8")
-    rest = re.search(r"Of a drive at rest there are (.*?)\.", section, re.DOTALL)
+    rest = re.search(r"A drive at rest has (.*?)\.", section, re.DOTALL)
     assert rest is not None
     of_rest = {name for name, figure in FIGURES.items() if EQUILIBRIUM in figure.of and RUN in figure.of}
     assert set(re.findall(r"`(\w+)`", rest.group(1))) == of_rest

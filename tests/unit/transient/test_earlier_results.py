@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 import beltdyn as bd
-from beltdyn.analyses import ANALYSES, EQUILIBRIUM, RUN
+from beltdyn.analyses import ANALYSES, EQUILIBRIUM
 from beltdyn.cosimulation import fmu
 from beltdyn.errors import BeltdynError, ConvergenceError
 from beltdyn.model import CalibrationStudy, Drive, OptimizationStudy, ParameterStudy
@@ -26,7 +26,7 @@ OLD = 7
 """Outputs of the earlier result."""
 LENGTH: dict[str, Any] = {"path": "belt.length", "least": "1.27 m", "largest": "1.275 m"}
 OPTIONS: dict[str, dict[str, Any]] = {
-    RUN: {},
+    "simulate": {},
     "sweep": {"pulley": "driver", "from_": "10 rpm", "to": "20 rpm", "duration": "5 ms"},
     EQUILIBRIUM: {},
     "steady_state": {},
@@ -57,7 +57,7 @@ def short(drive: Drive, duration: float) -> Drive:
 
 def fitting(name: str, drive: Drive) -> Drive:
     """The drive with what an analysis asks for."""
-    if name == RUN:
+    if name == "simulate":
         return short(drive, 0.005)
     if name == "tensioner_sheet":
         slide = {"kind": "sliding", "pulley": "driven", "direction": [1, 0], "mass": 1.0, "preload": 60.0}
