@@ -62,7 +62,7 @@ class Prepared:
     --------
     >>> prepared = bd.model.prepare(drive)
     >>> prepared.belt_length, prepared.elements
-    (1.2727, 100)
+    (1.2727, 20)
     >>> print(f"{prepared.installation.tension:.1f} N")
     26.6 N
     """

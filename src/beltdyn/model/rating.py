@@ -31,7 +31,7 @@ class Rating(Part):
     --------
     >>> rating = bd.read_catalogue()["SPA"].rating
     >>> round(float(rating.power(0.100, speed=5.236)))  # W on 100 mm at 1000 rpm
-    2422
+    2421
     """
 
     force: Force = Field(gt=0, description="the rated pull c1 at 1 m/s without bending, in N")

@@ -197,7 +197,7 @@ class OptimizationStudy(Part):
     >>> safe = {"result": "slip_safety", "at_least": 1.5}
     >>> study = bd.OptimizationStudy(number=[tension], goal={"result": "hub_load"}, requirement=[safe])
     >>> study.goal
-    Goal(result='hub_load', sense='minimize', over='worst')
+    Goal(result='hub_load')
     """
 
     fills_a_file: ClassVar[bool] = True

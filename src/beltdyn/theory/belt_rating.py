@@ -63,7 +63,7 @@ def rated_force(law: RatingLaw, diameter: FloatArray | float, speed: float) -> F
     >>> wrapped = RatingLaw(1379.0, 79.65, 0.1619, 160.8)  # SPA
     >>> speed = 0.05 * 104.72  # at 1000 rpm
     >>> round(float(rated_force(wrapped, 0.1, speed) * speed))  # W; its table has 2410
-    2422
+    2421
     """
     lost = law.bending / np.asarray(diameter) + law.centrifugal * speed**2 + law.speed * np.log10(speed)
     return np.asarray(law.force - lost)
