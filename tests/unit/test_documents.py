@@ -230,6 +230,7 @@ COSTLY_TASKS = {"design", "python"}
     [
         pytest.param(page, id=page.stem, marks=[pytest.mark.slow] if page.stem in COSTLY_TASKS else [])
         for page in run_tasks.pages()
+        if "```python" in page.read_text(encoding="utf-8")
     ],
 )
 def test_tasks_print_what_they_say(page: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
