@@ -59,7 +59,7 @@ def find_steady(
         Size of the last step, m. It is known before it is made, and differences of states are the more exact with it.
     most
         Iterations, at most; with none of them the tangent at the state is factorized.
-    factorized
+    factorised
         Whether the factors in `work` serve the first iteration: those of a state nearby, of which the first step is
         that of the implicit function theorem.
     work
