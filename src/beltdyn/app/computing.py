@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING, NamedTuple
 
 from beltdyn.designs.processes import SPAWN, LocalProcesses, start_process, start_worker
 from beltdyn.errors import BeltdynError
+from beltdyn.kernel import observe_compilation
 from beltdyn.model import Drive, advise, install, loads, unstable_balance
 from beltdyn.results import Run
 from beltdyn.show.rest_sheet import rest_sheet
@@ -28,25 +29,18 @@ PREPARING = "compiling kernels (once per machine, up to a minute)"
 
 
 def tell_of_compilation(tell: Callable[[bool], None]) -> None:
-    """Report compilation of this process from now on."""
-    from numba.core.event import Event, Listener, register
+    """Report from now on when this process begins and ends to compile kernels."""
+    import beltdyn.kernel.compiler  # noqa: F401 (it listens to Numba)
 
-    class Teller(Listener):  # type: ignore[misc]
-        """Counts functions being compiled, with nested calls."""
+    compiles = False
 
-        depth = 0
+    def report(done: int, total: int) -> None:
+        nonlocal compiles
+        if compiles != (done < total):
+            compiles = not compiles
+            tell(compiles)
 
-        def on_start(self, event: Event) -> None:
-            self.depth += 1
-            if self.depth == 1:
-                tell(True)
-
-        def on_end(self, event: Event) -> None:
-            self.depth -= 1
-            if self.depth == 0:
-                tell(False)
-
-    register("numba:compile", Teller())
+    observe_compilation(report)
 
 
 _MODES = 6

@@ -14,7 +14,7 @@ from beltdyn.kernel.cache import (
 )
 from beltdyn.kernel.decorator import Kernel, interpreted, kernel
 from beltdyn.kernel.kinds import KernelKinds, KindRows, labels
-from beltdyn.kernel.progress import CompilationReport, report_compilation, watch_compilation
+from beltdyn.kernel.progress import CompilationReport, observe_compilation, report_compilation, watch_compilation
 
 __all__ = [
     "CACHE_VARIABLE",
@@ -33,6 +33,7 @@ __all__ = [
     "kernel",
     "kernel_cache",
     "labels",
+    "observe_compilation",
     "report_compilation",
     "source_hash",
     "watch_compilation",

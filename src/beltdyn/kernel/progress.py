@@ -2,6 +2,7 @@
 
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
+from threading import Lock
 from types import CodeType, FunctionType, ModuleType
 from typing import Any
 
@@ -10,9 +11,15 @@ from beltdyn.kernel.by_type import ByType
 CompilationReport = Callable[[int, int], None]
 """Called with the number of kernels compiled so far and that of those needed so far."""
 
+_lock = Lock()
 _reports: list[CompilationReport] = []
 _counts: dict[object, tuple[int, int]] = {}
 """Kernels compiled and needed, by this process and by those that compile for it."""
+
+
+def observe_compilation(report: CompilationReport) -> None:
+    """Report the compilation of kernels from now on; see `watch_compilation`."""
+    _reports.append(report)
 
 
 @contextmanager
@@ -25,7 +32,7 @@ def watch_compilation(report: CompilationReport) -> Iterator[None]:
         Called with two integers, the kernels compiled and the kernels needed, at each of them. The second is counted in
         advance from the sources, and grows where another call needs more kernels.
     """
-    _reports.append(report)
+    observe_compilation(report)
     try:
         yield
     finally:
@@ -34,10 +41,11 @@ def watch_compilation(report: CompilationReport) -> Iterator[None]:
 
 def report_compilation(source: object, done: int, total: int) -> None:
     """Report the number of kernels that a source, such as a process, has compiled, and of those that it needs."""
-    _counts[source] = done, total
-    done, total = map(sum, zip(*_counts.values(), strict=True))
-    for report in _reports:
-        report(done, total)
+    with _lock:  # another process is heard in a thread of its own
+        _counts[source] = done, total
+        done, total = map(sum, zip(*_counts.values(), strict=True))
+        for report in _reports:
+            report(done, total)
 
 
 class CompilationCount:
@@ -56,7 +64,7 @@ class CompilationCount:
     def end(self) -> None:
         """Note that the function begun last is compiled."""
         self._depth -= 1
-        self._done = min(self._done + 1, self._total) if self._depth else self._total
+        self._done = min(self._done + 1, self._total - 1) if self._depth else self._total
         report_compilation(self, self._done, self._total)
 
 

@@ -72,10 +72,12 @@ def compile_for_another(arguments: BinaryIO) -> None:
 def _report(process: "subprocess.Popen[str]") -> None:
     """Report the progress that a process prints, up to its end."""
     assert process.stdout is not None
+    total = 0
     with process.stdout as lines:
         for line in lines:
             done, total = map(int, line.split())
             report_compilation(process.pid, done, total)
+    report_compilation(process.pid, total, total)  # where it failed, this process compiles them
 
 
 @contextmanager
