@@ -1,6 +1,6 @@
 """Dispatch of a row of a table to the kernel of its kind."""
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from typing import Any
 
 from beltdyn.kernel.by_type import Dispatch
@@ -22,6 +22,10 @@ class ByKind(Dispatch):
     def kernel_for(self, subject: Any, *_rest: Any) -> Any:
         """The kernel for a Numba type of a row."""
         return self._chain(subject.fields)
+
+    def kernels_for(self, _classes: frozenset[type]) -> Iterable[Any]:
+        """Those of all kinds: the fields of a row say which, not its class."""
+        return self._functions.values()
 
     def _chain(self, fields: Any) -> Kernel[..., Any]:
         """The kernel for a row with some fields, which counts the kinds in their order."""

@@ -1,13 +1,14 @@
 """Compile-time dispatch on the first argument's type."""
 
-from collections.abc import Callable, Mapping
+from abc import ABC, abstractmethod
+from collections.abc import Callable, Iterable, Mapping
 from functools import cached_property
 from typing import Any, ClassVar
 
 from beltdyn.kernel.cache import compiles_quickly
 
 
-class Dispatch:
+class Dispatch(ABC):
     """Several kernels with one name.
 
     Parameters
@@ -23,9 +24,13 @@ class Dispatch:
         self.__name__ = name
         self.unregistered.append(self)
 
+    @abstractmethod
     def kernel_for(self, subject: Any, *_rest: Any) -> Any:
         """The kernel for a Numba type of the first argument."""
-        raise NotImplementedError
+
+    @abstractmethod
+    def kernels_for(self, classes: frozenset[type]) -> Iterable[Any]:
+        """The kernels that it may call in kernels whose arguments are of some classes of named tuples."""
 
     @property
     def _numba_type_(self) -> Any:
@@ -59,6 +64,10 @@ class ByType(Dispatch):
             known = ", ".join(kind.__name__ for kind in self.kernels)
             raise TypeError(f"{self.__name__} takes {known}, not {subject}. Register a kernel for it.")
         return chosen
+
+    def kernels_for(self, classes: frozenset[type]) -> Iterable[Any]:
+        """Those of the classes."""
+        return [kernel for kind, kernel in self.kernels.items() if kind in classes]
 
 
 def by_type(kernels: Mapping[type, Callable[..., Any]], name: str) -> Callable[..., Any]:

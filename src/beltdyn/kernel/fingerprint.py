@@ -60,7 +60,7 @@ def _add_function(digest: Any, function: FunctionType, seen: set[int]) -> None:
     for cell in function.__closure__ or ():
         _add(digest, cell.cell_contents, seen)
     _add(digest, function.__defaults__ or (), seen)
-    for name in sorted(_names(function.__code__)):
+    for name in sorted(names_in(function.__code__)):
         if name in function.__globals__:
             digest.update(name.encode())
             _add(digest, function.__globals__[name], seen)
@@ -75,10 +75,10 @@ def _add_code(digest: Any, code: CodeType) -> None:
             digest.update(repr(constant).encode())
 
 
-def _names(code: CodeType) -> set[str]:
+def names_in(code: CodeType) -> set[str]:
     """Names that code looks up, that of inner functions included."""
     inner = (constant for constant in code.co_consts if isinstance(constant, CodeType))
-    return set(code.co_names).union(*map(_names, inner))
+    return set(code.co_names).union(*map(names_in, inner))
 
 
 @cache

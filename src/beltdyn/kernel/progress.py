@@ -3,10 +3,11 @@
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from threading import Lock
-from types import CodeType, FunctionType, ModuleType
+from types import FunctionType, ModuleType
 from typing import Any
 
-from beltdyn.kernel.by_type import ByType
+from beltdyn.kernel.by_type import Dispatch
+from beltdyn.kernel.fingerprint import names_in
 
 CompilationReport = Callable[[int, int], None]
 """Called with the number of kernels compiled so far and that of those needed so far."""
@@ -82,15 +83,14 @@ def _kernels_below(function: Callable[..., Any], classes: frozenset[type]) -> se
 
 def _called(value: Any, classes: frozenset[type]) -> list[Callable[..., Any]]:
     """Functions of the kernels that a global value stands for."""
-    chosen = [one for kind, one in value.kernels.items() if kind in classes] if isinstance(value, ByType) else [value]
-    return [one.py_func for one in chosen if isinstance(getattr(one, "py_func", None), FunctionType)]
+    kernels = value.kernels_for(classes) if isinstance(value, Dispatch) else [value]
+    return [one.py_func for one in kernels if isinstance(getattr(one, "py_func", None), FunctionType)]
 
 
 def _globals_of(function: Callable[..., Any]) -> list[Any]:
     """Values of the names that a function takes from its module, from other modules by attribute, and its closure."""
-    code: CodeType = function.__code__
-    known: dict[str, Any] = function.__globals__
-    values = [known[name] for name in code.co_names if name in known]
+    names, known = names_in(function.__code__), function.__globals__
+    values = [known[name] for name in names if name in known]
     modules = [value for value in values if isinstance(value, ModuleType)]
     cells = [cell.cell_contents for cell in function.__closure__ or ()]
-    return [*values, *cells, *(getattr(one, name, None) for one in modules for name in code.co_names)]
+    return [*values, *cells, *(getattr(one, name, None) for one in modules for name in names)]
