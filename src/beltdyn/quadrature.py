@@ -1,4 +1,4 @@
-"""Quadrature on the unit interval."""
+"""Quadrature: rules on the unit interval, and the running integral of samples."""
 
 from functools import cache
 from typing import NamedTuple
@@ -58,3 +58,14 @@ def lobatto_points(count: int) -> Quadrature:
     points = np.concatenate([[-1.0], polynomial.deriv().roots().real, [1.0]])
     weights = 1.0 / (count * (count - 1) * polynomial(points) ** 2)
     return Quadrature(0.5 * (points + 1.0), weights)
+
+
+def running_integral(values: FloatArray, places: FloatArray) -> FloatArray:
+    """Integral of samples from the first place up to each, by the trapezoidal rule, zero at first.
+
+    Parameters
+    ----------
+    values, places : ndarray, shape (k,)
+        Samples, and where they are taken.
+    """
+    return np.append(0.0, np.cumsum(0.5 * (values[1:] + values[:-1]) * np.diff(places)))

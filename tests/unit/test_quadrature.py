@@ -1,7 +1,7 @@
 import numpy as np
 import pytest
 
-from beltdyn.quadrature import gauss_points, lobatto_points
+from beltdyn.quadrature import gauss_points, lobatto_points, running_integral
 
 ROUNDING = 1e-15
 
@@ -43,3 +43,8 @@ def test_two_lobatto_points_are_the_trapezoidal_rule() -> None:
     points, weights = lobatto_points(2)
     np.testing.assert_array_equal(points, [0.0, 1.0])
     np.testing.assert_array_equal(weights, [0.5, 0.5])
+
+
+def test_the_running_integral_of_a_straight_line_is_exact() -> None:
+    places = np.array([1.0, 1.5, 3.0])
+    np.testing.assert_allclose(running_integral(2.0 * places, places), places**2 - 1.0, rtol=ROUNDING)

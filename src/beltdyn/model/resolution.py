@@ -27,6 +27,7 @@ from beltdyn.arrays import FloatArray
 from beltdyn.model.belt import Belt
 from beltdyn.model.path import Path
 from beltdyn.parts.messages import Finding, listing
+from beltdyn.quadrature import running_integral
 
 # A mesh graded towards the ends of arcs, where the curvature changes within boundary layers
 
@@ -148,7 +149,7 @@ def _divide(
     for kink in kinks:
         size = np.minimum(size, kink_size + _GROWTH * np.abs(place - kink))
     size /= fineness
-    passed = np.concatenate([[0.0], np.cumsum(0.5 * (1.0 / size[1:] + 1.0 / size[:-1]) * np.diff(place))])
+    passed = running_integral(1.0 / size, place)
     inner = [kink for kink in kinks if first < kink < length - first]
     marks = [0.0, *np.interp(inner, place, passed), passed[-1]]
     nodes = [

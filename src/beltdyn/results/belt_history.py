@@ -7,6 +7,7 @@ import numpy as np
 from beltdyn.arrays import FloatArray, IntArray
 from beltdyn.errors import ModelError
 from beltdyn.model import Prepared
+from beltdyn.quadrature import running_integral
 from beltdyn.results.mechanics import element_lengths, mean_curvature, recorded_kind
 from beltdyn.results.run import Run
 
@@ -114,8 +115,7 @@ def _nearest_element(along: FloatArray, length: float, places: FloatArray) -> In
 def _passed(run: Run) -> FloatArray:
     """Length of unstretched belt that has passed at every output, m."""
     time, speed = run.dataset["time"].values, run.dataset["belt_speed"].values.mean(axis=1)
-    speed = speed * run.prepared.belt_length / run.prepared.path.length
-    return np.concatenate([[0.0], np.cumsum(0.5 * (speed[1:] + speed[:-1]) * np.diff(time))])
+    return running_integral(speed * run.prepared.belt_length / run.prepared.path.length, time)
 
 
 def _fields(run: Run, outputs: slice) -> _Fields:

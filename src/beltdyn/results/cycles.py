@@ -11,6 +11,7 @@ import numpy as np
 from beltdyn.arrays import FloatArray
 from beltdyn.machines import Profile, Table
 from beltdyn.model import Prepared
+from beltdyn.quadrature import running_integral
 from beltdyn.results.schema import Recorded
 
 # Means over whole cycles of what repeats: the one window over which a run is summed up
@@ -245,7 +246,7 @@ def turn_window(recorded: Recorded, prepared: Prepared) -> Window:
 def _belt_turns(recorded: Recorded, prepared: Prepared, time: FloatArray) -> Cycle:
     """Turns of the belt: the way that it goes, by the mean speed in its spans, over its length."""
     speed = np.asarray(recorded["belt_speed"]).mean(axis=1)
-    way = np.concatenate([[0.0], np.cumsum(0.5 * (speed[1:] + speed[:-1]) * np.diff(time))])
+    way = running_integral(speed, time)
     return Cycle(np.sign(way[-1] - way[0]) * way / prepared.belt_length, 1)
 
 

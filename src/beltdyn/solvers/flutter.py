@@ -14,6 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from beltdyn.arrays import BoolArray, ComplexArray, FloatArray, IntArray
+from beltdyn.quadrature import running_integral
 from beltdyn.solvers.eigenvalues import arnoldi, unit_masses
 from beltdyn.solvers.engine import linearise
 from beltdyn.system.arrays import Motion, System, TangentFactors
@@ -296,7 +297,7 @@ def growth_within(
         When the rate of growth is known, s, and what it is, 1/s.
     """
     rate, count = np.interp(time, instants, rates), len(time)
-    total = np.append(0.0, np.cumsum(0.5 * (rate[1:] + rate[:-1]) * np.diff(time)))
+    total = running_integral(rate, time)
     first = np.searchsorted(time, time - transit)
     windows = np.stack([first, np.arange(1, count + 1)], axis=1).ravel()
     gain = total - np.minimum.reduceat(np.append(total, np.inf), windows)[::2]
