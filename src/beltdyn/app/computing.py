@@ -13,9 +13,8 @@ from typing import TYPE_CHECKING, NamedTuple
 from beltdyn.designs.processes import SPAWN, LocalProcesses, start_process, start_worker
 from beltdyn.errors import BeltdynError
 from beltdyn.kernel import observe_compilation
-from beltdyn.model import Drive, advise, install, loads, unstable_balance
+from beltdyn.model import Drive, loads
 from beltdyn.results import Run
-from beltdyn.show.rest_sheet import rest_sheet
 from beltdyn.show.sheet import Facts, Table, sheet
 
 if TYPE_CHECKING:
@@ -142,13 +141,12 @@ Shown = tuple[tuple[Table | Facts, ...], tuple[str, ...]]
 
 def _rest(asked: Asked) -> Shown:
     """The drive at rest, as `beltdyn check` finds it."""
-    from beltdyn.state.installation import bring_to_rest
+    from beltdyn.show.check import check
 
-    given = loads(asked.text, asked.folder)
-    rest = bring_to_rest(given, _hear)
-    unstable = [str(unstable_balance(rest.unstable))] if rest.unstable else []
-    told = (*unstable, *advise(given, install(given)))
-    return rest_sheet(given, rest.drive, rest.installation).parts, told
+    checked = check(loads(asked.text, asked.folder), _hear)
+    if checked.failure:
+        raise checked.failure
+    return checked.sheet.parts, tuple(checked.warnings)
 
 
 def _hear(progress: "Progress") -> None:
