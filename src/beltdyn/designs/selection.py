@@ -13,6 +13,7 @@ from beltdyn.errors import ModelError
 from beltdyn.model import Drive, Entry, loads, read_catalogue
 from beltdyn.model.catalogue import find_entry
 from beltdyn.model.rating import RatedBelt, Rating
+from beltdyn.model.tensioning import RUN_IN
 from beltdyn.parts.messages import reason
 from beltdyn.parts.quantity import RPM, number_in, numbers_in
 from beltdyn.theory.belt_rating import least_tension
@@ -29,8 +30,6 @@ DIAMETERS = tuple(
 )
 """Preferred diameters of pulleys, m (BS 3790:2006, table 8)."""
 
-RUN_IN = 1.3
-"""Tension of a run-in belt over the least one (GB/T 13575.1)."""
 _NEAREST, _FARTHEST = 0.7, 2.0
 """Usual center distance over the sum of the diameters (GB/T 13575.1)."""
 _CLEAR = 1.05

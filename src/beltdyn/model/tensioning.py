@@ -12,11 +12,10 @@ from beltdyn.theory.stiff_span import deflection_force, stretching
 
 DEFLECTION = 0.016
 """Deflection of the middle over the length of a span, by custom of belt makers (1/64 inch per inch)."""
-STATES = MappingProxyType({"new": 1.5 / 1.3, "run in": 1.0, "least": 1.0 / 1.3})
-"""Tension over that of the drive, which is a run-in belt's: of a new belt, and the least before it is tensioned again.
-
-By GB/T 13575.1 these are 1.5, 1.3 and 1 times the least tension that carries the load.
-"""
+NEW, RUN_IN = 1.5, 1.3
+"""Tension of a new and of a run-in belt over the least one that carries the load (GB/T 13575.1)."""
+STATES = MappingProxyType({"new": NEW / RUN_IN, "run in": 1.0, "least": 1.0 / RUN_IN})
+"""Tension over that of the drive, a run-in belt's: of a new belt, and the least before it is tensioned again."""
 HELD = MappingProxyType({"at rest": 1.0})
 """The only state of a belt whose tension a spring-loaded tensioner or a pulled end holds."""
 

@@ -22,8 +22,8 @@ from beltdyn.solvers.progress import Report
 
 _KEPT = ("belt_speed", "span_tension", "cord_force", "cord_damage_rate", "cord_damage", "rib_damage_rate", "rib_damage")
 """Variables of operating points in the table."""
-_PLACES = 400
-"""Places of the histories over a turn."""
+_PLACES = (np.arange(400) + 0.5) / 400
+"""Places of the histories, in turns of the belt."""
 _HISTORY = ("row", "place")
 _OF_HISTORY = {
     "tension": Variable(_HISTORY, "N", "Tension of a material point"),
@@ -103,11 +103,10 @@ def life(
     event = None if run is None else _repeated(damage_of_run(_run_of(drive, run)), repeats)
     compared = None if reference is None else _reference(reference, partial(life, table=table, at=at))
     axes = {"row": (Variable(("row",), "1", "Row", "int64"), np.arange(1, durations.size + 1))}
-    place = (np.arange(_PLACES) + 0.5) / _PLACES
     with OperatingPoints("life", held, axes, output, progress, overwrite, names=(*_KEPT, "failure")) as points:
         points.more = {
             "duration": (Variable(("row",), "s", "Duration"), durations),
-            "place": (Variable(("place",), "1", "Length of belt that has passed, in turns"), place),
+            "place": (Variable(("place",), "1", "Length of belt that has passed, in turns"), _PLACES),
         }
         sums = _Sums(held, columns, event, compared)
         points.derive, points.attributes = sums.derive, {"drive_as_given": drive.text}
@@ -132,7 +131,7 @@ class _Sums:
         self._drive, self._event, self._compared = drive, event, compared
         self._durations, self._heated = durations_of(columns), any(one.what == "temperature" for one in columns)
         durations = self._durations
-        self._history = {name: np.full((durations.size, _PLACES), np.nan) for name in _OF_HISTORY}
+        self._history = {name: np.full((durations.size, _PLACES.size), np.nan) for name in _OF_HISTORY}
         self._turns = np.full(durations.size, np.nan)
         self._reached = np.full((durations.size, len(drive.pulleys)), np.nan)
 
@@ -142,7 +141,7 @@ class _Sums:
             return
         drive, history = run.drive, turn_history(run)
         length = drive.belt_length
-        places = (np.arange(_PLACES) + 0.5) / _PLACES * length
+        places = _PLACES * length
         curvature = np.interp(places, history.passed, history.curvature[:, 0], period=length)
         self._history["tension"][index] = np.interp(places, history.passed, history.tension[:, 0], period=length)
         self._history["bending_strain"][index] = -curvature * _inside_depth(drive)

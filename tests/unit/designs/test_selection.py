@@ -6,9 +6,10 @@ from typing import Any
 import numpy as np
 import pytest
 
-from beltdyn.designs.selection import DIAMETERS, RUN_IN, Proposal, select
+from beltdyn.designs.selection import DIAMETERS, Proposal, select
 from beltdyn.errors import ModelError
 from beltdyn.model import install, loads, prepare, read_catalogue
+from beltdyn.model.tensioning import RUN_IN
 from beltdyn.results.utilization import rate
 from beltdyn.theory.path import open_belt
 

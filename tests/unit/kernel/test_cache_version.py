@@ -70,4 +70,4 @@ def test_both_ways_give_the_same_numbers_and_the_slow_one_says_so_once(tmp_path:
     assert first[:2] == second[:2] == ["False", "100.0 2.25"]
     assert second[2] == ""
     assert first[2].count("PlainCompilationWarning") == bool(plain)
-    assert ("plain way" in first[2]) == bool(plain)
+    assert ("public decorator" in first[2]) == bool(plain)
