@@ -1,6 +1,6 @@
 """Selection of V-belt and V-ribbed drives: standard pulleys, lengths and belts that carry a power, best first."""
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from math import cos, hypot, pi, sin
@@ -8,6 +8,7 @@ from pathlib import Path
 from typing import NamedTuple
 
 import numpy as np
+import tomlkit
 
 from beltdyn.errors import ModelError
 from beltdyn.model import Drive, Entry, loads, read_catalogue
@@ -402,23 +403,28 @@ def _proposal(name: str, pair: _Pair, fit: _Fit, task: Task, catalogue: str | No
     )
 
 
+def _quoted(text: str) -> str:
+    """A text as a drive file has it."""
+    return tomlkit.string(text).as_string()
+
+
 def _drive_file(one: Proposal) -> str:
     """The drive file of a proposal."""
     task, radius = one.task, 0.5 * one.driven_diameter
     inertia = _RIM_SHARE * 0.5 * pi * _RIM_DENSITY * max(one.face_width, 0.02) * radius**4
     torque = task.power / one.driven_speed
-    own: Mapping[str, str] = {} if one.catalogue is None else {"catalogue": one.catalogue.replace("\\", "/")}
+    own = "" if one.catalogue is None else f"catalogue = {_quoted(Path(one.catalogue).as_posix())}"
     return f"""\
 # {1e-3 * task.power:.4g} kW at {RPM * task.speed:.4g} rpm, {RPM * one.driven_speed:.4g} rpm driven; service factor \
 {task.service_factor:.3g}.
 # Rated power {1e-3 * one.rated_power:.4g} kW, {one.utilization:.0%} used; belt speed {one.belt_speed:.3g} m/s.
 
 [belt]
-profile = "{one.profile}"
+profile = {_quoted(one.profile)}
 ribs = {one.belts}
 nominal_length = "{1e3 * one.nominal_length:.6g} mm"
 installed_tension = "{one.tension:.4g} N"      # of a run-in belt; the take-up of the driven pulley gives it
-{"".join(f'{key} = "{value}"' for key, value in own.items())}
+{own}
 [[pulley]]
 name = "driver"
 center = [0.0, 0.0]

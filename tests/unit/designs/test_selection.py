@@ -1,6 +1,8 @@
 """Selected drives: standard parts within the space, that carry the power, in order of their width."""
 
+import tomllib
 from math import pi
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -109,3 +111,11 @@ def test_more_power_needs_more_belts() -> None:
 def test_what_is_not_possible_is_refused(changes: dict[str, Any], said: str) -> None:
     with pytest.raises(ModelError, match=said):
         select(**TASK | changes)
+
+
+def test_names_are_quoted_in_the_drive_file(tmp_path: Path) -> None:
+    own = tmp_path / 'my "best" belts.toml'
+    own.write_text("", encoding="utf-8")
+    proposal = select(power="7.5 kW", speed="1450 rpm", driven_speed="700 rpm", profiles="SPA", catalogue=own)[0]
+    belt = tomllib.loads(proposal.text)["belt"]
+    assert (belt["catalogue"], belt["profile"]) == (own.as_posix(), "SPA")
