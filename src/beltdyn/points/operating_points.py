@@ -115,8 +115,8 @@ def variables_of(drive: Drive) -> dict[str, Variable]:
     return {name: one for name, one in VARIABLES.items() if name not in unknown}
 
 
-def values_by_name(run: Run, means: Means) -> dict[str, Any]:
-    """The values of an operating point by the names of `VARIABLES`."""
+def values_by_name(run: Run, means: Means, names: Collection[str] = VARIABLES.keys()) -> dict[str, Any]:
+    """The values of an operating point by the names of `VARIABLES`; of fatigue only where some names need them."""
     balance, dataset, tensions = means.balance, run.dataset, [one.tension for one in means.spans]
     known = variables_of(run.drive)
     values: dict[str, Any] = {
@@ -142,7 +142,7 @@ def values_by_name(run: Run, means: Means) -> dict[str, Any]:
         values["tensioner_position"] = stands = [one.position for one in means.tensioners]
         for name in ("tensioner_position_after_tensioning", "tensioner_position_after_yielding"):
             values[name] = dataset.attrs.get(name, stands)
-    return values | fatigue_by_name(run)
+    return values if OF_FATIGUE.keys().isdisjoint(names) else values | fatigue_by_name(run)
 
 
 Axes = Mapping[str, tuple[Variable, ArrayLike]]
@@ -394,7 +394,7 @@ class OperatingPoints:
 
     def _take(self, index: tuple[int, ...], run: Run, means: Means) -> None:
         """Note an operating point."""
-        values, findings = values_by_name(run, means), run.findings
+        values, findings = values_by_name(run, means, self.arrays), run.findings
         values["mesh_error"] = run.resolution.errors["peak pressure"]
         for name in self.arrays.keys() & values.keys():
             self.arrays[name][index] = values[name]
