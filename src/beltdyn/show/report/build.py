@@ -21,7 +21,7 @@ from beltdyn.show.plot.headline import given_keys, headlines, name_of, names_of_
 from beltdyn.show.plot.style import tension_colors
 from beltdyn.show.report.chart import charted
 from beltdyn.show.report.motion import motion, swinging
-from beltdyn.show.report.page_parts import analysis_of, differing_keys, embedded, library, origin
+from beltdyn.show.report.page_parts import differing_keys, embedded, library, origin
 from beltdyn.show.rest_sheet import alignment_table
 from beltdyn.show.sheet import Table, sheet
 from beltdyn.show.tensioning import tensioning
@@ -207,7 +207,7 @@ def _page(results: Sequence[Result]) -> str:
             title=" and ".join(names) if len(names) <= 2 else f"{names[0]} and {len(names) - 1} more",
             mark=_SAYS_WHO_MADE_IT,
             compares=len(results) > 1,
-            kinds={analysis_of(one) for one in results},
+            kinds={one.kind for one in results},
             verdict=verdict(results),
             lead="" if len(results) > 1 else headlines(results).removeprefix(f"{names[0]}: "),
             parts=[

@@ -40,7 +40,7 @@ MAKERS: Mapping[str, tuple[Callable[[bd.Drive], Result], tuple[str, ...], tuple[
         ("operating_points-0",),
     ),
     "traction": (lambda drive: bd.traction(drive, points=3), ("Largest torque", "Euler"), ("traction_curve-0",)),
-    "tensioner": (bd.tensioner_sheet, ("longest belt", "Take-up rate"), ("tensioner_sheet-0",)),
+    "tensioner_sheet": (bd.tensioner_sheet, ("longest belt", "Take-up rate"), ("tensioner_sheet-0",)),
     "modes": (lambda drive: bd.modes(drive, count=3), ("Parts with most of the energy", "Mode shape"), ()),
     "campbell": (
         lambda drive: bd.campbell(drive, speed="1000, 1500 rpm", count=3),
@@ -101,7 +101,7 @@ MEANINGS = {
     "Kinds of modes": {"modes", "campbell"},
     "Critical speed": {"campbell"},
     "<dt>Amplitude": {"response"},
-    "Tension set by a tensioner": {"tensioner"},
+    "Tension set by a tensioner": {"tensioner_sheet"},
 }
 """What is explained, and in reports of which kinds."""
 
