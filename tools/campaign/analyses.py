@@ -3,17 +3,21 @@
 from collections.abc import Callable
 from pathlib import Path
 
-from beltdyn.analyses import ANALYSES
+import beltdyn as bd
 from beltdyn.model import Drive, ParameterStudy, advise, install
 from beltdyn.model.study import CalibrationStudy, OptimizationStudy
 
 Work = Callable[[Drive, Path], object]
 
 
-def _duty(drive: Drive, folder: Path) -> object:
+def _table(folder: Path) -> Path:
     table = folder / "duty.csv"
     table.write_text("duration [s], load\n1, 0.5\n1, 0\n0, 2\n", encoding="utf-8")
-    return ANALYSES["duty"].function(drive, table=table)
+    return table
+
+
+def _duty(drive: Drive, folder: Path) -> object:
+    return bd.duty(drive, table=_table(folder))
 
 
 def _optimized(drive: Drive, folder: Path) -> object:
@@ -22,7 +26,7 @@ def _optimized(drive: Drive, folder: Path) -> object:
         goal={"result": "hub_load"},
         requirement=[{"result": "slip_safety", "at_least": 1.5}],
     )
-    return ANALYSES["optimize"].function(drive, study=study, most=2)
+    return bd.optimize(drive, study=study, most=2)
 
 
 def _calibrated(drive: Drive, folder: Path) -> object:
@@ -31,47 +35,49 @@ def _calibrated(drive: Drive, folder: Path) -> object:
     study = CalibrationStudy(
         number=[{"path": "belt.width", "least": "15 mm", "largest": "25 mm"}], measurement=[{"table": str(table)}]
     )
-    return ANALYSES["calibrate"].function(drive, study=study)
+    return bd.calibrate(drive, study=study)
 
 
 def _studied(drive: Drive, folder: Path) -> object:
-    from beltdyn.designs.study import study
-
     points = ParameterStudy(
-        analysis="steady", number=[{"path": "belt.width", "values": "15, 25 mm"}], results=["efficiency"]
+        analysis="steady_state", number=[{"path": "belt.width", "values": "15, 25 mm"}], results=["efficiency"]
     )
-    return study(points, drive, jobs=1, output=folder / "study.nc")
+    return bd.study(points, drive, jobs=1, output=folder / "study.nc")
 
 
 def _driver(drive: Drive) -> str:
     return next((one.name for one in drive.pulleys if one.prescribed), drive.pulleys[0].name)
 
 
+def _lives(drive: Drive, folder: Path) -> object:
+    return bd.life(drive, table=_table(folder))
+
+
 WORKS: dict[str, Work] = {
     "check": lambda drive, _: advise(drive, install(drive)),
-    "run": lambda drive, folder: ANALYSES["run"].function(drive, output=folder / "run.nc"),
-    "sweep": lambda drive, _: ANALYSES["sweep"].function(
+    "simulate": lambda drive, folder: bd.simulate(drive, output=folder / "run.nc"),
+    "sweep": lambda drive, _: bd.sweep(
         drive, pulley=_driver(drive), from_="50 rad/s", to="100 rad/s", duration=0.02, settling=0.01
     ),
-    "static": lambda drive, _: ANALYSES["static"].function(drive),
-    "steady": lambda drive, _: ANALYSES["steady"].function(drive),
-    "map": lambda drive, folder: ANALYSES["map"].function(
+    "equilibrium": lambda drive, _: bd.equilibrium(drive),
+    "steady-state": lambda drive, _: bd.steady_state(drive),
+    "operating-map": lambda drive, folder: bd.operating_map(
         drive, speed="0, 500, 1e5 rpm", load="0, 1", output=folder / "map.nc"
     ),
-    "traction": lambda drive, _: ANALYSES["traction"].function(
-        drive, pulley=drive.pulleys[-1].name, slip="0, 0.2, 5 %"
-    ),
+    "traction": lambda drive, _: bd.traction(drive, pulley=drive.pulleys[-1].name, slip="0, 0.2, 5 %"),
     "duty": _duty,
-    "tensioner": lambda drive, _: ANALYSES["tensioner"].function(drive),
-    "sensitivity": lambda drive, _: ANALYSES["sensitivity"].function(
+    "life": _lives,
+    "rating": lambda drive, _: bd.rating(drive),
+    "tensioner-sheet": lambda drive, _: bd.tensioner_sheet(drive),
+    "sensitivity": lambda drive, _: bd.sensitivity(
         drive, numbers=f"belt.width, pulley[{drive.pulleys[0].name}].radius"
     ),
-    "modes": lambda drive, _: ANALYSES["modes"].function(drive, count=3),
-    "modes at rest": lambda drive, _: ANALYSES["modes"].function(drive, about="rest", count=3),
+    "modes": lambda drive, _: bd.modes(drive, count=3),
+    "modes at rest": lambda drive, _: bd.modes(drive, about="rest", count=3),
     "optimize": _optimized,
     "calibrate": _calibrated,
-    "campbell": lambda drive, _: ANALYSES["campbell"].function(drive, speed="0, 500, 1e4 rpm", count=2),
-    "response": lambda drive, _: ANALYSES["response"].function(drive, speed="0, 500, 1e4 rpm"),
+    "campbell": lambda drive, _: bd.campbell(drive, speed="0, 500, 1e4 rpm", count=2),
+    "response": lambda drive, _: bd.response(drive, speed="0, 500, 1e4 rpm"),
     "study": _studied,
 }
 """Name -> what is done with a drive, in a folder of its own."""

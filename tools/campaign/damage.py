@@ -7,11 +7,10 @@ from dataclasses import dataclass
 from importlib.resources import files
 from pathlib import Path
 from random import Random
-from typing import Any
 
 import numpy as np
 
-from beltdyn.analyses import ANALYSES
+import beltdyn as bd
 from beltdyn.designs.study import study
 from beltdyn.model import Drive, ParameterStudy, load
 from beltdyn.results import open_result
@@ -59,17 +58,20 @@ def two_pulley() -> Drive:
 def make(folder: Path) -> list[Kind]:
     """Make an intact file of each kind."""
     drive, kinds = two_pulley(), list[Kind]()
-    analyses: dict[str, dict[str, Any]] = {"static": {}, "map": {"speed": "60, 100 rpm", "force_tolerance": 0.1}}
+    results = {
+        "equilibrium": bd.equilibrium(drive),
+        "operating_map": bd.operating_map(drive, speed="60, 100 rpm", force_tolerance=0.1),
+    }
     simulate(drive, folder / "run.nc")
     kinds.append(Kind("result of a run", folder / "run.nc", _of_result))
-    for name, options in analyses.items():
-        ANALYSES[name].write(drive, folder / f"{name}.nc", **options)
+    for name, result in results.items():
+        result.save(folder / f"{name}.nc")
         kinds.append(Kind(f"result of {name}", folder / f"{name}.nc", _of_result))
     simulate(drive, folder / "stopped.nc", _stop, checkpoint=1e-9)
     kinds.append(Kind("checkpoint", checkpoint_file(folder / "stopped.nc"), _of_checkpoint))
     kinds.append(Kind("result that is gone on with", folder / "stopped.nc", _resumed))
     points = ParameterStudy(
-        analysis="static", number=[{"path": "belt.width", "values": "9, 10 mm"}], results=["tension"]
+        analysis="equilibrium", number=[{"path": "belt.width", "values": "9, 10 mm"}], results=["tension"]
     )
 
     def studied(path: Path) -> str:

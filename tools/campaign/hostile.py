@@ -58,7 +58,7 @@ def _drive(folder: Path, old: str = "", new: str = "", before: str = "") -> str:
 def _checkpoint(folder: Path, content: bytes, head: bytes) -> list[str]:
     drive = _drive(folder)
     checkpoint_file(folder / "drive.nc").write_bytes(head + content)
-    return ["run", drive, "--resume"]
+    return ["simulate", drive, "--resume"]
 
 
 def _pipe(folder: Path, name: str) -> str:
@@ -97,7 +97,7 @@ def cases(head: bytes) -> Iterator[Case]:
     yield "pickle in a checkpoint", lambda at: _checkpoint(at, payload(at / MARKER), head)
     yield "dotted name in a checkpoint", lambda at: _checkpoint(at, dotted_payload(at / MARKER), head)
     yield "bare pickle as a checkpoint", lambda at: _checkpoint(at, payload(at / MARKER), b"")
-    for command in ("check", "run", "plot", "export", "study", "report"):
+    for command in ("check", "simulate", "plot", "export", "study", "report"):
         yield f"pipe as the file of {command}", lambda at, word=command: [word, _pipe(at, "pipe.toml")]  # type: ignore[misc]
         yield f"/dev/zero as the file of {command}", lambda at, word=command: [word, "/dev/zero"]  # type: ignore[misc]
         yield f"folder as the file of {command}", lambda at, word=command: [word, str(at)]  # type: ignore[misc]
@@ -124,19 +124,19 @@ def _start_from_a_pipe(folder: Path) -> list[str]:
 
 def _with_pipe(folder: Path, name: str) -> list[str]:
     _pipe(folder, name)
-    return ["run", _drive(folder), "--resume"]
+    return ["simulate", _drive(folder), "--resume"]
 
 
 def _onto_a_loop(folder: Path) -> list[str]:
     (folder / "one.nc").symlink_to(folder / "other.nc")
     (folder / "other.nc").symlink_to(folder / "one.nc")
-    return ["static", _drive(folder), "-o", str(folder / "one.nc")]
+    return ["equilibrium", _drive(folder), "-o", str(folder / "one.nc")]
 
 
 def _no_utf8(folder: Path) -> list[str]:
     name = os.fsdecode(os.fsencode(folder) + b"/dr\xffive.toml")
     Path(name).write_text(dumps(two_pulley()), encoding="utf-8")
-    return ["static", name, "--report"]
+    return ["equilibrium", name, "--report"]
 
 
 def give(case: Case, folder: Path) -> str:

@@ -107,8 +107,17 @@ def _pulley(numbers: _Numbers, place: int) -> Part:
             random.choice(
                 (
                     {"kind": "resistance", "constant": numbers.of("torque", 1.0)},
-                    {"kind": "fan", "torque": numbers.of("torque", 1.0), "speed": numbers.of("speed", 100.0)},
-                    {"kind": "motor", "torque": numbers.of("torque", 5.0), "speed": numbers.of("speed", 100.0)},
+                    {
+                        "kind": "fan",
+                        "rated_power": 100.0 * numbers.of("torque", 1.0),
+                        "rated_speed": numbers.of("speed", 100.0),
+                    },
+                    {
+                        "kind": "motor",
+                        "breakdown_torque": numbers.of("torque", 5.0),
+                        "breakdown_slip": 0.1,
+                        "synchronous_speed": numbers.of("speed", 100.0),
+                    },
                 )
             )
         ]
