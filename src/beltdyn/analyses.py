@@ -6,6 +6,8 @@ from inspect import signature
 from pathlib import Path
 from typing import Any, NamedTuple
 
+from beltdyn.kinds import Registry, register
+
 RUN, EQUILIBRIUM = "run", "equilibrium"
 """Kinds of results with a class of their own: results over time of any analysis, and results at rest."""
 
@@ -23,6 +25,8 @@ class Analysis(NamedTuple):
     """"MODULE:FUNCTION"; the function is ``beltdyn.FUNCTION`` too."""
     purpose: str
     """What it computes, in one line for the help of the command line."""
+    stays: bool = False
+    """Whether its results at rest or in steady running are of a staying mesh."""
 
     @property
     def name(self) -> str:
@@ -70,34 +74,30 @@ class Analysis(NamedTuple):
         return result
 
 
-_ALL = (
+ANALYSES = Registry[Analysis]("analysis", Analysis)
+"""All analyses by name."""
+
+for _analysis in (
     Analysis("beltdyn.transient.simulate:simulate", "Simulate drives over time."),
     Analysis("beltdyn.transient.sweep:sweep", "Simulate a run-up through a range of speeds."),
     Analysis("beltdyn.state.equilibrium:equilibrium", "Find the static equilibrium of a drive."),
     Analysis("beltdyn.state.steady:steady_state", "Compute the steady running of a drive."),
-    Analysis("beltdyn.points.operating_map:operating_map", "Compute operating points over speed and load."),
-    Analysis("beltdyn.points.traction:traction", "Compute the traction curve of a pulley (slip over torque)."),
-    Analysis("beltdyn.points.duty:duty", "Compute the operating points of a duty cycle, and their means."),
-    Analysis("beltdyn.points.life:life", "Compute fatigue damage and life of the belt, with shares of pulleys."),
+    Analysis("beltdyn.points.operating_map:operating_map", "Compute operating points over speed and load.", True),
+    Analysis("beltdyn.points.traction:traction", "Compute the traction curve of a pulley (slip over torque).", True),
+    Analysis("beltdyn.points.duty:duty", "Compute the operating points of a duty cycle, and their means.", True),
+    Analysis("beltdyn.points.life:life", "Compute fatigue damage and life of the belt, with shares of pulleys.", True),
     Analysis(
         "beltdyn.points.tensioner_sheet:tensioner_sheet",
         "Compute tensioner positions and tensions over the range of belt lengths.",
+        True,
     ),
-    Analysis("beltdyn.points.rating:rating", "Rate the belt: rated power, utilization, belts needed."),
-    Analysis("beltdyn.designs.sensitivity:sensitivity", "Compute the sensitivity of results to each input."),
-    Analysis("beltdyn.vibration.modes:modes", "Compute natural modes: frequencies, damping, shapes."),
+    Analysis("beltdyn.points.rating:rating", "Rate the belt: rated power, utilization, belts needed.", True),
+    Analysis("beltdyn.designs.sensitivity:sensitivity", "Compute the sensitivity of results to each input.", True),
+    Analysis("beltdyn.vibration.modes:modes", "Compute natural modes: frequencies, damping, shapes.", True),
     Analysis("beltdyn.designs.optimize:optimize", "Optimize parameters of a drive for a goal."),
     Analysis("beltdyn.designs.calibrate:calibrate", "Fit parameters of a drive to measured results."),
-    Analysis("beltdyn.vibration.campbell:campbell", "Compute natural modes over speed, and critical speeds."),
-    Analysis("beltdyn.vibration.response:response", "Compute forced vibrations under harmonics, over speed."),
+    Analysis("beltdyn.vibration.campbell:campbell", "Compute natural modes over speed, and critical speeds.", True),
+    Analysis("beltdyn.vibration.response:response", "Compute forced vibrations under harmonics, over speed.", True),
     # one line each
-)
-
-STEADY_KINDS = (
-    *("operating_map", "traction", "duty", "life", "tensioner_sheet", "rating"),
-    *("sensitivity", "modes", "campbell", "response"),
-)
-"""Kinds of results at rest or in steady running on a staying mesh."""
-
-ANALYSES = {analysis.name: analysis for analysis in _ALL}
-"""All analyses by name."""
+):
+    register(_analysis)

@@ -1,12 +1,15 @@
 """Registries of kinds, and the call that adds a kind: what is refused, what replaces, and what follows."""
 
 from collections.abc import Iterator
+from pathlib import Path
 from typing import Annotated, Any, Literal, NamedTuple
 
 import numpy as np
 import pytest
 from pydantic import Field
 
+import beltdyn as bd
+from beltdyn.analyses import ANALYSES, Analysis
 from beltdyn.contact.friction import LAWS, FrictionLaw
 from beltdyn.errors import ModelError
 from beltdyn.kernel import kernel
@@ -18,9 +21,10 @@ from beltdyn.machines.loads.registry import SHAFT_LOAD
 from beltdyn.machines.profiles.profile import PROFILES
 from beltdyn.machines.tensioners.registry import TENSIONER
 from beltdyn.machines.tensioners.tensioner import TENSIONERS
-from beltdyn.model import Pulley
+from beltdyn.model import Drive, Pulley
 from beltdyn.parts.quantity import quantity
 from beltdyn.records import record
+from beltdyn.results import Result, Variable, build_result
 
 OF_THE_PACKAGE = {
     "load": {
@@ -99,6 +103,24 @@ def test_a_kind_of_one_name_replaces_the_one_before() -> None:
     register(friction_law("sloped"))
     register(other := friction_law("sloped", Parameter("slope", "", "the slope")))
     assert LAWS["sloped"] is other
+
+
+def widths(drive: Drive, *, times: float = 1.0) -> Result:
+    """Give the width of the belt."""
+    return build_result("widths", drive, {"width": (Variable((), "m", "Width"), times * drive.belt.width)}, {})
+
+
+def test_an_analysis_of_a_script_works_where_those_of_the_package_do(tmp_path: Path) -> None:
+    register(Analysis(f"{__name__}:widths", "Give the width."))
+    drive, points = bd.example("two_pulley"), [0.01, 0.02]
+    assert "widths" in dir(bd)
+    assert bd.widths(drive, times=2.0).dataset.width.item() == pytest.approx(2.0 * drive.belt.width)  # type: ignore[attr-defined]
+    plan = bd.ParameterStudy(
+        analysis="widths", number=[{"path": "belt.width", "values": points}], results=["width"], options={"times": 3.0}
+    )
+    assert bd.study(plan, drive, jobs=1).dataset.width.values.tolist() == pytest.approx([0.03, 0.06])
+    ANALYSES["widths"].write(drive, tmp_path / "widths.nc")
+    assert bd.open_result(tmp_path / "widths.nc").dataset.width.item() == pytest.approx(drive.belt.width)
 
 
 def test_a_class_is_registered_by_the_decorator() -> None:

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 
 from numpy.typing import ArrayLike
 
-from beltdyn.analyses import STEADY_KINDS
+from beltdyn.analyses import ANALYSES
 from beltdyn.errors import ModelError
 from beltdyn.model import Drive, Prepared, loads, prepare
 from beltdyn.parts.messages import listing
@@ -184,7 +184,7 @@ def build_result(
         return {name: (variable.dims, values, variable.attributes) for name, (variable, values) in parts.items()}
 
     origin = provenance(drive.text, f"Belt drive, {kind}", kind) | own_kinds(drive)
-    if kind in STEADY_KINDS:
+    if kind in ANALYSES and ANALYSES[kind].stays:
         origin |= mesh_used(drive, STAYING)
     attributes = origin | {"status": "completed", "warnings": "\n".join(warnings)}
     return Result(xr.Dataset(labelled(variables), labelled(coordinates), attributes), drive)

@@ -6,6 +6,7 @@ import signal
 import warnings
 from collections.abc import Callable, Mapping
 from contextlib import suppress
+from functools import partial
 from pathlib import Path
 from threading import Event, Thread
 
@@ -18,6 +19,7 @@ from beltdyn.designs.processes import LocalProcesses
 from beltdyn.designs.study import Dispatch, study
 from beltdyn.designs.worker import DaskWorkers, ThisProcess, Workers
 from beltdyn.errors import SimulationError
+from beltdyn.kinds import register
 from beltdyn.model import Drive, ParameterStudy
 
 Make = Callable[..., PointWork]
@@ -140,7 +142,7 @@ def test_a_cluster_that_goes_ends_the_study_with_what_came_back(tiny_work: Make)
 
 @pytest.mark.slow
 def test_a_study_on_a_cluster_outlives_thirty_kills(
-    drive: Drive, tiny_work: Make, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+    drive: Drive, tiny_work: Make, tmp_path: Path, request: pytest.FixtureRequest
 ) -> None:
     """A worker that computes is chosen at random and killed, with its results that were not fetched, 30 times.
 
@@ -150,10 +152,11 @@ def test_a_study_on_a_cluster_outlives_thirty_kills(
     distributed = pytest.importorskip("distributed")
     dask = pytest.importorskip("dask")
     work = tiny_work(seconds=0.1)
-    monkeypatch.setitem(ANALYSES, "equilibrium", work.analysis)
+    register(work.analysis)
+    request.addfinalizer(partial(ANALYSES.forget, work.analysis.name))
     widths = np.linspace(0.0131, 0.02, 300).round(7).tolist()
     plan = ParameterStudy(
-        analysis="equilibrium",
+        analysis=work.analysis.name,
         options=dict(work.options),
         number=[{"path": "belt.width", "values": widths}],
         results=["width"],
