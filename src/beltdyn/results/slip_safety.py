@@ -4,11 +4,9 @@ With the factor f on the loads the differences of the tensions grow with f, and 
 
     T_i = T + f D_i,    D_i = the present tensions less their mean.
 
-Pulleys at fixed centers keep the belt's unstretched length on its path: spans at T_i, arcs at the tension with which
-the belt reaches them up to where it slides, and penetration. A tensioner moves until spring and stops balance the
-belt; an end of an open belt that is pulled keeps its tension. All are taken as changes of the present state: what else
-holds a tensioner there, as weight and dry friction, goes on holding it. The arc of pulley p slides on its whole angle
-theta where the tensions at its ends, less m v^2, are in the ratio exp(mu theta) of Euler and Eytelwein, or, with
+The balance is that of `beltdyn.results.tension_balance`, about the present state. The arc of pulley p slides on its
+whole angle theta where the tensions at its ends, less m v^2, are in the ratio exp(mu theta) of Euler and Eytelwein, or,
+with
 
     s = |T1 - T2| / ((T1 + T2 - 2 m v^2) tanh(mu theta / 2)),
 
@@ -21,11 +19,11 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from beltdyn.arrays import BoolArray, FloatArray, IntArray
-from beltdyn.machines.tensioners.tensioner import MovingTensioner
+from beltdyn.arrays import FloatArray, IntArray
 from beltdyn.model import Prepared
-from beltdyn.model.path import span_directions, span_points, wrap_angles
-from beltdyn.results.mechanics import UNLOADED, across
+from beltdyn.model.path import span_directions, wrap_angles
+from beltdyn.results.mechanics import across
+from beltdyn.results.tension_balance import TensionBalance
 
 STATE = ("span_tension", "belt_speed", "pulley_center")
 """What a slip safety follows from, by the names of recorded variables."""
@@ -34,15 +32,6 @@ _GROWTH, _STEPS = 1.5, 12
 _REFINEMENTS = 30
 _ACCURACY = 1e-6
 """Of the slip safety."""
-_MOST_ITERATIONS = 40
-_CONVERGED = 1e-9
-"""Step of Newton's method, over the scale of each unknown."""
-_DIFFERENCE = 1e-6
-"""Step of difference quotients, over the scale of each unknown."""
-_PRESSED = 0.1
-"""Least tension above that at which the belt lifts off: of a guess over the mean tension, of a step over the last."""
-_LONGEST = 0.2
-"""Step of Newton's method for the place of a tensioner, over the way on which it moves by the smallest radius."""
 
 
 def slip_safety_of_states(
@@ -69,7 +58,7 @@ def slip_safety_of_states(
     shape = tension.shape[:-1]
     flat = (tension.reshape(-1, tension.shape[-1]), belt_speed.reshape(-1, tension.shape[-1]))
     with np.errstate(invalid="ignore", divide="ignore", over="ignore"):
-        balance = _Balance(prepared, *flat, centers.reshape(-1, pulleys, 2))
+        balance = TensionBalance(prepared, *flat, centers.reshape(-1, pulleys, 2))
         return _safeties(balance).reshape(*shape, pulleys)
 
 
@@ -85,144 +74,7 @@ def friction_used(tension: FloatArray, belt_speed: FloatArray, centers: FloatArr
         return np.asarray(ratio / (prepared.frictions * wrap))
 
 
-class _Geometry(NamedTuple):
-    """The path with tensioners at some places, a row for each state."""
-
-    directions: FloatArray
-    """Unit vectors along spans, shape (n, spans, 2)."""
-    lengths: FloatArray
-    """Of spans, m."""
-    wrap: FloatArray
-    """rad, shape (n, pulleys)."""
-    slopes: FloatArray
-    """Derivatives of the centers of carried pulleys with respect to the places of their tensioners, shape (n, K, 2)."""
-
-
-class _Balance:
-    """What holds the tension of a belt, as a change of present states: a row for each.
-
-    Unknowns are the mean tension, and how far each tensioner moves.
-    """
-
-    def __init__(self, prepared: Prepared, tension: FloatArray, speed: FloatArray, centers: FloatArray) -> None:
-        self._prepared, self._centers = prepared, centers
-        self.mean = tension.mean(axis=1)
-        self.differences = tension - self.mean[:, None]
-        self._lifted = prepared.belt.mass_per_length * speed**2
-        self._backward = speed.mean(axis=1) < 0.0
-        self._carriers = prepared.carriers
-        self._pulled = _pulled_span(prepared)
-        smallest = float(np.min(prepared.radii))
-        reaches = [float(np.linalg.norm(one.place(0.0)[1])) for one in self._carriers]
-        self._scales = np.array(
-            [max(float(np.nanmax(np.abs(tension), initial=0.0)), 1e-9), *(smallest / one for one in reaches)]
-        )
-        self._places = _places(prepared, centers)
-        self._held = np.zeros((len(tension), self._scales.size))
-        rows, still = np.arange(len(tension)), self.start
-        self._held = self._residual(rows, np.ones(len(rows)), still)
-
-    @property
-    def start(self) -> FloatArray:
-        """The unknowns in the present states."""
-        return np.column_stack([self.mean, np.zeros((self.mean.size, len(self._carriers)))])
-
-    def use(self, rows: IntArray, factor: FloatArray, unknowns: FloatArray) -> FloatArray:
-        """What s is at each pulley, shape (n, pulleys); inf where the belt lifts off."""
-        tension, wrap = self._tension(rows, factor, unknowns), self._geometry(rows, unknowns).wrap
-        before, after = across(tension - self._lifted[rows], self._prepared)
-        held = (before + after) * np.tanh(0.5 * self._prepared.frictions * wrap)
-        return np.where(held > 0.0, np.abs(before - after) / held, np.where(np.isnan(held), np.nan, np.inf))
-
-    def loaded(self) -> BoolArray:
-        """Whether a pulley has a load, shape (n, pulleys)."""
-        before, after = across(self.differences + self.mean[:, None], self._prepared)
-        return np.asarray(np.abs(before - after) > UNLOADED * np.abs(before + after))
-
-    def solve(self, rows: IntArray, factor: FloatArray, unknowns: FloatArray) -> FloatArray:
-        """The unknowns with other loads, by Newton's method from a guess; NaN where there is no balance.
-
-        The belt presses on every pulley: where it does not, it has slid before.
-        """
-        found, step = unknowns.copy(), np.full(unknowns.shape, np.inf)
-        edge = np.max(self._lifted[rows] - factor[:, None] * self.differences[rows], axis=1)
-        found[:, 0] = np.maximum(found[:, 0], edge + _PRESSED * np.abs(self.mean[rows]))
-        for _ in range(_MOST_ITERATIONS):
-            off = self._residual(rows, factor, found)
-            slopes = np.empty((*off.shape, off.shape[1]))
-            for one, scale in enumerate(self._scales):
-                moved = found.copy()
-                moved[:, one] += _DIFFERENCE * scale
-                slopes[:, :, one] = (self._residual(rows, factor, moved) - off) / (_DIFFERENCE * scale)
-            step = -_solved(slopes, off)
-            step[:, 1:] = np.clip(step[:, 1:], -_LONGEST * self._scales[1:], _LONGEST * self._scales[1:])
-            step[:, 0] = np.maximum(step[:, 0], (_PRESSED - 1.0) * (found[:, 0] - edge))
-            found = found + step
-            if not np.nanmax(np.abs(step) / self._scales, initial=0.0) > _CONVERGED:
-                break
-        lost = np.any(~(np.abs(step) <= 1e3 * _CONVERGED * self._scales), axis=1)
-        found[lost] = np.nan
-        return found
-
-    def _tension(self, rows: IntArray, factor: FloatArray, unknowns: FloatArray) -> FloatArray:
-        return np.asarray(unknowns[:, :1] + factor[:, None] * self.differences[rows])
-
-    def _residual(self, rows: IntArray, factor: FloatArray, unknowns: FloatArray) -> FloatArray:
-        """What the balances miss: of the mean tension over its stiffness first, then of each tensioner."""
-        tension, shape = self._tension(rows, factor, unknowns), self._geometry(rows, unknowns)
-        missing = [self._belt_on(rows, tension, shape) if self._pulled is None else tension[:, self._pulled]]
-        pressing = tension - self._lifted[rows]
-        for number, one in enumerate(self._carriers):
-            before, after = (
-                pressing[:, span, None] * shape.directions[:, span] for span in (one.pulley - 1, one.pulley)
-            )
-            belt = np.sum((after - before) * shape.slopes[:, number], axis=1)
-            place = self._places[rows, number] + unknowns[:, 1 + number]
-            missing.append(belt + _spring(one.tensioner, place))
-        return np.column_stack(missing) - self._held[rows]
-
-    def _belt_on(self, rows: IntArray, tension: FloatArray, shape: _Geometry) -> FloatArray:
-        """Unstretched length of the belt on its path, m."""
-        prepared = self._prepared
-        law, radii, friction = prepared.belt.stretch_parameters, np.abs(prepared.path.radii), prepared.frictions
-        lifted = across(self._lifted[rows], prepared)[1]
-        before, after = across(tension, prepared)
-        reaching = np.where(self._backward[rows, None], after, before)
-        least = 1e-9 * self._scales[0]
-        tight, slack = (np.maximum(choice(before, after) - lifted, least) for choice in (np.maximum, np.minimum))
-        ratio = np.log(tight / slack)
-        slid = np.minimum(ratio / np.maximum(friction, 1e-12), shape.wrap)
-        sliding = lifted + np.where(ratio > 1e-9, (tight - slack) / np.maximum(ratio, 1e-9), tight)
-        part = np.divide(slid, shape.wrap, out=np.zeros_like(slid), where=shape.wrap > 0.0)
-        mean = (1.0 - part) * reaching + part * sliding
-        sunk = np.maximum(mean - lifted, 0.0) / (radii * prepared.contact_stiffness)
-        arcs = shape.wrap * (radii - sunk) * ((1.0 - part) / law.stretch(reaching) + part / law.stretch(sliding))
-        spans = shape.lengths / law.stretch(tension)
-        return np.asarray(spans.sum(axis=1) + arcs.sum(axis=1))
-
-    def _geometry(self, rows: IntArray, unknowns: FloatArray) -> _Geometry:
-        """The path with the tensioners where the unknowns have them."""
-        centers, slopes = self._centers[rows].copy(), np.empty((len(rows), len(self._carriers), 2))
-        for number, one in enumerate(self._carriers):
-            way, along = unknowns[:, 1 + number], one.place(0.0)
-            pivot = one.tensioner.anchor
-            if pivot is None:
-                slopes[:, number] = along[1]
-                centers[:, one.pulley] += way[:, None] * along[1]
-                continue
-            arm = centers[:, one.pulley] - np.array(pivot)
-            sense = np.sign(_turned(along[0] - np.array(pivot)) @ along[1])
-            cosine, sine = np.cos(way)[:, None], sense * np.sin(way)[:, None]
-            arm = cosine * arm + sine * _turned(arm)
-            centers[:, one.pulley] = pivot + arm
-            slopes[:, number] = sense * _turned(arm)
-        radii, ends = self._prepared.path.radii, self._prepared.path.ends
-        directions, points = span_directions(centers, radii, ends), span_points(centers, radii, ends)
-        lengths = np.linalg.norm(points[:, :, 1] - points[:, :, 0], axis=-1)
-        return _Geometry(directions, lengths, wrap_angles(directions, radii), slopes)
-
-
-def _safeties(balance: _Balance) -> FloatArray:
+def _safeties(balance: TensionBalance) -> FloatArray:
     """Factors at which s = 1, shape (n, pulleys): between two powers of `_GROWTH`, by secants of 1 / s over 1 / f.
 
     1 / s is straight over 1 / f where the sum of both tensions, or one of them, is held.
@@ -231,27 +83,32 @@ def _safeties(balance: _Balance) -> FloatArray:
     present = balance.use(every, np.ones(every.size), balance.start)
     loaded = balance.loaded() & ~np.isnan(present)
     found = np.where(loaded, np.where(np.isinf(present), 0.0, 1.0 / present), np.nan)
+    between = list[tuple[IntArray, IntArray, _Point, _Point]]()
     for growth, open_ in (
         (_GROWTH, loaded & (present < 1.0)),
         (1.0 / _GROWTH, loaded & (present >= 1.0) & np.isfinite(present)),
     ):
-        rows, left = every, open_.copy()
-        last = _Point(np.ones(every.size), balance.start, 1.0 / present)
+        left, last = open_.copy(), _Point(np.ones(every.size), balance.start, 1.0 / present)
         for step in range(1, _STEPS + 1):
             rows = np.flatnonzero(left.any(axis=1))
             if not rows.size:
                 break
             before = last.of(rows)
             factor = np.full(rows.size, growth**step)
-            guess = before.unknowns
-            here = _at(balance, rows, factor, guess)
+            here = _at(balance, rows, factor, before.unknowns)
             crossed = left[rows] & ((here.spare <= 1.0) if growth > 1.0 else (here.spare >= 1.0))
             one, pulley = np.nonzero(crossed)
-            found[rows[one], pulley] = _between(balance, rows[one], pulley, before.of(one), here.of(one))
+            between.append((rows[one], pulley, before.of(one), here.of(one)))
             left[rows] &= ~crossed
             beyond = left[rows] & np.isfinite(here.spare)
             found[rows] = np.where(beyond, factor[:, None] * here.spare, found[rows])
             last.put(rows, here)
+    if between:
+        rows, pulley = (np.concatenate(parts) for parts in list(zip(*between, strict=True))[:2])
+        low, high = (
+            _Point(*map(np.concatenate, zip(*points, strict=True))) for points in list(zip(*between, strict=True))[2:]
+        )
+        found[rows, pulley] = _between(balance, rows, pulley, low, high)
     return found
 
 
@@ -273,7 +130,7 @@ class _Point(NamedTuple):
             own[rows] = values
 
 
-def _at(balance: _Balance, rows: IntArray, factor: FloatArray, guess: FloatArray) -> _Point:
+def _at(balance: TensionBalance, rows: IntArray, factor: FloatArray, guess: FloatArray) -> _Point:
     """States under a factor on the loads."""
     unknowns = balance.solve(rows, factor, guess)
     lost = np.isnan(unknowns[:, 0])
@@ -282,63 +139,22 @@ def _at(balance: _Balance, rows: IntArray, factor: FloatArray, guess: FloatArray
     return _Point(factor, np.where(lost[:, None], guess, unknowns), spare)
 
 
-def _between(balance: _Balance, rows: IntArray, pulley: IntArray, low: _Point, high: _Point) -> FloatArray:
+def _between(balance: TensionBalance, rows: IntArray, pulley: IntArray, low: _Point, high: _Point) -> FloatArray:
     """Factors at which s = 1 of one pulley each, between two states, by the regula falsi (Illinois)."""
     own = np.arange(rows.size)
     near, far = 1.0 / low.factor, 1.0 / high.factor
     a, b = low.spare[own, pulley] - 1.0, high.spare[own, pulley] - 1.0
-    at_near, root = low.unknowns, near.copy()
-    for _ in range(_REFINEMENTS if rows.size else 0):
-        root = near - a * (far - near) / np.where(a == b, 1.0, b - a)
-        here = _at(balance, rows, 1.0 / root, at_near)
-        value = here.spare[own, pulley] - 1.0
-        same = np.sign(value) == np.sign(a)
-        near, far = np.where(same, root, near), np.where(same, far, root)
-        a, b = np.where(same, value, 0.5 * a), np.where(same, 0.5 * b, value)
-        at_near = np.where((same & (here.spare[own, pulley] > 0.0))[:, None], here.unknowns, at_near)
-        if not np.any((np.abs(value) > _ACCURACY) & (np.abs(far - near) > _ACCURACY * root)):
+    at_near, root, open_ = low.unknowns, near.copy(), own
+    for _ in range(_REFINEMENTS):
+        if not open_.size:
             break
+        root[open_] = (near - a * (far - near) / np.where(a == b, 1.0, b - a))[open_]
+        here = _at(balance, rows[open_], 1.0 / root[open_], at_near[open_])
+        spare = here.spare[np.arange(open_.size), pulley[open_]]
+        value = spare - 1.0
+        same = np.sign(value) == np.sign(a[open_])
+        near[open_], far[open_] = np.where(same, root[open_], near[open_]), np.where(same, far[open_], root[open_])
+        a[open_], b[open_] = np.where(same, value, 0.5 * a[open_]), np.where(same, 0.5 * b[open_], value)
+        at_near[open_] = np.where((same & (spare > 0.0))[:, None], here.unknowns, at_near[open_])
+        open_ = open_[(np.abs(value) > _ACCURACY) & (np.abs(far - near)[open_] > _ACCURACY * root[open_])]
     return np.asarray(1.0 / root)
-
-
-def _pulled_span(prepared: Prepared) -> int | None:
-    """Number of a span at an end that is pulled; None where nothing pulls."""
-    spans = (-1, -2)  # the last span comes from the first end, and the one before reaches the second one
-    return next((span for span, end in zip(spans, prepared.ends, strict=False) if not end.held), None)
-
-
-def _places(prepared: Prepared, centers: FloatArray) -> FloatArray:
-    """Where tensioners stand that carry pulleys, m or rad, shape (n, K)."""
-    found = np.empty((len(centers), len(prepared.carriers)))
-    for number, one in enumerate(prepared.carriers):
-        (nominal, along), pivot = one.place(0.0), one.tensioner.anchor
-        if pivot is None:
-            found[:, number] = (centers[:, one.pulley] - nominal) @ along
-        else:
-            arm, here = nominal - np.array(pivot), centers[:, one.pulley] - np.array(pivot)
-            sense = np.sign(_turned(arm) @ along)
-            found[:, number] = sense * np.arctan2(here @ _turned(arm), here @ arm)
-    return found
-
-
-def _spring(tensioner: MovingTensioner, place: FloatArray) -> FloatArray:
-    """Force of spring and stops at places, N or N m."""
-    row = tensioner.spring
-    low, high = (np.maximum(depth, 0.0) for depth in (row["lower"] - place, place - row["upper"]))
-    return np.asarray(row["preload"] - row["rate"] * place + row["stop_stiffness"] * (low - high))
-
-
-def _solved(slopes: FloatArray, off: FloatArray) -> FloatArray:
-    """Solutions of many small systems; those of singular ones are the shortest."""
-    try:
-        return np.asarray(np.linalg.solve(slopes, off[:, :, None])[:, :, 0])
-    except np.linalg.LinAlgError:
-        known = np.isfinite(slopes).all(axis=(1, 2)) & np.isfinite(off).all(axis=1)
-        found = np.full_like(off, np.nan)
-        found[known] = (np.linalg.pinv(slopes[known]) @ off[known, :, None])[:, :, 0]
-        return found
-
-
-def _turned(vectors: FloatArray) -> FloatArray:
-    """Vectors turned by a quarter to the left, shape (..., 2)."""
-    return np.stack([-vectors[..., 1], vectors[..., 0]], axis=-1)

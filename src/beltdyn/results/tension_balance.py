@@ -1,0 +1,259 @@
+"""The balance that holds the tensions of a belt: its unstretched length, and its tensioners.
+
+Pulleys at fixed centers keep the belt's unstretched length on its path: spans at T_i, arcs at the tension with which
+the belt reaches them up to where it slides, and penetration. A tensioner moves until spring and stops balance the
+belt; an end of an open belt that is pulled keeps its tension. All are taken as changes of a state that is known: what
+else holds a tensioner there, as weight and dry friction, goes on holding it.
+"""
+
+from copy import copy
+from typing import NamedTuple, Self
+
+import numpy as np
+
+from beltdyn.arrays import BoolArray, FloatArray, IntArray
+from beltdyn.machines.tensioners.tensioner import MovingTensioner
+from beltdyn.model import Prepared
+from beltdyn.model.path import span_directions, span_points, wrap_angles
+from beltdyn.results.mechanics import UNLOADED, across
+
+_MOST_ITERATIONS = 40
+_CONVERGED = 1e-9
+"""Step of Newton's method, over the scale of each unknown."""
+_DIFFERENCE = 1e-6
+"""Step of difference quotients, over the scale of each unknown."""
+_PRESSED = 0.1
+"""Least tension above that at which the belt lifts off: of a guess over the mean tension, of a step over the last."""
+_LONGEST = 0.2
+"""Step of Newton's method for the place of a tensioner, over the way on which it moves by the smallest radius."""
+
+
+class States(NamedTuple):
+    """States in balance, a row for each."""
+
+    tension: FloatArray
+    """Of spans, N, shape (n, spans)."""
+    positions: FloatArray
+    """Of tensioners, m or rad, shape (n, K)."""
+    centers: FloatArray
+    """Of pulleys, m, shape (n, pulleys, 2)."""
+    wrap: FloatArray
+    """rad, shape (n, pulleys)."""
+
+
+class _Geometry(NamedTuple):
+    """The path with tensioners at some places, a row for each state."""
+
+    centers: FloatArray
+    """Of pulleys, m, shape (n, pulleys, 2)."""
+    directions: FloatArray
+    """Unit vectors along spans, shape (n, spans, 2)."""
+    lengths: FloatArray
+    """Of spans, m."""
+    wrap: FloatArray
+    """rad, shape (n, pulleys)."""
+    slopes: FloatArray
+    """Derivatives of the centers of carried pulleys with respect to the places of their tensioners, shape (n, K, 2)."""
+
+
+class TensionBalance:
+    """What holds the tension of a belt, as a change of known states: a row for each.
+
+    Unknowns are the mean tension, and how far each tensioner moves.
+
+    Parameters
+    ----------
+    prepared : Prepared
+        The drive.
+    tension, speed : ndarray, shape (n, spans)
+        Span tensions, N, and belt speeds, m/s, of the known states.
+    centers : ndarray, shape (n, pulleys, 2)
+        Where the pulleys are in them, m.
+    """
+
+    def __init__(self, prepared: Prepared, tension: FloatArray, speed: FloatArray, centers: FloatArray) -> None:
+        self._prepared, self._centers = prepared, centers
+        self.mean = tension.mean(axis=1)
+        self.differences = tension - self.mean[:, None]
+        self._lifted = prepared.belt.mass_per_length * speed**2
+        self._backward = speed.mean(axis=1) < 0.0
+        self._carriers = prepared.carriers
+        self._pulled = _pulled_span(prepared)
+        smallest = float(np.min(prepared.radii))
+        reaches = [float(np.linalg.norm(one.place(0.0)[1])) for one in self._carriers]
+        self._scales = np.array(
+            [max(float(np.nanmax(np.abs(tension), initial=0.0)), 1e-9), *(smallest / one for one in reaches)]
+        )
+        self._places = _places(prepared, centers)
+        self._along = [one.place(0.0) for one in self._carriers]
+        self._held = np.zeros((len(tension), self._scales.size))
+        rows, still = np.arange(len(tension)), self.start
+        self._held = self._residual(rows, np.ones(len(rows)), still)
+
+    def under(self, differences: FloatArray, speed: float | FloatArray) -> Self:
+        """The balance under other loads at another belt speed (m/s), about its one known state.
+
+        Parameters
+        ----------
+        differences : ndarray, shape (n, spans)
+            Tensions less their mean, N.
+        speed : float or ndarray, shape (n,)
+            Of the belt in all spans, m/s.
+        """
+        other, count = copy(self), len(differences)
+        for name in ("mean", "_centers", "_places", "_held"):
+            setattr(other, name, np.repeat(getattr(self, name)[:1], count, axis=0))
+        other.differences = differences
+        flowing = np.broadcast_to(np.asarray(speed, dtype=float), count)
+        other._lifted = self._prepared.belt.mass_per_length * np.repeat(flowing[:, None] ** 2, differences.shape[1], 1)
+        other._backward = flowing < 0.0
+        return other
+
+    def states(self) -> "States":
+        """The states that are in balance; NaN where there is none."""
+        rows, factor = np.arange(self.mean.size), np.ones(self.mean.size)
+        unknowns = self.solve(rows, factor, self.start)
+        shape = self._geometry(rows, unknowns)
+        return States(self._tension(rows, factor, unknowns), self._places + unknowns[:, 1:], shape.centers, shape.wrap)
+
+    @property
+    def start(self) -> FloatArray:
+        """The unknowns in the present states."""
+        return np.column_stack([self.mean, np.zeros((self.mean.size, len(self._carriers)))])
+
+    def use(self, rows: IntArray, factor: FloatArray, unknowns: FloatArray) -> FloatArray:
+        """What s is at each pulley, shape (n, pulleys); inf where the belt lifts off."""
+        tension, wrap = self._tension(rows, factor, unknowns), self._geometry(rows, unknowns).wrap
+        before, after = across(tension - self._lifted[rows], self._prepared)
+        held = (before + after) * np.tanh(0.5 * self._prepared.frictions * wrap)
+        return np.where(held > 0.0, np.abs(before - after) / held, np.where(np.isnan(held), np.nan, np.inf))
+
+    def loaded(self) -> BoolArray:
+        """Whether a pulley has a load, shape (n, pulleys)."""
+        before, after = across(self.differences + self.mean[:, None], self._prepared)
+        return np.asarray(np.abs(before - after) > UNLOADED * np.abs(before + after))
+
+    def solve(self, rows: IntArray, factor: FloatArray, unknowns: FloatArray) -> FloatArray:
+        """The unknowns with other loads, by Newton's method from a guess; NaN where there is no balance.
+
+        The belt presses on every pulley: where it does not, it has slid before.
+        """
+        found, step = unknowns.copy(), np.full(unknowns.shape, np.inf)
+        edge = np.max(self._lifted[rows] - factor[:, None] * self.differences[rows], axis=1)
+        found[:, 0] = np.maximum(found[:, 0], edge + _PRESSED * np.abs(self.mean[rows]))
+        for _ in range(_MOST_ITERATIONS):
+            off = self._residual(rows, factor, found)
+            slopes = np.empty((*off.shape, off.shape[1]))
+            for one, scale in enumerate(self._scales):
+                moved = found.copy()
+                moved[:, one] += _DIFFERENCE * scale
+                slopes[:, :, one] = (self._residual(rows, factor, moved) - off) / (_DIFFERENCE * scale)
+            step = -_solved(slopes, off)
+            step[:, 1:] = np.clip(step[:, 1:], -_LONGEST * self._scales[1:], _LONGEST * self._scales[1:])
+            step[:, 0] = np.maximum(step[:, 0], (_PRESSED - 1.0) * (found[:, 0] - edge))
+            found = found + step
+            if not np.nanmax(np.abs(step) / self._scales, initial=0.0) > _CONVERGED:
+                break
+        lost = np.any(~(np.abs(step) <= 1e3 * _CONVERGED * self._scales), axis=1)
+        found[lost] = np.nan
+        return found
+
+    def _tension(self, rows: IntArray, factor: FloatArray, unknowns: FloatArray) -> FloatArray:
+        return np.asarray(unknowns[:, :1] + factor[:, None] * self.differences[rows])
+
+    def _residual(self, rows: IntArray, factor: FloatArray, unknowns: FloatArray) -> FloatArray:
+        """What the balances miss: of the mean tension over its stiffness first, then of each tensioner."""
+        tension, shape = self._tension(rows, factor, unknowns), self._geometry(rows, unknowns)
+        missing = [self._belt_on(rows, tension, shape) if self._pulled is None else tension[:, self._pulled]]
+        pressing = tension - self._lifted[rows]
+        for number, one in enumerate(self._carriers):
+            before, after = (
+                pressing[:, span, None] * shape.directions[:, span] for span in (one.pulley - 1, one.pulley)
+            )
+            belt = np.sum((after - before) * shape.slopes[:, number], axis=1)
+            place = self._places[rows, number] + unknowns[:, 1 + number]
+            missing.append(belt + _spring(one.tensioner, place))
+        return np.column_stack(missing) - self._held[rows]
+
+    def _belt_on(self, rows: IntArray, tension: FloatArray, shape: _Geometry) -> FloatArray:
+        """Unstretched length of the belt on its path, m."""
+        prepared = self._prepared
+        law, radii, friction = prepared.belt.stretch_parameters, np.abs(prepared.path.radii), prepared.frictions
+        lifted = across(self._lifted[rows], prepared)[1]
+        before, after = across(tension, prepared)
+        reaching = np.where(self._backward[rows, None], after, before)
+        least = 1e-9 * self._scales[0]
+        tight, slack = (np.maximum(choice(before, after) - lifted, least) for choice in (np.maximum, np.minimum))
+        ratio = np.log(tight / slack)
+        slid = np.minimum(ratio / np.maximum(friction, 1e-12), shape.wrap)
+        sliding = lifted + np.where(ratio > 1e-9, (tight - slack) / np.maximum(ratio, 1e-9), tight)
+        part = np.divide(slid, shape.wrap, out=np.zeros_like(slid), where=shape.wrap > 0.0)
+        mean = (1.0 - part) * reaching + part * sliding
+        sunk = np.maximum(mean - lifted, 0.0) / (radii * prepared.contact_stiffness)
+        arcs = shape.wrap * (radii - sunk) * ((1.0 - part) / law.stretch(reaching) + part / law.stretch(sliding))
+        spans = shape.lengths / law.stretch(tension)
+        return np.asarray(spans.sum(axis=1) + arcs.sum(axis=1))
+
+    def _geometry(self, rows: IntArray, unknowns: FloatArray) -> _Geometry:
+        """The path with the tensioners where the unknowns have them."""
+        centers, slopes = self._centers[rows].copy(), np.empty((len(rows), len(self._carriers), 2))
+        for number, one in enumerate(self._carriers):
+            way, along = unknowns[:, 1 + number], self._along[number]
+            pivot = one.tensioner.anchor
+            if pivot is None:
+                slopes[:, number] = along[1]
+                centers[:, one.pulley] += way[:, None] * along[1]
+                continue
+            arm = centers[:, one.pulley] - np.array(pivot)
+            sense = np.sign(_turned(along[0] - np.array(pivot)) @ along[1])
+            cosine, sine = np.cos(way)[:, None], sense * np.sin(way)[:, None]
+            arm = cosine * arm + sine * _turned(arm)
+            centers[:, one.pulley] = pivot + arm
+            slopes[:, number] = sense * _turned(arm)
+        radii, ends = self._prepared.path.radii, self._prepared.path.ends
+        directions, points = span_directions(centers, radii, ends), span_points(centers, radii, ends)
+        lengths = np.linalg.norm(points[:, :, 1] - points[:, :, 0], axis=-1)
+        return _Geometry(centers, directions, lengths, wrap_angles(directions, radii), slopes)
+
+
+def _pulled_span(prepared: Prepared) -> int | None:
+    """Number of a span at an end that is pulled; None where nothing pulls."""
+    spans = (-1, -2)  # the last span comes from the first end, and the one before reaches the second one
+    return next((span for span, end in zip(spans, prepared.ends, strict=False) if not end.held), None)
+
+
+def _places(prepared: Prepared, centers: FloatArray) -> FloatArray:
+    """Where tensioners stand that carry pulleys, m or rad, shape (n, K)."""
+    found = np.empty((len(centers), len(prepared.carriers)))
+    for number, one in enumerate(prepared.carriers):
+        (nominal, along), pivot = one.place(0.0), one.tensioner.anchor
+        if pivot is None:
+            found[:, number] = (centers[:, one.pulley] - nominal) @ along
+        else:
+            arm, here = nominal - np.array(pivot), centers[:, one.pulley] - np.array(pivot)
+            sense = np.sign(_turned(arm) @ along)
+            found[:, number] = sense * np.arctan2(here @ _turned(arm), here @ arm)
+    return found
+
+
+def _spring(tensioner: MovingTensioner, place: FloatArray) -> FloatArray:
+    """Force of spring and stops at places, N or N m."""
+    row = tensioner.spring
+    low, high = (np.maximum(depth, 0.0) for depth in (row["lower"] - place, place - row["upper"]))
+    return np.asarray(row["preload"] - row["rate"] * place + row["stop_stiffness"] * (low - high))
+
+
+def _solved(slopes: FloatArray, off: FloatArray) -> FloatArray:
+    """Solutions of many small systems; those of singular ones are the shortest."""
+    try:
+        return np.asarray(np.linalg.solve(slopes, off[:, :, None])[:, :, 0])
+    except np.linalg.LinAlgError:
+        known = np.isfinite(slopes).all(axis=(1, 2)) & np.isfinite(off).all(axis=1)
+        found = np.full_like(off, np.nan)
+        found[known] = (np.linalg.pinv(slopes[known]) @ off[known, :, None])[:, :, 0]
+        return found
+
+
+def _turned(vectors: FloatArray) -> FloatArray:
+    """Vectors turned by a quarter to the left, shape (..., 2)."""
+    return np.stack([-vectors[..., 1], vectors[..., 0]], axis=-1)
