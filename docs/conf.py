@@ -4,6 +4,9 @@ import sys
 from collections.abc import Mapping
 from importlib.metadata import version as installed_version
 from pathlib import Path
+from typing import Any
+
+import numpy as np
 
 from beltdyn.model import Entry, read_catalogue
 from beltdyn.results import COORDINATES, VARIABLES, Variable
@@ -91,3 +94,14 @@ html_theme_options = {
     "pygments_dark_style": "a11y-high-contrast-dark",
 }
 html_sidebars = {page: [] for page in ("index", "tutorial")}  # without pages below them
+
+
+def describe_record(app: object, what: str, name: str, kind: object, options: object, lines: list[str]) -> None:
+    """Name the fields of a record type, whose docstring is that of all NumPy types."""
+    if isinstance(kind, np.dtype):
+        lines[:] = [f"A NumPy record type with the fields {', '.join(kind.names or ())}."]
+
+
+def setup(app: Any) -> None:
+    """Called by Sphinx."""
+    app.connect("autodoc-process-docstring", describe_record)

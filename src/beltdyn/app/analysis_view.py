@@ -32,30 +32,20 @@ _SUFFIXES = {"table": (".csv",), "measured": (".csv",), "study": (".toml",), "co
 
 
 class Option(NamedTuple):
-    """An option of an analysis.
-
-    Attributes
-    ----------
-    name : str
-        As its function has it.
-    kind : type
-        str, int or float: what is given; Path of a file in the folder of the page.
-    default : str
-        What holds where it is left open; empty where it must be given, or is chosen.
-    required : bool
-        Whether it must be given.
-    about : str
-        What it means.
-    takes_unit : bool
-        Whether a number may have a unit.
-    """
+    """An option of an analysis."""
 
     name: str
+    """As its function has it."""
     kind: type
+    """str, int or float: what is given; Path of a file in the folder of the page."""
     default: str
+    """What holds where it is left open; empty where it must be given, or is chosen."""
     required: bool
+    """Whether it must be given."""
     about: str
+    """What it means."""
     takes_unit: bool = False
+    """Whether a number may have a unit."""
 
     @property
     def suffixes(self) -> tuple[str, ...]:

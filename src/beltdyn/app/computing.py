@@ -48,49 +48,33 @@ _MOST_TABS = 8
 
 
 class Asked(NamedTuple):
-    """The request of a tab.
-
-    Attributes
-    ----------
-    what : str
-        "rest", "running" or "modes".
-    tab : str
-        Which tab.
-    text : str
-        The drive file.
-    folder : Path
-        Where its relative paths start.
-    speed, load : float
-        Factors on the speed of the pulley that drives, and on all torques and loads.
-    """
+    """The request of a tab."""
 
     what: str
+    """"rest", "running" or "modes"."""
     tab: str
+    """Which tab."""
     text: str
+    """The drive file."""
     folder: Path
+    """Where its relative paths start."""
     speed: float = 1.0
+    """Factor on the speed of the driving pulley."""
     load: float = 1.0
+    """Factor on all torques and loads."""
 
 
 class Answer(NamedTuple):
-    """Numbers of a drive.
-
-    Attributes
-    ----------
-    parts : tuple of Table or Facts
-        What is shown.
-    warnings : tuple of str
-        What to know.
-    error : str
-        Why there are no numbers; empty otherwise.
-    seconds : float
-        How long it took.
-    """
+    """Numbers of a drive."""
 
     parts: tuple[Table | Facts, ...]
+    """What is shown."""
     warnings: tuple[str, ...]
+    """What to know."""
     error: str
+    """Why there are no numbers; empty otherwise."""
     seconds: float
+    """How long it took."""
 
 
 class _Known(NamedTuple):

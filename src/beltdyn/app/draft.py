@@ -16,21 +16,14 @@ _FILES = ("file", "catalogue")
 
 
 class Draft(NamedTuple):
-    """A possibly invalid drive file.
-
-    Attributes
-    ----------
-    data : dict
-        What it holds.
-    drive : Drive or None
-        The drive; none where something is wrong.
-    told : list of Told
-        What is wrong, in the words of the command line.
-    """
+    """A possibly invalid drive file."""
 
     data: Mapping[str, Any]
+    """What it holds."""
     drive: Drive | None
+    """The drive; none where something is wrong."""
     told: list[Told]
+    """What is wrong, in the words of the command line."""
 
     def told_at(self, location: Location) -> list[str]:
         """Errors of a value, or of a group as a whole."""

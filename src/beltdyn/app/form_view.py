@@ -15,28 +15,19 @@ from beltdyn.parts.toml_edits import Edit, Location
 
 
 class Row(NamedTuple):
-    """A row of a form.
-
-    Attributes
-    ----------
-    what : str
-        "field", a key; "group", a group by its kind or that is there or not; "entry", one of a list, which can be taken
-        away; "add", which adds one; or "more", which shows the other keys of a group.
-    depth : int
-        How deep it stands.
-    location : tuple
-        Its location in the drive file: for "add" the list, for "more" the group.
-    field : Field or None
-        The key; none of "more" and "entry".
-    kinds : tuple of str
-        Kinds to choose out of, of groups and entries; none where there are no kinds.
-    """
+    """A row of a form."""
 
     what: Literal["field", "group", "entry", "add", "more"]
+    """"field", a key; "group", a group by its kind or that is there or not; "entry", one of a list, which can be
+    taken away; "add", which adds one; or "more", which shows the other keys of a group."""
     depth: int
+    """How deep it stands."""
     location: Location
+    """Its location in the drive file: for "add" the list, for "more" the group."""
     field: Field | None = None
+    """The key; none of "more" and "entry"."""
     kinds: tuple[str, ...] = ()
+    """Kinds to choose out of, of groups and entries; none where there are no kinds."""
 
     @property
     def shape(self) -> tuple[object, ...]:

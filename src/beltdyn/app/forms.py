@@ -28,37 +28,25 @@ _SHORT_OF: Mapping[str, tuple[str, ...]] = {
 
 
 class Field(NamedTuple):
-    """A key of a group in a form.
-
-    Attributes
-    ----------
-    location : tuple
-        Its location in the drive file.
-    form : str
-        What is given: a text, a number with or without unit, one of some choices, yes or no, a point, several numbers,
-        a group of keys, or a list of groups.
-    unit : str
-        SI unit of bare numbers; empty without one.
-    hint : str
-        What it means.
-    choices : tuple of str
-        Of a choice; kinds of a group, or of the groups of a list.
-    default : str
-        What holds where it is left open; empty where nothing does, or it is chosen.
-    first : bool
-        Whether it is shown from the start.
-    value : Any
-        What the file gives; None where it is left open.
-    """
+    """A key of a group in a form."""
 
     location: Location
+    """Its location in the drive file."""
     form: Form
+    """What is given: a text, a number with or without unit, one of some choices, yes or no, a point, several numbers,
+    a group of keys, or a list of groups."""
     unit: str
+    """SI unit of bare numbers; empty without one."""
     hint: str
+    """What it means."""
     choices: tuple[str, ...]
+    """Of a choice; kinds of a group, or of the groups of a list."""
     default: str
+    """What holds where it is left open; empty where nothing does, or it is chosen."""
     first: bool
+    """Whether it is shown from the start."""
     value: Any
+    """What the file gives; None where it is left open."""
 
     @property
     def key(self) -> str:

@@ -26,55 +26,38 @@ _OFTEN = 0.1
 
 
 class Step(NamedTuple):
-    """The progress of an analysis.
-
-    Attributes
-    ----------
-    part : float
-        The part that is done, 0 to 1.
-    phase : str
-        What it is at.
-    remaining : float
-        Seconds left, or NaN.
-    glimpse : Glimpse or None
-        A run as it stood when it was looked at last.
-    """
+    """The progress of an analysis."""
 
     part: float
+    """The part that is done, 0 to 1."""
     phase: str
+    """What it is at."""
     remaining: float
+    """Seconds left, or NaN."""
     glimpse: "Glimpse | None" = None
+    """A run as it stood when it was looked at last."""
 
 
 _STARTING = Step(0.0, "starting", math.nan)
 
 
 class Outcome(NamedTuple):
-    """The outcome of an analysis.
-
-    Attributes
-    ----------
-    status : str
-        "completed", "interrupted" or "failed".
-    error : str
-        Why it failed; empty otherwise.
-    parts : tuple of Table or Facts
-        What is shown of it.
-    warnings : tuple of str
-        What to know of it.
-    result, report : Path or None
-        The result file and the report, where there are any.
-    best : Path or None
-        The drive file that the analysis found, as an optimization does.
-    """
+    """The outcome of an analysis."""
 
     status: str
+    """"completed", "interrupted" or "failed"."""
     error: str = ""
+    """Why it failed; empty otherwise."""
     parts: tuple[Table | Facts, ...] = ()
+    """What is shown of it."""
     warnings: tuple[str, ...] = ()
+    """What to know of it."""
     result: Path | None = None
+    """The result file, if there is one."""
     report: Path | None = None
+    """The report, if there is one."""
     best: Path | None = None
+    """The drive file that the analysis found, as an optimization does."""
 
 
 class Job:

@@ -25,25 +25,17 @@ _PIECES = 60
 
 
 class Glimpse(NamedTuple):
-    """A run at one instant.
-
-    Attributes
-    ----------
-    time : float
-        s.
-    drawn : dict
-        What the canvas draws, ready for JSON: pieces of the belt with their colors, and pulleys with their angles;
-        lengths in mm, y down.
-    tension : tuple of float
-        Least and largest belt tension, N: the ends of the colors.
-    pulleys : Table
-        Speed, torque and hub load of each pulley.
-    """
+    """A run at one instant."""
 
     time: float
+    """s."""
     drawn: dict[str, Any]
+    """What the canvas draws, ready for JSON: pieces of the belt with their colors, and pulleys with their angles;
+    lengths in mm, y down."""
     tension: tuple[float, float]
+    """Least and largest belt tension, N: the ends of the colors."""
     pulleys: Table
+    """Speed, torque and hub load of each pulley."""
 
 
 class Watcher:

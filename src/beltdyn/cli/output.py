@@ -59,18 +59,12 @@ DOUBTFUL = 4
 
 
 class Extras(NamedTuple):
-    """Additional outputs beside a result file.
-
-    Attributes
-    ----------
-    csv : bool
-        Plain tables, in a folder.
-    report : bool
-        A page.
-    """
+    """Additional outputs beside a result file."""
 
     csv: bool
+    """Plain tables, in a folder."""
     report: bool
+    """A page."""
 
 
 NO_EXTRAS = Extras(csv=False, report=False)

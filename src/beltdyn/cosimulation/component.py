@@ -22,25 +22,18 @@ _INSTANT = 1e-9
 
 
 class ComponentState(NamedTuple):
-    """Where a component is, from `Component.state`.
-
-    Attributes
-    ----------
-    tolerance : float
-        With which it began.
-    wanted, applied : dict of str to float
-        Inputs that were set, and those that the drive has taken, by their names.
-    offset : float or None
-        Time of the host less that of the drive, s; None before the first step.
-    simulator : SimulatorState or None
-        None before the beginning.
-    """
+    """Where a component is, from `Component.state`."""
 
     tolerance: float
+    """With which it began."""
     wanted: dict[str, float]
+    """Inputs that were set."""
     applied: dict[str, float]
+    """Inputs that the drive has taken."""
     offset: float | None
+    """Time of the host less that of the drive, s; None before the first step."""
     simulator: SimulatorState | None
+    """None before the beginning."""
 
     def to_bytes(self) -> bytes:
         """All of it, with a checksum."""

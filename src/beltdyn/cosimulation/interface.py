@@ -21,28 +21,19 @@ _SPEED_UNIT, _TORQUE_UNIT, _CENTER_UNIT = "rad/s", "N m", "m"
 
 
 class Input(NamedTuple):
-    """An input of the drive.
-
-    Attributes
-    ----------
-    name : str
-        Its path in the drive file: ``pulley[NAME].speed``, ``pulley[NAME].torque``, or a coordinate of the center,
-        ``pulley[NAME].center[1]``.
-    pulley : str
-        Name of the pulley.
-    unit : str
-        rad/s, N m, or m.
-    meaning : str
-        In words.
-    start : float
-        By the drive file at the beginning; zero where it gives no torque.
-    """
+    """An input of the drive."""
 
     name: str
+    """Its path in the drive file: ``pulley[NAME].speed``, ``pulley[NAME].torque``, or a coordinate of the center,
+    ``pulley[NAME].center[1]``."""
     pulley: str
+    """Name of the pulley."""
     unit: str
+    """rad/s, N m, or m."""
     meaning: str
+    """In words."""
     start: float
+    """By the drive file at the beginning; zero where it gives no torque."""
 
     @property
     def is_speed(self) -> bool:
@@ -56,51 +47,37 @@ class Input(NamedTuple):
 
 
 class Output(NamedTuple):
-    """An output of the drive.
-
-    Attributes
-    ----------
-    name : str
-        That of `Simulator.outputs`.
-    unit : str
-        SI.
-    meaning : str
-        In words.
-    """
+    """An output of the drive."""
 
     name: str
+    """That of `Simulator.outputs`."""
     unit: str
+    """SI."""
     meaning: str
+    """In words."""
 
 
 class Interface(NamedTuple):
-    """The interface of a drive.
-
-    Attributes
-    ----------
-    title : str
-        What the drive is.
-    identifier : str
-        Name of the files of the unit: letters, digits and underscores.
-    begin, end, interval : float
-        Begin and end of the run that the drive file describes, and time between its outputs, s.
-    tolerance : float
-        ``simulation.rtol`` of the drive file.
-    inputs, outputs : tuple
-        What is set and read.
-    version : str
-        That of beltdyn.
-    """
+    """The interface of a drive."""
 
     title: str
+    """What the drive is."""
     identifier: str
+    """Name of the files of the unit: letters, digits and underscores."""
     begin: float
+    """Begin of the run of the drive file, s."""
     end: float
+    """End of the run of the drive file, s."""
     interval: float
+    """Time between outputs of the drive file, s."""
     tolerance: float
+    """``simulation.rtol`` of the drive file."""
     inputs: tuple[Input, ...]
+    """Variables that a host sets."""
     outputs: tuple[Output, ...]
+    """Variables that a host reads."""
     version: str = __version__
+    """That of beltdyn."""
 
     def write(self, folder: Path) -> Path:
         """Write it into a folder, where `read` finds it."""

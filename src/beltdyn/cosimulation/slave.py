@@ -93,20 +93,16 @@ _WARNING, _ERROR = 1, 3
 
 
 class Standard(NamedTuple):
-    """Names of a package that makes units.
-
-    Attributes
-    ----------
-    real : type
-        Variables that are real numbers.
-    causality, initial, variability : type
-        Enumerations.
-    """
+    """Names of a package that makes units."""
 
     real: Any
+    """Variables that are real numbers."""
     causality: Any
+    """Enumeration of the causality of variables."""
     initial: Any
+    """Enumeration of how initial values are given."""
     variability: Any
+    """Enumeration of the variability of variables."""
 
 
 class DriveSlave:

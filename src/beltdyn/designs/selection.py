@@ -77,35 +77,6 @@ class Task(NamedTuple):
 class Proposal:
     """A drive that carries the power.
 
-    Attributes
-    ----------
-    profile : str
-        Name in the catalogue.
-    belts : int
-        Ribs, or V-belts side by side.
-    driver_diameter, driven_diameter : float
-        Of the pulleys as sold, m.
-    nominal_length : float
-        Standard length of the belt, m.
-    distance : float
-        Center distance, m.
-    driven_speed : float
-        rad/s, without slip.
-    belt_speed : float
-        m/s.
-    rated_power : float
-        Of all belts, W.
-    utilization : float
-        Design power over rated power.
-    tension : float
-        At rest, of all belts, run in, N; `RUN_IN` times the least one.
-    hub_load : float
-        At rest, N.
-    frequency : float
-        First frequency of a span at rest, Hz.
-    face_width : float
-        Ribs times width, the measure of the price, m.
-
     Examples
     --------
     >>> best = bd.select(power="7.5 kW", speed="1450 rpm", driven_speed="700 rpm", service_factor=1.2)[0]
@@ -114,19 +85,33 @@ class Proposal:
     """
 
     profile: str
+    """Name in the catalogue."""
     belts: int
+    """Ribs, or V-belts side by side."""
     driver_diameter: float
+    """Diameter of the driver as sold, m."""
     driven_diameter: float
+    """Diameter of the driven pulley as sold, m."""
     nominal_length: float
+    """Standard length of the belt, m."""
     distance: float
+    """Center distance, m."""
     driven_speed: float
+    """rad/s, without slip."""
     belt_speed: float
+    """m/s."""
     rated_power: float
+    """Of all belts, W."""
     utilization: float
+    """Design power over rated power."""
     tension: float
+    """At rest, of all belts, run in, N; `RUN_IN` times the least one."""
     hub_load: float
+    """At rest, N."""
     frequency: float
+    """First frequency of a span at rest, Hz."""
     face_width: float
+    """Ribs times width, the measure of the price, m."""
     task: Task
     catalogue: str | None = None
 

@@ -34,27 +34,18 @@ class Work:
 
 @dataclass(frozen=True, slots=True)
 class Ending:
-    """How the analysis of a drive ended.
-
-    Attributes
-    ----------
-    status : str
-        "completed", "interrupted" by Ctrl-C, "failed", or "not started" before Ctrl-C.
-    error : str
-        Why it failed; empty otherwise.
-    summary : Summary or None
-        Summary of a run; None without output, or for other analyses.
-    warnings : tuple of str
-        The warnings.
-    kept : bool
-        Whether the file holds results.
-    """
+    """How the analysis of a drive ended."""
 
     status: str
+    """"completed", "interrupted" by Ctrl-C, "failed", or "not started" before Ctrl-C."""
     error: str = ""
+    """Why it failed; empty otherwise."""
     summary: Summary | None = None
+    """Summary of a run; None without output, or for other analyses."""
     warnings: tuple[str, ...] = ()
+    """The warnings."""
     kept: bool = False
+    """Whether the file holds results."""
 
 
 _parts: "Array[c_double]"

@@ -143,77 +143,54 @@ class ElementKind:
 
     A node has n coordinates, those of an element are e, shape (2 n,): of its first node, then of its second.  Part of
     them are v vectors of two components that carry the centerline, which consists of one or several Bezier curves.
-
-    Attributes
-    ----------
-    name : str
-        Value of ``belt.discretization``.
-    meaning : str
-        A phrase that says what it is.
-    element : type
-        Class of named tuples that begin with the fields of `Element`; kernels are found by it.
-    coordinates : tuple of str
-        Names of the coordinates of a material point, places first; n is their number times `points`.
-    vectors : tuple of int
-        Where in e the v vectors begin.
-    shift : tuple of float
-        What a shift of the whole belt does to each of them: 1 for places, 0 for derivatives.
-    control : callable
-        Control points from the vectors, shape (..., curves, degree + 1, v), for reference lengths (m), shape (...).
-    scale : callable
-        Lengths that turn changes of the n coordinates of a node into m, for a reference length of elements (m).
-    mass : callable
-        Mass matrices of elements, shape (..., 2 n, 2 n), from `Section` and reference lengths (m), shape (...).
-    nodal : callable
-        Coordinates of nodes, shape (N, n), on a curve: from places r, dr/dx and d2r/dx2 of the material points, each of
-        shape (N points, 2).
-    energy : kernel
-        Strain energy, J, from (element, e, length).
-    force : kernel
-        Called with (element, e, length, wanted, work); overwrites ``work.gradient`` by dU/de, and ``work.tangent`` by
-        d2U/de2 if that is wanted.
-    damping : kernel
-        Called with (element, e, velocity, length, factors, work); adds dR/d(de/dt) of the rate potential R to the
-        gradient, and its derivatives times `DampingFactors` to the tangent. Gives the powers lost in stretch and in
-        bending, W. By default there is none. An element through which the belt flows also adds d/d(de/dt) D e of it to
-        ``work.by_flow``, with a tangent.
-    tension : kernel
-        Tension that results report, N, from (element, metric, rate): q . q with q = dr/dx, and its rate. By default
-        `beltdyn.elements.kind.axial_tension`.
-    scratch : mapping of str to str or dtype
-        Further fields of ``work``, for `beltdyn.records.record`.
-    points : int
-        Material points of a node.
-    turned : int
-        Coordinate of a node with which the vector begins that a moment on the node turns; -1 if none does.
-    has_ends : bool
-        Whether a belt of such elements may be open, or closed by multipliers.
-    cubic_angle : callable
-        Angle of a pulley over which a cubic misses the circle as much as the element does over a given one (rad).
-    bent_strain : float
-        Strain of the centerline on a circle of radius R, without tension, over EI / (EA R^2).
     """
 
     name: str
+    """Value of ``belt.discretization``."""
     meaning: str
+    """A phrase that says what it is."""
     element: type
+    """Class of named tuples that begin with the fields of `Element`; kernels are found by it."""
     coordinates: tuple[str, ...]
+    """Names of the coordinates of a material point, places first; n is their number times `points`."""
     vectors: tuple[int, ...]
+    """Where in e the v vectors begin."""
     shift: tuple[float, ...]
+    """What a shift of the whole belt does to each of them: 1 for places, 0 for derivatives."""
     control: Callable[[FloatArray | float], FloatArray]
+    """Control points from the vectors, shape (..., curves, degree + 1, v), for reference lengths (m), shape (...)."""
     scale: Callable[[float], tuple[float, ...]]
+    """Lengths that turn changes of the n coordinates of a node into m, for a reference length of elements (m)."""
     mass: Callable[[Section, FloatArray | float], FloatArray]
+    """Mass matrices of elements, shape (..., 2 n, 2 n), from `Section` and reference lengths (m), shape (...)."""
     nodal: Callable[[FloatArray, FloatArray, FloatArray], FloatArray]
+    """Coordinates of nodes, shape (N, n), on a curve: from places r, dr/dx and d2r/dx2 of the material points, each of
+    shape (N points, 2)."""
     energy: Callable[..., float]
+    """Kernel: strain energy, J, from (element, e, length)."""
     force: Callable[..., None]
+    """Kernel: called with (element, e, length, wanted, work); overwrites ``work.gradient`` by dU/de, and
+    ``work.tangent`` by d2U/de2 if that is wanted."""
     damping: Callable[..., tuple[float, float]] = no_damping
+    """Kernel: called with (element, e, velocity, length, factors, work); adds dR/d(de/dt) of the rate potential R to
+    the gradient, and its derivatives times `DampingFactors` to the tangent. Gives the powers lost in stretch and in
+    bending, W. By default there is none. An element through which the belt flows also adds d/d(de/dt) D e of it to
+    ``work.by_flow``, with a tangent."""
     tension: Callable[..., float] = axial_tension
+    """Kernel: tension that results report, N, from (element, metric, rate): q . q with q = dr/dx, and its rate. By
+    default `beltdyn.elements.kind.axial_tension`."""
     scratch: Mapping[str, Any] = field(default_factory=dict)
+    """Further fields of ``work``, for `beltdyn.records.record`."""
     points: int = 1
+    """Material points of a node."""
     turned: int = -1
+    """Coordinate of a node with which the vector begins that a moment on the node turns; -1 if none does."""
     has_ends: bool = True
+    """Whether a belt of such elements may be open, or closed by multipliers."""
     cubic_angle: Callable[[FloatArray], FloatArray] = as_cubic
+    """Angle of a pulley over which a cubic misses the circle as much as the element does over a given one (rad)."""
     bent_strain: float = 0.0
+    """Strain of the centerline on a circle of radius R, without tension, over EI / (EA R^2)."""
 
     @property
     def dof(self) -> int:

@@ -25,20 +25,6 @@ class Alignment(NamedTuple):
     The fleeting angle is that between a span and the plane of a pulley which it meets. Spans leave one pulley and reach
     the next, so each has two of them.
 
-    Attributes
-    ----------
-    span_lengths : ndarray, shape (spans,)
-        m.
-    angles : ndarray, shape (spans, 2)
-        Fleeting angles at the pulley that each span leaves and at that which it reaches, rad.
-    worst : ndarray, shape (spans, 2)
-        Their largest sizes if all offsets and tilts deviate by their tolerances in the worst senses, rad.
-    limit : float
-        Largest fleeting angle of the belt, rad; NaN if unknown.
-    allowed_offset : ndarray, shape (spans,)
-        By how much more the pulleys of each span may be offset from each other along their shafts, m; negative where
-        the limit is exceeded, NaN without a limit.
-
     Examples
     --------
     >>> import numpy as np
@@ -49,10 +35,17 @@ class Alignment(NamedTuple):
     """
 
     span_lengths: FloatArray
+    """Lengths of the spans, m, shape (spans,)."""
     angles: FloatArray
+    """Fleeting angles at the pulley that each span leaves and at that which it reaches, rad, shape (spans, 2)."""
     worst: FloatArray
+    """Their largest sizes if all offsets and tilts deviate by their tolerances in the worst senses, rad, shape (spans,
+    2)."""
     limit: float
+    """Largest fleeting angle of the belt, rad; NaN if unknown."""
     allowed_offset: FloatArray
+    """By how much more the pulleys of each span may be offset from each other along their shafts, m; negative where
+    the limit is exceeded, NaN without a limit, shape (spans,)."""
 
 
 def alignment(drive: Drive, path: Path | None = None) -> Alignment:

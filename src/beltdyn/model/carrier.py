@@ -15,21 +15,14 @@ from beltdyn.model.pulley import Pulley
 
 @dataclass(frozen=True)
 class Carrier:
-    """A spring-loaded tensioner with the pulley that it carries.
-
-    Attributes
-    ----------
-    pulley : int
-        Number of the pulley.
-    tensioner : MovingTensioner
-        The tensioner.
-    row : record
-        Its row of `beltdyn.machines.tensioners.registry.TENSIONER_ROWS`, without weight.
-    """
+    """A spring-loaded tensioner with the pulley that it carries."""
 
     pulley: int
+    """Number of the pulley."""
     tensioner: MovingTensioner
+    """The tensioner."""
     row: np.record
+    """Its row of `beltdyn.machines.tensioners.registry.TENSIONER_ROWS`, without weight."""
 
     @property
     def constants(self) -> np.record:

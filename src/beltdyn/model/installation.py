@@ -14,27 +14,6 @@ from beltdyn.theory.sagging_span import lowest_frequency, sag_parameter
 class Installation:
     """The belt at rest, without friction.
 
-    Attributes
-    ----------
-    strain : float
-        Strain of the belt laid on its path, path / length - 1.
-    laid_tension : float
-        Tension of the laid belt, N.
-    tension : float
-        Mean tension of the spans with the penetration into the pulleys, N.
-    span_tensions : ndarray, shape (s,), N
-        Tension of each of s spans: the same in all, but for weight and the mesh.
-    penetrations : ndarray, shape (n,), m
-        Penetration into each pulley, in the middle of the arc.
-    tensioner_positions : ndarray, shape (K,), m or rad
-        Equilibrium positions of the sliding and rotary tensioners.
-    path : Path
-        The path with the tensioners there, without penetration.
-    hub_loads : ndarray, shape (n, 2), N
-        Force of the belt on each pulley; without weight T (u_out - u_in), of size 2 T sin(wrap angle / 2).
-    span_frequencies : ndarray, shape (s,), Hz
-        Lowest natural frequency of transverse vibration of each span, including bending stiffness and sag.
-
     Examples
     --------
     >>> installed = bd.model.install(drive)
@@ -43,14 +22,25 @@ class Installation:
     """
 
     strain: float
+    """Strain of the belt laid on its path, path / length - 1."""
     laid_tension: float
+    """Tension of the laid belt, N."""
     tension: float
+    """Mean tension of the spans with the penetration into the pulleys, N."""
     span_tensions: FloatArray
+    """Tension of each of s spans: the same in all, but for weight and the mesh, N, shape (s,)."""
     penetrations: FloatArray
+    """Penetration into each pulley, in the middle of the arc, m, shape (n,)."""
     tensioner_positions: FloatArray
+    """Equilibrium positions of the sliding and rotary tensioners, m or rad, shape (K,)."""
     path: Path
+    """The path with the tensioners there, without penetration."""
     hub_loads: FloatArray
+    """Force of the belt on each pulley; without weight T (u_out - u_in), of size 2 T sin(wrap angle / 2), N, shape
+    (n, 2)."""
     span_frequencies: FloatArray
+    """Lowest natural frequency of transverse vibration of each span, including bending stiffness and sag, Hz, shape
+    (s,)."""
 
 
 def span_frequencies(belt: Belt, path: Path, tensions: FloatArray, gravity: tuple[float, float]) -> FloatArray:

@@ -33,31 +33,6 @@ from beltdyn.model.tensioner_balance import TensionerBalance, all_balances, bala
 class Prepared:
     """A drive with all that it leaves open: what solvers, arrays of kernels and results are made of.
 
-    Attributes
-    ----------
-    drive : Drive
-        The drive as given: names, settings, and the text that results keep.
-    frame : Frame
-        Mesh of runs over time, with the reason.
-    belt : Belt
-        The belt with its length, and with the number and kind of elements of that mesh.
-    pulleys : tuple of Pulley
-        The pulleys where fixed tensioners hold them, with spring-loaded tensioners at zero.
-    contact : Contact
-        Contact with stiffness, damping and the parameters of friction.
-    tensioners : tuple of Tensioner
-        The tensioners with their take-up.
-    path : Path
-        The path around these pulleys.
-    carriers : tuple of Carrier
-        The spring-loaded tensioners with their pulleys.
-    choices : tuple of Choice
-        Numerical parameters that the drive leaves open, with the reasons of their values.
-    radii, rolling_radii : ndarray, shape (n,), m
-        Effective radii, and rolling radii of the bent belt without tension.
-    frictions : ndarray, shape (n,)
-        Friction coefficients, with the wedge factor on pulleys on the inside.
-
     Examples
     --------
     >>> prepared = bd.model.prepare(drive)
@@ -68,17 +43,29 @@ class Prepared:
     """
 
     drive: Drive
+    """The drive as given: names, settings, and the text that results keep."""
     frame: Frame
+    """Mesh of runs over time, with the reason."""
     belt: Belt
+    """The belt with its length, and with the number and kind of elements of that mesh."""
     pulleys: tuple[Pulley, ...]
+    """The pulleys where fixed tensioners hold them, with spring-loaded tensioners at zero."""
     contact: Contact
+    """Contact with stiffness, damping and the parameters of friction."""
     tensioners: tuple[Tensioner, ...]
+    """The tensioners with their take-up."""
     path: Path
+    """The path around these pulleys."""
     carriers: tuple[Carrier, ...]
+    """The spring-loaded tensioners with their pulleys."""
     choices: tuple[Choice, ...]
+    """Numerical parameters that the drive leaves open, with the reasons of their values."""
     radii: FloatArray
+    """Effective radii, m, shape (n,)."""
     rolling_radii: FloatArray
+    """Rolling radii of the bent belt without tension, m, shape (n,)."""
     frictions: FloatArray
+    """Friction coefficients, with the wedge factor on pulleys on the inside, shape (n,)."""
 
     def __reduce__(self) -> tuple[Callable[[Drive], "Prepared"], tuple[Drive]]:
         """Travel between processes as the drive, which is prepared there."""

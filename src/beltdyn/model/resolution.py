@@ -196,18 +196,12 @@ class OnPulleys(Protocol):
 
 @dataclass(frozen=True, slots=True)
 class Running:
-    """The operating point of a belt, as far as its mesh depends on it.
-
-    Attributes
-    ----------
-    tension : float
-        Mean tension, N.
-    lifted : float
-        Part of it that the belt's speed takes from the pulleys, m v^2, N.
-    """
+    """The operating point of a belt, as far as its mesh depends on it."""
 
     tension: float
+    """Mean tension, N."""
     lifted: float = 0.0
+    """Part of it that the belt's speed takes from the pulleys, m v^2, N."""
 
 
 def layer_lengths(drive: OnPulleys, tension: float) -> tuple[float, float]:

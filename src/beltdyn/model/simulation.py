@@ -68,24 +68,16 @@ SAME = 1e-11
 
 @dataclass(frozen=True)
 class Instants:
-    """Multiples of an interval from the start, and the end; fields along the belt are kept at some of them.
-
-    Attributes
-    ----------
-    interval : float
-        s.
-    end : float
-        s; a multiple that is nearer to it than a billionth of it is left out.
-    stride : int
-        Number of instants from one at which fields are recorded to the next; the end is one too.
-    begin : float
-        The first of them, s.
-    """
+    """Multiples of an interval from the start, and the end; fields along the belt are kept at some of them."""
 
     interval: float
+    """s."""
     end: float
+    """s; a multiple that is nearer to it than a billionth of it is left out."""
     stride: int = 1
+    """Number of instants from one at which fields are recorded to the next; the end is one too."""
     begin: float = 0.0
+    """The first of them, s."""
 
     @property
     def count(self) -> int:

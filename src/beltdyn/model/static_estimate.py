@@ -13,27 +13,18 @@ from beltdyn.theory.stretch import stretch_with_penetration
 
 @dataclass(frozen=True)
 class StaticEstimate:
-    """A belt at rest, without bending stiffness and weight.
-
-    Attributes
-    ----------
-    path : Path
-        Its path, without penetration.
-    length : float
-        Unstretched length, m.
-    stiffness : float
-        Of contact, N/m^2.
-    tension : float
-        N; zero for a slack belt.
-    penetrations : ndarray, shape (n,), m
-        Penetration into each pulley.
-    """
+    """A belt at rest, without bending stiffness and weight."""
 
     path: Path
+    """Its path, without penetration."""
     length: float
+    """Unstretched length, m."""
     stiffness: float
+    """Of contact, N/m^2."""
     tension: float
+    """N; zero for a slack belt."""
     penetrations: FloatArray
+    """Penetration into each pulley, m, shape (n,)."""
 
 
 def static_estimate(path: Path, belt: Belt, contact: Contact) -> StaticEstimate:

@@ -33,19 +33,6 @@ def aligned(values: Sequence[float], digits: int = 4) -> list[str]:
 class Finding:
     """A problem of a drive or its results, each part in whole sentences.
 
-    Attributes
-    ----------
-    fault : str
-        What is wrong, with its value and the rule that it breaks.
-    spoils : str
-        Which numbers it spoils, and by how much.
-    remedy : str
-        What to do.
-    kind : str
-        Name of the check that found it, if one did.
-    weight : float
-        The larger, the worse among findings of its kind: of many operating points the worst speaks for all.
-
     Raises
     ------
     ValueError
@@ -59,10 +46,15 @@ class Finding:
     """
 
     fault: str
+    """What is wrong, with its value and the rule that it breaks."""
     spoils: str
+    """Which numbers it spoils, and by how much."""
     remedy: str
+    """What to do."""
     kind: str = ""
+    """Name of the check that found it, if one did."""
     weight: float = 0.0
+    """The larger, the worse among findings of its kind: of many operating points the worst speaks for all."""
 
     def __post_init__(self) -> None:
         for part in (self.fault, self.spoils, self.remedy):
@@ -105,18 +97,12 @@ _RULES = {
 
 
 class Told(NamedTuple):
-    """An error message with its location.
-
-    Attributes
-    ----------
-    location : tuple of str or int
-        Keys and positions in lists that lead to what is wrong, as in the user's data; empty for the whole.
-    sentence : str
-        Value, rule and remedy.
-    """
+    """An error message with its location."""
 
     location: tuple[int | str, ...]
+    """Keys and positions in lists that lead to what is wrong, as in the user's data; empty for the whole."""
     sentence: str
+    """Value, rule and remedy."""
 
 
 def explain(error: ValidationError, model: type[BaseModel], data: Mapping[str, Any]) -> str:

@@ -19,21 +19,15 @@ _GROUPS = ("load", "hub")
 
 
 class Edit(NamedTuple):
-    """A change of one value.
-
-    Attributes
-    ----------
-    action : {"set", "remove", "insert"}
-        Give a key its value, and the groups on the way to it; take a key or an entry away; or put an entry into a list.
-    location : tuple of str or int
-        Where; of "insert" the last step is the position in the list, and the list is made if it is not there.
-    value : Any
-        Plain data of TOML; nothing for "remove".
-    """
+    """A change of one value."""
 
     action: Literal["set", "remove", "insert"]
+    """Give a key its value, and the groups on the way to it; take a key or an entry away; or put an entry into a
+    list."""
     location: Location
+    """Where; of "insert" the last step is the position in the list, and the list is made if it is not there."""
     value: Any = None
+    """Plain data of TOML; nothing for "remove"."""
 
 
 def changed_data(data: dict[str, Any], edits: Sequence[Edit]) -> dict[str, Any]:

@@ -34,15 +34,6 @@ STORED = ("kinetic_energy", "strain_energy", "penalty_energy", "spring_energy", 
 class Balance:
     """Mean powers over a part of a run, W.
 
-    Attributes
-    ----------
-    pulleys : tuple of float
-        Power into the drive at each shaft, positive for a driving shaft.
-    losses : dict of str to float
-        Power lost, by cause, such as "friction".
-    stored : float
-        Rate of change of the stored energy: kinetic, strain, contact, spring and potential energy.
-
     Examples
     --------
     >>> balance = bd.derived.balance(run)
@@ -51,8 +42,11 @@ class Balance:
     """
 
     pulleys: tuple[float, ...]
+    """Power into the drive at each shaft, positive for a driving shaft."""
     losses: Mapping[str, float]
+    """Power lost, by cause, such as "friction"."""
     stored: float
+    """Rate of change of the stored energy: kinetic, strain, contact, spring and potential energy."""
 
     @property
     def power_in(self) -> float:
@@ -122,18 +116,12 @@ def power_balance(recorded: Recorded, window: Window | None = None) -> Balance:
 
 
 class Closure(NamedTuple):
-    """Largest energy balance error of a run.
-
-    Attributes
-    ----------
-    time : float
-        When, s.
-    error : float
-        Closure error at that time, over the energy put in by then.
-    """
+    """Largest energy balance error of a run."""
 
     time: float
+    """When, s."""
     error: float
+    """Closure error at that time, over the energy put in by then."""
 
 
 def largest_closure(recorded: Recorded) -> Closure:

@@ -19,27 +19,18 @@ _STEPS = 2
 
 
 class BeltHistory(NamedTuple):
-    """What a material point of the belt meets.
-
-    Attributes
-    ----------
-    passed : ndarray, shape (k,)
-        Length of unstretched belt that has passed, m.
-    time : ndarray, shape (k,)
-        s.
-    tension : ndarray, shape (k, points)
-        N.
-    curvature : ndarray, shape (k, points)
-        1/m, positive on pulleys inside the belt.
-    pulley : ndarray of int, shape (k, points)
-        Number of the nearest pulley.
-    """
+    """What a material point of the belt meets."""
 
     passed: FloatArray
+    """Length of unstretched belt that has passed, m, shape (k,)."""
     time: FloatArray
+    """s, shape (k,)."""
     tension: FloatArray
+    """N, shape (k, points)."""
     curvature: FloatArray
+    """1/m, positive on pulleys inside the belt, shape (k, points)."""
     pulley: IntArray
+    """Number of the nearest pulley, shape (k, points)."""
 
 
 class _Fields(NamedTuple):

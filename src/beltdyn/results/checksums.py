@@ -37,29 +37,19 @@ _ATTEMPTS, _PAUSE = 10, 0.02
 
 
 class Checksums(NamedTuple):
-    """Checksums of the pages of a file.
-
-    Attributes
-    ----------
-    number : int
-        How many sets were written before.
-    place : int
-        Where this set begins.
-    end : int
-        Bytes that are covered.
-    pages : ndarray of uint32
-    earlier : mapping of int to int
-        Page -> the checksum before it was changed in place.
-    owner : str
-        The file that a writer has locked while the results grow.
-    """
+    """Checksums of the pages of a file."""
 
     number: int
+    """How many sets were written before."""
     place: int
+    """Where this set begins."""
     end: int
+    """Bytes that are covered."""
     pages: NDArray[np.uint32]
     earlier: Mapping[int, int]
+    """Page -> the checksum before it was changed in place."""
     owner: str = ""
+    """The file that a writer has locked while the results grow."""
 
     @property
     def size(self) -> int:

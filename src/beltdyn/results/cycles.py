@@ -19,18 +19,12 @@ from beltdyn.results.schema import Recorded
 
 @dataclass(frozen=True, eq=False)
 class Cycle:
-    """A repeating process.
-
-    Attributes
-    ----------
-    phase : ndarray, shape (outputs,)
-        Number of cycles gone by at every output, ascending.
-    count : float
-        Number of cycles n to take means over.
-    """
+    """A repeating process."""
 
     phase: FloatArray
+    """Number of cycles gone by at every output, ascending, shape (outputs,)."""
     count: float
+    """Number of cycles n to take means over."""
 
     def begin(self, time: FloatArray, end: FloatArray) -> FloatArray:
         """Instants `count` cycles before the given ones, or the first output's, s."""
@@ -40,21 +34,14 @@ class Cycle:
 
 @dataclass(frozen=True, eq=False)
 class Window:
-    """An averaging window, which ends with the last output.
-
-    Attributes
-    ----------
-    time : ndarray, shape (outputs,)
-        Times of all outputs, s.
-    cycles : tuple of Cycle
-        What means are taken over, one after the other.
-    turns : int
-        Number of turns of the belt among them; zero where not even one was taken.
-    """
+    """An averaging window, which ends with the last output."""
 
     time: FloatArray
+    """Times of all outputs, s, shape (outputs,)."""
     cycles: tuple[Cycle, ...]
+    """What means are taken over, one after the other."""
     turns: int = 0
+    """Number of turns of the belt among them; zero where not even one was taken."""
 
     @property
     def end(self) -> float:

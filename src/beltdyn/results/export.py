@@ -127,21 +127,14 @@ def _identifier(heading: str, taken: dict[str, Any]) -> str:
 
 
 class _Format(NamedTuple):
-    """An export format.
-
-    Attributes
-    ----------
-    place : callable
-        What the other two take, from a result file beside which to write.
-    require : callable
-        Makes sure that nothing of others is replaced there.
-    write : callable
-        Writes a result there; gives one path or several.
-    """
+    """An export format."""
 
     place: Callable[[Path], Path]
+    """What the other two take, from a result file beside which to write."""
     require: Callable[[Path, bool], None]
+    """Makes sure that nothing of others is replaced there."""
     write: Callable[[Any, Path, bool], Path | list[Path]]
+    """Writes a result there; gives one path or several."""
 
 
 FORMATS = MappingProxyType(

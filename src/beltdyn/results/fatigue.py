@@ -40,24 +40,16 @@ def known_variables(drive: Drive) -> list[str]:
 
 
 class Damage(NamedTuple):
-    """Damage of a belt by each pulley.
-
-    Attributes
-    ----------
-    cord : ndarray, shape (pulleys,)
-        Sum of cycles over cycles to failure (Miner); NaN without an S-N line.
-    rib : ndarray, shape (pulleys,)
-        Passages, in those of the reference condition; NaN without data.
-    turns : float
-        Turns of the belt.
-    force : float
-        Largest equivalent force in the cords, N; NaN without an S-N line.
-    """
+    """Damage of a belt by each pulley."""
 
     cord: FloatArray
+    """Sum of cycles over cycles to failure (Miner); NaN without an S-N line, shape (pulleys,)."""
     rib: FloatArray
+    """Passages, in those of the reference condition; NaN without data, shape (pulleys,)."""
     turns: float
+    """Turns of the belt."""
     force: float
+    """Largest equivalent force in the cords, N; NaN without an S-N line."""
 
     def times(self, factor: float) -> "Damage":
         """So many times the damage."""

@@ -17,24 +17,16 @@ GROSS_SLIP, SLACK, STOP = "gross slip", "slack", "stop"
 
 @dataclass(frozen=True, slots=True)
 class Incident:
-    """An event at any time of a run.
-
-    Attributes
-    ----------
-    kind : str
-        `GROSS_SLIP`, `SLACK` or `STOP`.
-    name : str
-        Name of the pulley or the span.
-    periods : tuple of tuples of float
-        Start and end, s; empty in a result without time.
-    side : str
-        "lower" or "upper" stop.
-    """
+    """An event at any time of a run."""
 
     kind: str
+    """`GROSS_SLIP`, `SLACK` or `STOP`."""
     name: str
+    """Name of the pulley or the span."""
     periods: tuple[tuple[float, float], ...]
+    """Start and end, s; empty in a result without time."""
     side: str = ""
+    """"lower" or "upper" stop."""
 
     @property
     def severe(self) -> bool:

@@ -21,36 +21,24 @@ from beltdyn.results.schema import AXIS_NAMES, COORDINATES, RECORDED, Variable
 
 @dataclass(frozen=True, eq=False)
 class Layout:
-    """Names and reference coordinates of recorded data.
-
-    Attributes
-    ----------
-    pulleys : tuple of str
-        Names of the pulleys.
-    spans : tuple of str
-        Names of the spans, "driver-driven" for the one from driver to driven.
-    node_coordinate : ndarray, shape (nodes,)
-        Belt coordinate of the nodes in the unstretched belt, m.
-    element_coordinate : ndarray, shape (elements,)
-        Belt coordinate of the elements' middles in the unstretched belt, m.
-    belt_coordinate : ndarray, shape (contact_points,)
-        Belt coordinate of the contact points in the unstretched belt, m.
-    coordinate_names : tuple of str
-        Names of the coordinates of a node.
-    tensioners : tuple of str
-        Names of the pulleys carried by tensioners, in the order of their coordinates.
-    bodies : tuple of str
-        Names of all bodies other than the belt, in the order of the coordinates.
-    """
+    """Names and reference coordinates of recorded data."""
 
     pulleys: tuple[str, ...]
+    """Names of the pulleys."""
     spans: tuple[str, ...]
+    """Names of the spans, "driver-driven" for the one from driver to driven."""
     node_coordinate: FloatArray
+    """Belt coordinate of the nodes in the unstretched belt, m, shape (nodes,)."""
     element_coordinate: FloatArray
+    """Belt coordinate of the elements' middles in the unstretched belt, m, shape (elements,)."""
     belt_coordinate: FloatArray
+    """Belt coordinate of the contact points in the unstretched belt, m, shape (contact_points,)."""
     coordinate_names: tuple[str, ...]
+    """Names of the coordinates of a node."""
     tensioners: tuple[str, ...] = ()
+    """Names of the pulleys carried by tensioners, in the order of their coordinates."""
     bodies: tuple[str, ...] = ()
+    """Names of all bodies other than the belt, in the order of the coordinates."""
 
     @property
     def nodes(self) -> int:

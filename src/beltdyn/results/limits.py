@@ -19,27 +19,18 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, slots=True)
 class KeyNumber:
-    """A key number of a drive at its worst place.
-
-    Attributes
-    ----------
-    key : str
-        Key of its limit in the group ``[limits]`` of the drive file.
-    value : float
-        The value; NaN if undefined, such as the slip safety of an unloaded drive.
-    unit : str
-        Its SI unit, "1" for a pure number; "%" for a share shown in per cent.
-    where : str
-        Pulley or span, and when or at which operating point.
-    limit : float or None
-        The limit of the drive file, or None.
-    """
+    """A key number of a drive at its worst place."""
 
     key: str
+    """Key of its limit in the group ``[limits]`` of the drive file."""
     value: float
+    """The value; NaN if undefined, such as the slip safety of an unloaded drive."""
     unit: str
+    """Its SI unit, "1" for a pure number; "%" for a share shown in per cent."""
     where: str
+    """Pulley or span, and when or at which operating point."""
     limit: float | None
+    """The limit of the drive file, or None."""
 
     @property
     def name(self) -> str:

@@ -17,45 +17,6 @@ from beltdyn.results.utilization import rate, utilization
 class PulleySummary:
     """Means of one pulley over the averaging window.
 
-    Attributes
-    ----------
-    name : str
-        Name of the pulley.
-    speed : float
-        Speed, rad/s, counter-clockwise positive.
-    belt_torque : float
-        Torque of the belt on the pulley, N m.
-    shaft_torque : float
-        External torque on the shaft, N m.
-    power : float
-        Power of that torque into the drive, W.
-    slip : float
-        Relative speed loss of the rim against the driver's (`Drive.reference`),
-        ``1 - v_i / v_d`` of the mean rim speeds along the belt; NaN when the driver stands still.
-    elastic_creep : float
-        Part of the slip due to elastic creep, as with Coulomb friction.
-    bending : float
-        Part of the slip due to the stretch lost in bending and its hysteresis before contact.
-    regularization : float
-        Part of the slip due to the slope of the friction law: the remainder.
-    sliding : float
-        Part of the slip that is gross slip: the belt slides on the whole arc of this pulley or of the driver.
-    sliding_speed : float
-        Sliding speed of the whole arc of this pulley, m/s along the belt; zero while part of it creeps.
-    sliding_arc : float
-        Angle over which friction is fully used, rad.
-    slip_safety : float
-        Factor on all loads of the drive at gross slip of this pulley, if the others hold; NaN without
-        load.
-    wrap_angle : float
-        Wrap angle, rad.
-    hub_load : float
-        Magnitude of the mean force of the belt on the pulley, N.
-    rated_power : float
-        Rated power of the belt on the pulley, W; NaN without a rating of its profile, and on the back of the belt.
-    utilization : float
-        Design power over rated power; NaN as above.
-
     Examples
     --------
     >>> driver = bd.summarize(run).pulleys[0]
@@ -64,36 +25,45 @@ class PulleySummary:
     """
 
     name: str
+    """Name of the pulley."""
     speed: float
+    """Speed, rad/s, counter-clockwise positive."""
     belt_torque: float
+    """Torque of the belt on the pulley, N m."""
     shaft_torque: float
+    """External torque on the shaft, N m."""
     power: float
+    """Power of that torque into the drive, W."""
     slip: float
+    """Relative speed loss of the rim against the driver's (`Drive.reference`), ``1 - v_i / v_d`` of the mean rim
+    speeds along the belt; NaN when the driver stands still."""
     elastic_creep: float
+    """Part of the slip due to elastic creep, as with Coulomb friction."""
     bending: float
+    """Part of the slip due to the stretch lost in bending and its hysteresis before contact."""
     regularization: float
+    """Part of the slip due to the slope of the friction law: the remainder."""
     sliding: float
+    """Part of the slip that is gross slip: the belt slides on the whole arc of this pulley or of the driver."""
     sliding_speed: float
+    """Sliding speed of the whole arc of this pulley, m/s along the belt; zero while part of it creeps."""
     sliding_arc: float
+    """Angle over which friction is fully used, rad."""
     slip_safety: float
+    """Factor on all loads of the drive at gross slip of this pulley, if the others hold; NaN without load."""
     wrap_angle: float
+    """Wrap angle, rad."""
     hub_load: float
+    """Magnitude of the mean force of the belt on the pulley, N."""
     rated_power: float
+    """Rated power of the belt on the pulley, W; NaN without a rating of its profile, and on the back of the belt."""
     utilization: float
+    """Design power over rated power; NaN as above."""
 
 
 @dataclass(frozen=True, slots=True)
 class TensionerSummary:
     """Means of one tensioner over the averaging window.
-
-    Attributes
-    ----------
-    name : str
-        Name of the pulley that it carries.
-    rotary : bool
-        Whether it turns, so that its positions are angles.
-    position, lowest, highest : float
-        Mean, minimum and maximum position, m or rad.
 
     Examples
     --------
@@ -104,26 +74,20 @@ class TensionerSummary:
     """
 
     name: str
+    """Name of the pulley that it carries."""
     rotary: bool
+    """Whether it turns, so that its positions are angles."""
     position: float
+    """Mean position, m or rad."""
     lowest: float
+    """Minimum position, m or rad."""
     highest: float
+    """Maximum position, m or rad."""
 
 
 @dataclass(frozen=True, slots=True)
 class SpanSummary:
     """Means of one span over the averaging window.
-
-    Attributes
-    ----------
-    name : str
-        Name of the span.
-    tension : float
-        Mean tension, N.
-    lowest, highest : float
-        Minimum and maximum tension, N.
-    belt_speed : float
-        Mean speed of the belt, m/s, positive in the sense in which the driver moves it.
 
     Examples
     --------
@@ -133,10 +97,15 @@ class SpanSummary:
     """
 
     name: str
+    """Name of the span."""
     tension: float
+    """Mean tension, N."""
     lowest: float
+    """Minimum tension, N."""
     highest: float
+    """Maximum tension, N."""
     belt_speed: float
+    """Mean speed of the belt, m/s, positive in the sense in which the driver moves it."""
 
 
 def pulley_means(recorded: Recorded, prepared: Prepared, window: Window | None = None) -> tuple[PulleySummary, ...]:

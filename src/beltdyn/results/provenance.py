@@ -30,17 +30,6 @@ _MOVING = frozenset({"slip", "losses"})
 class Resolution:
     """Estimated mesh error over the last fifth of a run.
 
-    Attributes
-    ----------
-    errors : dict of str to float
-        Relative error of each quantity, without sign: "tension", "mean pressure" and "peak pressure" of contact,
-        "slip", "losses". NaN if unknown, without tension; at rest there is no slip and no loss.
-    needed : dict of str to int
-        Number of elements for which twice each estimate is within its limit, `beltdyn.model.ERROR_LIMITS`; it depends
-        on the drive and its tension, not on the mesh of the run. Empty without tension.
-    layers : tuple of float
-        Lengths of the boundary layers of the belt at the ends of an arc, sqrt(E I alpha2 / T) and sqrt(T / k_p), m.
-
     Examples
     --------
     >>> sorted(run.resolution.errors)
@@ -48,8 +37,13 @@ class Resolution:
     """
 
     errors: Mapping[str, float]
+    """Relative error of each quantity, without sign: "tension", "mean pressure" and "peak pressure" of contact,
+    "slip", "losses". NaN if unknown, without tension; at rest there is no slip and no loss."""
     needed: Mapping[str, int]
+    """Number of elements for which twice each estimate is within its limit, `beltdyn.model.ERROR_LIMITS`; it depends
+    on the drive and its tension, not on the mesh of the run. Empty without tension."""
     layers: tuple[float, float]
+    """Lengths of the boundary layers of the belt at the ends of an arc, sqrt(E I alpha2 / T) and sqrt(T / k_p), m."""
 
     def resolves(self, quantity: str) -> bool:
         """Whether the error of a quantity is within its limit, or unknown."""

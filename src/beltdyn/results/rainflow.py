@@ -9,22 +9,16 @@ from beltdyn.arrays import FloatArray, IntArray
 
 
 class Cycles(NamedTuple):
-    """Cycles of a history.
-
-    Attributes
-    ----------
-    low, high : ndarray, shape (cycles,)
-        Least and largest value.
-    number : ndarray, shape (cycles,)
-        1, or 0.5 for a half cycle.
-    at : ndarray of int, shape (cycles,)
-        Place of the largest value in the history.
-    """
+    """Cycles of a history."""
 
     low: FloatArray
+    """Least value, shape (cycles,)."""
     high: FloatArray
+    """Largest value, shape (cycles,)."""
     number: FloatArray
+    """1, or 0.5 for a half cycle, shape (cycles,)."""
     at: IntArray
+    """Place of the largest value in the history, shape (cycles,)."""
 
     @property
     def range(self) -> FloatArray:

@@ -29,21 +29,6 @@ SHORT = "float32"
 class Variable:
     """Dimensions, units and meaning of a variable.
 
-    Attributes
-    ----------
-    dims : tuple of str
-        Dimensions in order. ``time`` or ``field_time`` comes first where it occurs.
-    units : str
-        SI units, "1" for a pure number.
-    long_name : str
-        The meaning in words, suitable as an axis label.
-    dtype : str
-        NumPy data type; "str" for names.
-    core : bool
-        Whether every result file must hold it: summary, warnings and the essential figures need it.
-    at_rest : bool
-        Whether a drive in static equilibrium also has it.
-
     Examples
     --------
     >>> tension = bd.results.VARIABLES["span_tension"]
@@ -52,11 +37,17 @@ class Variable:
     """
 
     dims: tuple[str, ...]
+    """Dimensions in order. ``time`` or ``field_time`` comes first where it occurs."""
     units: str
+    """SI units, "1" for a pure number."""
     long_name: str
+    """The meaning in words, suitable as an axis label."""
     dtype: str = "float64"
+    """NumPy data type; "str" for names."""
     core: bool = True
+    """Whether every result file must hold it: summary, warnings and the essential figures need it."""
     at_rest: bool = False
+    """Whether a drive in static equilibrium also has it."""
 
     @property
     def attributes(self) -> dict[str, str]:

@@ -44,39 +44,6 @@ class Summary:
 
     Means are taken over whole turns of the belt and whole periods of what repeats; see `cycles.mean_window`.
 
-    Attributes
-    ----------
-    status : str
-        How the run ended.
-    start, end : float
-        First and last instant of what means are taken over, s.
-    turns : int
-        Number of turns of the belt that means are taken over; zero where not even one was taken.
-    outputs : int
-        Number of recorded outputs.
-    pulleys : tuple of PulleySummary
-        One for each pulley.
-    spans : tuple of SpanSummary
-        One for each span.
-    tensioners : tuple of TensionerSummary
-        One for each tensioner that moves.
-    balance : Balance
-        Mean powers of shafts and losses by cause, and with them the efficiency.
-    resolution : Resolution
-        How well the mesh resolves tension and contact.
-    energy_closure : float
-        Largest closure error of the energy account at any time, relative to the energy put in by then.
-    integrator : str
-        The time integrator; empty when the run's end was not recorded.
-    steps, rejected_steps, newton_iterations : int
-        The solver's counts; zero when the run's end was not recorded.
-    wall_time : float
-        Time taken, s, without `compile_time`; NaN when the run's end was not recorded.
-    compile_time : float
-        Time taken by compilation, s; NaN when the run's end was not recorded.
-    warnings : tuple of str
-        What a reader of the results has to know.
-
     Examples
     --------
     >>> [pulley.name for pulley in bd.summarize(run).pulleys]
@@ -84,23 +51,41 @@ class Summary:
     """
 
     status: str
+    """How the run ended."""
     start: float
+    """First instant of the averaging window, s."""
     end: float
+    """Last instant of the averaging window, s."""
     turns: int
+    """Number of turns of the belt that means are taken over; zero where not even one was taken."""
     outputs: int
+    """Number of recorded outputs."""
     pulleys: tuple[PulleySummary, ...]
+    """One for each pulley."""
     spans: tuple[SpanSummary, ...]
+    """One for each span."""
     tensioners: tuple[TensionerSummary, ...]
+    """One for each tensioner that moves."""
     balance: Balance
+    """Mean powers of shafts and losses by cause, and with them the efficiency."""
     resolution: Resolution
+    """How well the mesh resolves tension and contact."""
     energy_closure: float
+    """Largest closure error of the energy account at any time, relative to the energy put in by then."""
     integrator: str
+    """The time integrator; empty when the run's end was not recorded."""
     steps: int
+    """Steps; zero when the run's end was not recorded."""
     rejected_steps: int
+    """Rejected steps."""
     newton_iterations: int
+    """Iterations of Newton's method."""
     wall_time: float
+    """Time taken, s, without `compile_time`; NaN when the run's end was not recorded."""
     compile_time: float
+    """Time taken by compilation, s; NaN when the run's end was not recorded."""
     warnings: tuple[str, ...]
+    """What a reader of the results has to know."""
 
     @property
     def computing_time_per_second(self) -> float:
@@ -187,20 +172,6 @@ _CHANGING = 0.3
 class Compared:
     """A value at the end of a run and in steady running.
 
-    Attributes
-    ----------
-    quantity : str
-        "speed", "slip", "hub load", "contact force" (the largest normal force per meter of belt), "tension" or
-        "position" of a tensioner.
-    name : str
-        Name of the pulley, of the span, or of the tensioner's pulley.
-    unit : str
-        SI unit.
-    run : float
-        Mean over the end of the run.
-    steady : float
-        In steady running.
-
     Examples
     --------
     >>> slip = bd.results.Compared("slip", "driven", "%", run=0.21, steady=0.2)
@@ -209,10 +180,16 @@ class Compared:
     """
 
     quantity: str
+    """"speed", "slip", "hub load", "contact force" (the largest normal force per meter of belt), "tension" or
+    "position" of a tensioner."""
     name: str
+    """Name of the pulley, of the span, or of the tensioner's pulley."""
     unit: str
+    """SI unit."""
     run: float
+    """Mean over the end of the run."""
     steady: float
+    """In steady running."""
 
 
 def steady_comparison(run: Run) -> tuple[Compared, ...]:

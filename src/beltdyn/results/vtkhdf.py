@@ -41,36 +41,23 @@ _OF_PULLEYS = ("pulley_speed", "pulley_angle", "pulley_torque")
 
 
 class Surface(NamedTuple):
-    """Polygons whose points move, while their corners stay the same.
-
-    Attributes
-    ----------
-    corners : list of ndarray of int
-        Numbers of the points at the corners of each polygon.
-    points : int
-        Number of points.
-    """
+    """Polygons whose points move, while their corners stay the same."""
 
     corners: list[IntArray]
+    """Numbers of the points at the corners of each polygon."""
     points: int
+    """Number of points."""
 
 
 class Frames(NamedTuple):
-    """A surface at some instants.
-
-    Attributes
-    ----------
-    places : ndarray, shape (k, points, 3)
-        Where the points are, m.
-    on_points : dict of str to ndarray, shape (k, points)
-        Values at the points.
-    on_cells : dict of str to ndarray, shape (k, polygons)
-        Values on the polygons.
-    """
+    """A surface at some instants."""
 
     places: FloatArray
+    """Where the points are, m, shape (k, points, 3)."""
     on_points: dict[str, FloatArray]
+    """Values at the points, shape (k, points)."""
     on_cells: dict[str, FloatArray]
+    """Values on the polygons, shape (k, polygons)."""
 
 
 class Ribbon:

@@ -13,27 +13,18 @@ from beltdyn.state.installation import bring_to_rest
 
 @dataclass(frozen=True, repr=False)
 class Check:
-    """A drive at rest, and what is probably not meant in it; ``print`` shows all.
-
-    Attributes
-    ----------
-    drive : Drive
-        The drive, with the belt length or the take-up that gives its installed tension.
-    installation : Installation
-        Tension, penetrations, hub loads and span frequencies at rest, of the equilibrium or, without one, estimated.
-    warnings : list of str
-        What is probably not meant, by how much it matters, and remedies.
-    sheet : Sheet
-        Tables and facts for a reader.
-    failure : ConvergenceError or None
-        Why there is no static equilibrium.
-    """
+    """A drive at rest, and what is probably not meant in it; ``print`` shows all."""
 
     drive: Drive
+    """The drive, with the belt length or the take-up that gives its installed tension."""
     installation: Installation
+    """Tension, penetrations, hub loads and span frequencies at rest, of the equilibrium or, without one, estimated."""
     warnings: list[str]
+    """What is probably not meant, by how much it matters, and remedies."""
     sheet: Sheet
+    """Tables and facts for a reader."""
     failure: ConvergenceError | None = field(default=None)
+    """Why there is no static equilibrium."""
 
     def __repr__(self) -> str:
         count = len(self.warnings)

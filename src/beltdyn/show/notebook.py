@@ -37,22 +37,16 @@ class Circle:
 
 @dataclass(frozen=True)
 class Picture:
-    """The data of a template to draw a drive.
-
-    Attributes
-    ----------
-    width, height : float
-        Pixels.
-    circles : tuple of Circle
-        The pulleys.
-    belt : str
-        Path of the belt's line of tension, in the language of the attribute ``d``.
-    """
+    """The data of a template to draw a drive."""
 
     width: float
+    """Width, pixels."""
     height: float
+    """Height, pixels."""
     circles: tuple[Circle, ...]
+    """The pulleys."""
     belt: str
+    """Path of the belt's line of tension, in the language of the attribute ``d``."""
 
 
 def picture(drive: Drive) -> Picture:

@@ -25,21 +25,14 @@ _NUMBER = re.compile(r"[<>]?\s*[-+−]?[\d.]|[–-]?$|nan|-?inf")
 
 
 class Table(NamedTuple):
-    """A table whose first column holds names.
-
-    Attributes
-    ----------
-    title : str
-        What stands above it, or nothing.
-    headings : tuple of str
-        Name and unit of each column, in two lines where a column is narrow.
-    rows : tuple of tuple of str
-        Its rows.
-    """
+    """A table whose first column holds names."""
 
     title: str
+    """What stands above it, or nothing."""
     headings: tuple[str, ...]
+    """Name and unit of each column, in two lines where a column is narrow."""
     rows: tuple[tuple[str, ...], ...]
+    """Its rows."""
 
     def has_words(self, column: int) -> bool:
         """Whether a column holds words, and not numbers alone."""
@@ -47,33 +40,21 @@ class Table(NamedTuple):
 
 
 class Facts(NamedTuple):
-    """Names and their values.
-
-    Attributes
-    ----------
-    facts : tuple of (str, str)
-        Such as ``("efficiency", "96.04%")``.
-    title : str
-        What stands above them, or nothing.
-    """
+    """Names and their values."""
 
     facts: tuple[tuple[str, str], ...]
+    """Such as ``("efficiency", "96.04%")``."""
     title: str = ""
+    """What stands above them, or nothing."""
 
 
 class Sheet(NamedTuple):
-    """The tables and facts of a result.
-
-    Attributes
-    ----------
-    title : str
-        The name of the drive, or what the result is; may be empty.
-    parts : tuple of Table or Facts
-        In the order in which they are read.
-    """
+    """The tables and facts of a result."""
 
     title: str
+    """The name of the drive, or what the result is; may be empty."""
     parts: tuple[Table | Facts, ...]
+    """In the order in which they are read."""
 
 
 def as_text(sheet: Sheet) -> str:

@@ -36,15 +36,6 @@ that errors of time excite have an energy of fourth order in the step, and are l
 class GeneralizedAlpha:
     """Generalized-alpha with variable steps.
 
-    Attributes
-    ----------
-    spectral_radius : float
-        At infinite frequency, 0 (strongest damping) to 1 (none).
-    rtol : float
-        Local error per unit of time over the velocity scale of the task; less for long steps.
-    max_step : float or None
-        s.
-
     Examples
     --------
     >>> bd.extend.GeneralizedAlpha(spectral_radius=0.9, rtol=1e-4)
@@ -52,8 +43,11 @@ class GeneralizedAlpha:
     """
 
     spectral_radius: float
+    """At infinite frequency, 0 (strongest damping) to 1 (none)."""
     rtol: float
+    """Local error per unit of time over the velocity scale of the task; less for long steps."""
     max_step: float | None = None
+    """s."""
     name: ClassVar[str] = "generalized_alpha"
 
     def __call__(self, task: Task) -> Iterator[Chunk]:
@@ -82,29 +76,22 @@ class GeneralizedAlpha:
 
 @dataclass
 class AlphaIntegration:
-    """The state of an integration: all that its next step depends on, so that a copy continues with the same steps.
-
-    Attributes
-    ----------
-    method, task, settings
-        What is integrated, and how.
-    system : System
-        Its arrays; profiles may be exchanged between two stops.
-    state : IntegratorState
-        Where it is.
-    begun : bool
-        Whether the state at the beginning was handed out.
-    restarted : float
-        Stop up to which the accelerations were last taken from the equations of motion, s.
-    """
+    """The state of an integration: all that its next step depends on, so that a copy continues with the same steps."""
 
     method: GeneralizedAlpha
+    """The integrator."""
     task: Task
+    """The initial value problem."""
     settings: Settings
+    """Numbers of the method and its step control."""
     system: System
+    """Its arrays; profiles may be exchanged between two stops."""
     state: IntegratorState
+    """Where it is."""
     begun: bool = False
+    """Whether the state at the beginning was handed out."""
     restarted: float = -np.inf
+    """Stop up to which the accelerations were last taken from the equations of motion, s."""
 
     @cached_property
     def _equations(self) -> Equations:

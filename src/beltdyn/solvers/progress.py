@@ -26,38 +26,26 @@ Phase = Literal[
 
 @dataclass(frozen=True)
 class Progress:
-    """Progress of a simulation.
-
-    Attributes
-    ----------
-    time : float
-        Simulated time since the beginning, s.
-    duration : float
-        Total simulated time, s.
-    step_size : float
-        Latest step of the solver, s; zero before the first one.
-    outputs_written : int
-        Outputs recorded so far.
-    phase : str
-        "compiling" (the kernels, once per machine), "equilibrium", "settling" (at the first speed of a run-up),
-        "integrating", or "operating points", "designs" and "points" (of a study), for which time and duration are the
-        numbers done and in total; "no workers" while a cluster has no workers.
-    elapsed : float
-        Computing time since the first step, s.
-    bound : str
-        What limits the time steps, in words; empty before the first step.
-    pace : float
-        Recent simulated time over computing time; by default the mean so far.
-    """
+    """Progress of a simulation."""
 
     time: float
+    """Simulated time since the beginning, s."""
     duration: float
+    """Total simulated time, s."""
     step_size: float
+    """Latest step of the solver, s; zero before the first one."""
     outputs_written: int
+    """Outputs recorded so far."""
     phase: Phase = "integrating"
+    """"compiling" (the kernels, once per machine), "equilibrium", "settling" (at the first speed of a run-up),
+    "integrating", or "operating points", "designs" and "points" (of a study), for which time and duration are the
+    numbers done and in total; "no workers" while a cluster has no workers."""
     elapsed: float = 0.0
+    """Computing time since the first step, s."""
     bound: str = ""
+    """What limits the time steps, in words; empty before the first step."""
     pace: float = math.nan
+    """Recent simulated time over computing time; by default the mean so far."""
 
     @property
     def remaining(self) -> float:
@@ -93,16 +81,11 @@ Report = Callable[[Progress], None]
 
 @dataclass(frozen=True, slots=True)
 class BatchProgress:
-    """Progress of several simulations.
-
-    Attributes
-    ----------
-    done, total : int
-        Finished simulations, and their total number.
-    running : mapping
-        Result file -> completed share, 0 to 1, of running simulations.
-    """
+    """Progress of several simulations."""
 
     done: int
+    """Number of finished simulations."""
     total: int
+    """Number of all simulations."""
     running: Mapping[Path, float]
+    """Result file -> completed share, 0 to 1, of running simulations."""

@@ -96,13 +96,6 @@ class StepControl(Protocol):
 class FixedSteps:
     """Steps of constant length.
 
-    Attributes
-    ----------
-    length : float
-        s; steps that end on a breakpoint may be shorter.
-    missed : float
-        See `StepControl`.
-
     Examples
     --------
     >>> bd.extend.FixedSteps(1e-4).length
@@ -110,7 +103,9 @@ class FixedSteps:
     """
 
     length: float
+    """s; steps that end on a breakpoint may be shorter."""
     missed: float = np.inf
+    """See `StepControl`."""
 
     @property
     def first(self) -> float:
@@ -126,15 +121,6 @@ class FixedSteps:
 class ErrorControl:
     """Steps controlled by an error tolerance.
 
-    Attributes
-    ----------
-    rtol : float
-        Allowed error of a step over the velocity scale of the drive.
-    max_step : float
-        s.
-    first : float
-        Length of the first step, s.
-
     Examples
     --------
     >>> bd.extend.ErrorControl(rtol=1e-4).rtol
@@ -142,8 +128,11 @@ class ErrorControl:
     """
 
     rtol: float
+    """Allowed error of a step over the velocity scale of the drive."""
     max_step: float = np.inf
+    """s."""
     first: float = 1e-6
+    """Length of the first step, s."""
 
     @property
     def missed(self) -> float:
@@ -159,18 +148,12 @@ class ErrorControl:
 
 @dataclass(frozen=True)
 class Stepwise:
-    """A one-step method with a step control, as an integrator for `simulate`.
-
-    Attributes
-    ----------
-    method : Method
-        From state to state.
-    control : StepControl
-        How long steps are.
-    """
+    """A one-step method with a step control, as an integrator for `simulate`."""
 
     method: Method
+    """From state to state."""
     control: StepControl
+    """How long steps are."""
 
     @property
     def name(self) -> str:
@@ -267,16 +250,6 @@ _HIGHEST_A_STABLE_ORDER = 2
 class StandardIntegrator:
     """A method of SUNDIALS or SciPy.
 
-    Attributes
-    ----------
-    name : str
-        "cvode", "ida", "bdf" or "radau".
-    rtol : float
-        Error tolerance of velocities, relative to the velocity scale of the drive; that of positions is this velocity
-        times one millisecond. A single step may use a fiftieth of it.
-    max_step : float or None
-        s.
-
     Examples
     --------
     >>> bd.extend.StandardIntegrator("radau", rtol=1e-4)
@@ -284,8 +257,12 @@ class StandardIntegrator:
     """
 
     name: Name
+    """"cvode", "ida", "bdf" or "radau"."""
     rtol: float
+    """Error tolerance of velocities, relative to the velocity scale of the drive; that of positions is this velocity
+    times one millisecond. A single step may use a fiftieth of it."""
     max_step: float | None = None
+    """s."""
 
     def __call__(self, task: Task) -> Iterator[Chunk]:
         """Integrate; see `Integrator`."""

@@ -18,31 +18,22 @@ from beltdyn.system.state_forces import body_forces_at
 
 @dataclass(frozen=True, eq=False)
 class Chunk:
-    """Successive states of a solver, at the ends of its steps; none in a chunk that only reports progress.
-
-    Attributes
-    ----------
-    time : ndarray, shape (k,)
-        s, ascending.
-    step : ndarray, shape (k,)
-        Length of the step that ends there, s; zero at the start.
-    position, velocity : ndarray, shape (k, n N + D)
-        Nodal coordinates and coordinates of bodies, and their rates.
-    work : ndarray, shape (k, 10)
-        In the order of `system.arrays.ENERGY_WORKS`, since time zero, J.
-    forces : BodyForces
-        Of each state; `system.state_forces.body_forces_at` finds them where a method does not know them.
-    reached : float
-        Time that the solver has reached, s.
-    """
+    """Successive states of a solver, at the ends of its steps; none in a chunk that only reports progress."""
 
     time: FloatArray
+    """s, ascending, shape (k,)."""
     step: FloatArray
+    """Length of the step that ends there, s; zero at the start, shape (k,)."""
     position: FloatArray
+    """Nodal coordinates and coordinates of bodies, shape (k, n N + D)."""
     velocity: FloatArray
+    """Their rates, shape (k, n N + D)."""
     work: FloatArray
+    """In the order of `system.arrays.ENERGY_WORKS`, since time zero, J, shape (k, 10)."""
     forces: BodyForces
+    """Of each state; `system.state_forces.body_forces_at` finds them where a method does not know them."""
     reached: float
+    """Time that the solver has reached, s."""
 
     @classmethod
     def start(cls, system: System, state: State, begin: float = 0.0) -> Self:
@@ -158,52 +149,34 @@ def interpolated(values: NDArray[Any], end: IntArray, part: FloatArray) -> NDArr
 
 @dataclass
 class Statistics:
-    """What the solver did so far.
-
-    Attributes
-    ----------
-    steps : int
-        Accepted steps.
-    rejected_steps : int
-        Rejected steps; zero for standard integrators, which do not report them.
-    newton_iterations : int
-        Iterations of generalised-alpha.
-    evaluations : int
-        Evaluations of the equations of motion by standard integrators.
-    """
+    """What the solver did so far."""
 
     steps: int = 0
+    """Accepted steps."""
     rejected_steps: int = 0
+    """Rejected steps; zero for standard integrators, which do not report them."""
     newton_iterations: int = 0
+    """Iterations of generalised-alpha."""
     evaluations: int = 0
+    """Evaluations of the equations of motion by standard integrators."""
 
 
 @dataclass(frozen=True)
 class Task:
-    """An initial value problem.
-
-    Attributes
-    ----------
-    system : System
-        Belt, pulleys, supports.
-    start : State
-        State at the first output instant.
-    instants : Instants
-        Output instants, on which steps end where they can; the solver begins at the first and ends at the last one.
-    breakpoints : sequence of float
-        Instants between, s, on which a step must end because what drives the system has a kink or a jump there.
-    velocity_scale : float
-        Velocity that relative tolerances are relative to, m/s.
-    statistics : Statistics
-        Kept up to date by the solver.
-    """
+    """An initial value problem."""
 
     system: System
+    """Belt, pulleys, supports."""
     start: State
+    """State at the first output instant."""
     instants: Instants
+    """Output instants, on which steps end where they can; the solver begins at the first and ends at the last one."""
     breakpoints: Sequence[float]
+    """Instants between, s, on which a step must end because what drives the system has a kink or a jump there."""
     velocity_scale: float
+    """Velocity that relative tolerances are relative to, m/s."""
     statistics: Statistics
+    """Kept up to date by the solver."""
 
     @property
     def stops(self) -> list[float]:

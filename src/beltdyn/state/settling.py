@@ -65,23 +65,16 @@ class Settling:
 
     Means and standard deviations of the span tensions are taken over windows. How they change from window to
     window, and how fast these changes get smaller, tells what is left of the start.
-
-    Attributes
-    ----------
-    pulley : int
-        Number of the pulley.
-    speed : float
-        Its first speed, rad/s.
-    lead : float
-        Time in which it is reached, s.
-    longest : float
-        Longest time at this speed, s.
     """
 
     pulley: int
+    """Number of the pulley."""
     speed: float
+    """Its first speed, rad/s."""
     lead: float
+    """Time in which it is reached, s."""
     longest: float
+    """Longest time at this speed, s."""
 
     def __call__(
         self, prepared: Prepared, system: System, state: State, integrator: Integrator, progress: Report | None, /

@@ -29,21 +29,14 @@ from beltdyn.system.state_forces import body_forces_at, prescribe
 
 @dataclass(frozen=True, eq=False)
 class JointConstraint:
-    """The constant matrices of Eqs. 25 and 26, for a belt of N nodes, n coordinates each, the last tied to the first.
-
-    Attributes
-    ----------
-    jacobian : ndarray, shape (n, n N)
-        C_e: coordinates of the first node minus those of the last.
-    by_force : ndarray, shape (n N, n N)
-        First bracket of Eq. 26, M^-1 - M^-1 C^T (C M^-1 C^T)^-1 C M^-1.
-    by_constraint : ndarray, shape (n N, n)
-        Second bracket of Eq. 26, M^-1 C^T (C M^-1 C^T)^-1.
-    """
+    """The constant matrices of Eqs. 25 and 26: a belt of N nodes, n coordinates each, the last tied to the first."""
 
     jacobian: FloatArray
+    """C_e: coordinates of the first node minus those of the last, shape (n, n N)."""
     by_force: FloatArray
+    """First bracket of Eq. 26, M^-1 - M^-1 C^T (C M^-1 C^T)^-1 C M^-1, shape (n N, n N)."""
     by_constraint: FloatArray
+    """Second bracket of Eq. 26, M^-1 C^T (C M^-1 C^T)^-1, shape (n N, n)."""
 
     def accelerations(self, force: FloatArray, constraint: FloatArray | None = None) -> FloatArray:
         """Accelerations of the nodal coordinates (Eq. 26).

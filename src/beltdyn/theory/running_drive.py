@@ -29,70 +29,54 @@ _X, _Y, _SECTION, _SECTION_RATE, _FORCE_X, _FORCE_Y, _TORQUE = range(7)
 
 @dataclass(frozen=True)
 class RunningDrive:
-    """A drive in counter-clockwise rotation: driver at the origin, driven pulley at (distance, 0).
-
-    Attributes
-    ----------
-    length
-        Unstretched length of the belt, m.
-    law
-        Parameters of the law of stretch.
-    bending, shear
-        EI (N m^2) and k_s G A (N), with the factors alpha.
-    mass, rotary_inertia
-        rho A (kg/m) and rho I (kg m).
-    distance, radii
-        Between the centers, and of the pulleys, m.
-    stiffness, friction, creep_rate_factor
-        k_p (N/m^2), mu and nu_s (kg/(m s)).
-    speed
-        Of the driver, rad/s.
-    load
-        Torque that the belt gives to the driven pulley, N m.
-    """
+    """A drive in counter-clockwise rotation: driver at the origin, driven pulley at (distance, 0)."""
 
     length: float
+    """Unstretched length of the belt, m."""
     law: StretchParameters
+    """Parameters of the law of stretch."""
     bending: float
+    """EI with its factor alpha, N m^2."""
     shear: float
+    """k_s G A with its factor alpha, N."""
     mass: float
+    """rho A, kg/m."""
     rotary_inertia: float
+    """rho I, kg m."""
     distance: float
+    """Distance of the centers, m."""
     radii: tuple[float, float]
+    """Radii of driver and driven pulley, m."""
     stiffness: float
+    """k_p, N/m^2."""
     friction: float
+    """mu."""
     creep_rate_factor: float
+    """nu_s, kg/(m s)."""
     speed: float
+    """Of the driver, rad/s."""
     load: float
+    """Torque that the belt gives to the driven pulley, N m."""
 
 
 @dataclass(frozen=True, eq=False)
 class RunningBelt:
-    """Steady running of a drive at k points along the belt.
-
-    Attributes
-    ----------
-    coordinate : ndarray, shape (k,)
-        Reference coordinate from the middle of the span that leaves the driver, m.
-    position : ndarray, shape (2, k)
-        m.
-    tension : ndarray, shape (k,)
-        N(g), N.
-    normal_force, friction_force : ndarray, shape (2, k)
-        By each pulley per reference length, N/m.
-    transport_speed : float
-        c, m/s.
-    driven_speed : float
-        rad/s.
-    """
+    """Steady running of a drive at k points along the belt."""
 
     coordinate: FloatArray
+    """Reference coordinate from the middle of the span that leaves the driver, m, shape (k,)."""
     position: FloatArray
+    """m, shape (2, k)."""
     tension: FloatArray
+    """N(g), N, shape (k,)."""
     normal_force: FloatArray
+    """Normal force of each pulley per reference length, N/m, shape (2, k)."""
     friction_force: FloatArray
+    """Friction force of each pulley per reference length, N/m, shape (2, k)."""
     transport_speed: float
+    """c, m/s."""
     driven_speed: float
+    """rad/s."""
 
 
 def run_steadily(drive: RunningDrive, points: int = 20001) -> RunningBelt:

@@ -21,21 +21,14 @@ IDLE = 0.01
 
 @dataclass(frozen=True, eq=False)
 class Evidence:
-    """The data that checks examine: a run with at least one output.
-
-    Attributes
-    ----------
-    recorded : Recorded
-        The results.
-    prepared : Prepared
-        The drive.
-    resolution : Resolution
-        How well its mesh resolves tension and contact.
-    """
+    """The data that checks examine: a run with at least one output."""
 
     recorded: Recorded
+    """The results."""
     prepared: Prepared
+    """The drive."""
     resolution: Resolution
+    """How well its mesh resolves tension and contact."""
 
     @cached_property
     def time(self) -> FloatArray:

@@ -26,18 +26,12 @@ from beltdyn.show.plot.style import INK, SHADE, axes_or_new, color, dash, label,
 
 @dataclass(frozen=True, slots=True)
 class Wrap:
-    """Contact points on a pulley, from where the belt enters to where it leaves.
-
-    Attributes
-    ----------
-    points : ndarray, shape (k,)
-        Numbers of the contact points, free ones between touching ones included.
-    distance : ndarray, shape (k,)
-        Unstretched length of belt between the first of them and each, m.
-    """
+    """Contact points on a pulley, from where the belt enters to where it leaves."""
 
     points: IntArray
+    """Numbers of the contact points, free ones between touching ones included, shape (k,)."""
     distance: FloatArray
+    """Unstretched length of belt between the first of them and each, m, shape (k,)."""
 
 
 def unwrap(belt_coordinate: FloatArray, touching: BoolArray, length: float, speed: float) -> Wrap:

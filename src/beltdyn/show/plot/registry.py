@@ -27,49 +27,32 @@ Together = Callable[[Sequence[Any], Axes | None], Axes]
 
 
 class Choice(NamedTuple):
-    """What a user chose for the figures of a run.
-
-    Attributes
-    ----------
-    pulley : int or None
-        Number of the pulley to show; None for all.
-    variable : str
-        Name of the variable whose spectra are shown.
-    pulleys : tuple of str
-        Names of all pulleys of the results on the page, those of the first result first; set by its figure.
-    """
+    """What a user chose for the figures of a run."""
 
     pulley: int | None = None
+    """Number of the pulley to show; None for all."""
     variable: str = "span_tension"
+    """Name of the variable whose spectra are shown."""
     pulleys: tuple[str, ...] = ()
+    """Names of all pulleys of the results on the page, those of the first result first; set by its figure."""
 
 
 @dataclass(frozen=True, slots=True)
 class Registered:
-    """A figure and how it is saved.
-
-    Attributes
-    ----------
-    name : str
-        Its name.
-    draw : callable
-        ``draw(result, ..., ax=None) -> Axes``.
-    arrange : callable
-        ``arrange(results, choice) -> Figure``: all its panels on one page, of one result or more.
-    by_default : callable
-        ``by_default(run) -> bool``: whether it is drawn where no figures are chosen.
-    of : tuple of str
-        Kinds of the results that it is drawn of, names of analyses.
-    compares : bool
-        Whether it shows several results together.
-    """
+    """A figure and how it is saved."""
 
     name: str
+    """Its name."""
     draw: Callable[..., Axes]
+    """``draw(result, ..., ax=None) -> Axes``."""
     arrange: Callable[[Result | Sequence[Result], Choice], Figure]
+    """``arrange(results, choice) -> Figure``: all its panels on one page, of one result or more."""
     by_default: Callable[[Any], bool]
+    """``by_default(run) -> bool``: whether it is drawn where no figures are chosen."""
     of: tuple[str, ...]
+    """Kinds of the results that it is drawn of, names of analyses."""
     compares: bool
+    """Whether it shows several results together."""
 
 
 FIGURES = Registry[Registered]("figure", Registered)

@@ -47,24 +47,16 @@ _FRAMES = 24
 
 
 class Swing(NamedTuple):
-    """How the parts of a drive move in a mode: the real part of these, times exp(i phase), at a phase.
-
-    Attributes
-    ----------
-    belt : ndarray, shape (points, 2)
-        Ways of the points of the belt, m.
-    centers : ndarray, shape (pulleys, 2)
-        Ways of the centers of the pulleys, m.
-    angles : ndarray, shape (pulleys,)
-        Rotation of the pulleys, rad.
-    size : float
-        The largest of these ways, those of rims included, m.
-    """
+    """How the parts of a drive move in a mode: the real part of these, times exp(i phase), at a phase."""
 
     belt: ComplexArray
+    """Ways of the points of the belt, m, shape (points, 2)."""
     centers: ComplexArray
+    """Ways of the centers of the pulleys, m, shape (pulleys, 2)."""
     angles: ComplexArray
+    """Rotation of the pulleys, rad, shape (pulleys,)."""
     size: float
+    """The largest of these ways, those of rims included, m."""
 
 
 def swing(result: Result, mode: int) -> Swing:

@@ -33,21 +33,14 @@ _WHOLE, _HUGE = 1e4, 1e9
 
 
 class SideBySide(NamedTuple):
-    """A key number of all results.
-
-    Attributes
-    ----------
-    name : str
-        Its name.
-    key : str
-        Key of its limit in the drive file.
-    numbers : list of KeyNumber or None
-        One for each result; None where a result does not know it.
-    """
+    """A key number of all results."""
 
     name: str
+    """Its name."""
     key: str
+    """Key of its limit in the drive file."""
     numbers: list[KeyNumber | None]
+    """One for each result; None where a result does not know it."""
 
     def difference(self, number: int) -> str:
         """By how much a result differs from the first, in words; nothing where that is not known."""

@@ -38,21 +38,14 @@ _AS_DRAWN = (LineCollection, PathCollection, PolyCollection)
 
 
 class Named(NamedTuple):
-    """A line or an area with a name.
-
-    Attributes
-    ----------
-    name : str
-        What the legend calls it.
-    glyph : object
-        What Bokeh draws.
-    column : str
-        Its column of values; empty of what is not read out.
-    """
+    """A line or an area with a name."""
 
     name: str
+    """What the legend calls it."""
     glyph: Any
+    """What Bokeh draws."""
     column: str = ""
+    """Its column of values; empty of what is not read out."""
 
 
 def can_be_charted(ax: Axes) -> bool:
@@ -400,30 +393,20 @@ _WIDE = 8.0
 
 
 class Shown(NamedTuple):
-    """A figure on the page.
-
-    Attributes
-    ----------
-    name : str
-        Its name in words.
-    source : str
-        The picture, for paper and for browsers without JavaScript.
-    charts : list of str
-        Where its charts stand on the page; none where it is best as it is.
-    missing : str
-        Why it cannot be drawn of these results, as of drives with other pulleys; empty where it is.
-    notes : tuple of str
-        What is written on the picture, and stands below its charts.
-    wide : bool
-        Whether it has panels side by side, so that it is scrolled where there is no room for it.
-    """
+    """A figure on the page."""
 
     name: str
+    """Its name in words."""
     source: str
+    """The picture, for paper and for browsers without JavaScript."""
     charts: list[str]
+    """Where its charts stand on the page; none where it is best as it is."""
     missing: str = ""
+    """Why it cannot be drawn of these results, as of drives with other pulleys; empty where it is."""
     notes: tuple[str, ...] = ()
+    """What is written on the picture, and stands below its charts."""
     wide: bool = False
+    """Whether it has panels side by side, so that it is scrolled where there is no room for it."""
 
 
 @styled
