@@ -77,7 +77,9 @@ myst_substitutions = {
     "kinds": KINDS,
 }
 napoleon_google_docstring = False
+autodoc_member_order = "bysource"
 autodoc_typehints = "description"
+autodoc_typehints_description_target = "documented"
 html_math_renderer = "mathml"
 templates_path = ["_templates"]
 exclude_patterns = ["_build"]
@@ -102,6 +104,22 @@ def describe_record(app: object, what: str, name: str, kind: object, options: ob
         lines[:] = [f"A NumPy record type with the fields {', '.join(kind.names or ())}."]
 
 
+_COLON = "\ue000"
+
+
+def hide_colons(app: object, what: str, name: str, kind: object, options: object, lines: list[str]) -> None:
+    """Keep napoleon from taking what stands before a colon for the type of a field."""
+    if what in ("attribute", "property"):
+        lines[:] = [line.replace(": ", f"{_COLON} ") for line in lines]
+
+
+def show_colons(app: object, what: str, name: str, kind: object, options: object, lines: list[str]) -> None:
+    """Bring them back."""
+    lines[:] = [line.replace(_COLON, ":") for line in lines]
+
+
 def setup(app: Any) -> None:
     """Called by Sphinx."""
     app.connect("autodoc-process-docstring", describe_record)
+    app.connect("autodoc-process-docstring", hide_colons, priority=400)
+    app.connect("autodoc-process-docstring", show_colons, priority=600)
