@@ -83,7 +83,7 @@ def test_formulas_in_titles_and_names_are_fetched_from_nowhere(browser: Any, tmp
         page.on("console", lambda line, faults=faults: faults.append(line.text) if line.type == "error" else None)
         page.set_default_timeout(300_000)
         page.goto(report.as_uri())
-        page.locator(".bk-Figure").first.wait_for()
+        page.locator(".bk-Figure, .motion canvas").first.wait_for()
         page.mouse.wheel(0, 20_000)
         page.wait_for_timeout(2000)
         assert [url for url in asked if not url.startswith(("data:", "blob:"))] == [page.url]
