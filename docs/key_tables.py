@@ -16,9 +16,11 @@ from beltdyn.machines.links.link import LINKS
 from beltdyn.machines.loads.load import LOADS, Load
 from beltdyn.machines.profiles.harmonic import CrankSpeed
 from beltdyn.machines.profiles.profile import PROFILES
+from beltdyn.machines.tensioners.rotary import ArmAsSupplied
 from beltdyn.machines.tensioners.tensioner import TENSIONERS
 from beltdyn.model import Belt, Contact, FixedEnd, Harmonic, Limits, PulledEnd, Pulley, Simulation, Steady, WeightEnd
 from beltdyn.model.belt_form import Nominal, Sold, Stiffnesses
+from beltdyn.model.duty import DutyPoint
 from beltdyn.model.fatigue import CordFatigue, RibFatigue
 from beltdyn.model.pulley import Diameter, surface_part
 from beltdyn.model.stretch_curve import StretchCurve
@@ -39,7 +41,7 @@ from beltdyn.show.plot import FIGURES
 from beltdyn.show.plot.registry import on_request
 
 CHOSEN = {
-    Belt: ("elements", "discretization"),
+    Belt: ("length", "elements", "discretization"),
     Contact: ("stiffness", "damping", "creep_ratio", "standstill_creep"),
     Simulation: ("frame",),
 }
@@ -162,6 +164,7 @@ KEYS: dict[str, Any] = {
     "pulley": table(Pulley, Diameter),
     "surface": family({name: surface_part(kind) for name, kind in SURFACES.items()}),
     "contact": table(Contact),
+    "duty": table(DutyPoint),
     "simulation": table(Simulation),
     "steady": table(Steady),
     "limits": table(Limits),
@@ -169,6 +172,7 @@ KEYS: dict[str, Any] = {
     "harmonic": table(Harmonic),
     "crank": table(CrankSpeed),
     "load": family(LOADS, Load),
+    "arm": table(ArmAsSupplied),
     "hub": family(LINKS),
     "tensioner": family(TENSIONERS),
     "profile": family(PROFILES),

@@ -38,7 +38,8 @@ class SmallChanges:
     def __init__(self, given: Drive, rest: Standing) -> None:
         self._given, self._rest = given, rest
         self._tightening = np.inf
-        if given.belt.installed_tension is not None:
+        self._nominal = prepare(given).installed_tension
+        if self._nominal is not None:
             change = CHANGE * rest.prepared.belt_length
             shorter, longer = (self._tension(self._shortened(rest.drive, sense * change)) for sense in (1.0, -1.0))
             self._tightening = (shorter - longer) / (2.0 * change)
@@ -50,6 +51,8 @@ class SmallChanges:
             wanted *= value / float(self._given.belt.installed_tension or value)
         else:
             drive = drive.with_({path: value})
+            if self._nominal is not None and self._given.belt.installed_tension is None:
+                wanted *= (prepare(self._given.with_({path: value})).installed_tension or wanted) / self._nominal
         if np.isfinite(self._tightening):
             drive = self._shortened(drive, (wanted - self._tension(drive)) / self._tightening)
         return drive

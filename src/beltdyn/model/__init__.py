@@ -20,6 +20,7 @@ from beltdyn.machines import (
     Motor,
     MovingTensioner,
     OneWayClutch,
+    PowerTable,
     Profile,
     Pump,
     Ramp,
@@ -40,6 +41,7 @@ from beltdyn.model.belt import Belt
 from beltdyn.model.catalogue import Entry, read_catalogue
 from beltdyn.model.contact import Contact
 from beltdyn.model.drive import Drive
+from beltdyn.model.duty import DutyPoint
 from beltdyn.model.end import FixedEnd, PulledEnd, WeightEnd
 from beltdyn.model.fatigue import CordFatigue, RibFatigue
 from beltdyn.model.installation import Installation
@@ -69,6 +71,7 @@ __all__ = [
     "CosineRamp",
     "CosineRampPublished",
     "Drive",
+    "DutyPoint",
     "Entry",
     "Fan",
     "FixedEnd",
@@ -88,6 +91,7 @@ __all__ = [
     "OptimizationStudy",
     "ParameterStudy",
     "Path",
+    "PowerTable",
     "Prepared",
     "Profile",
     "PulledEnd",

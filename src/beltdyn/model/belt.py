@@ -105,7 +105,12 @@ class Belt(Part):
     either = ("length", "installed_tension")
     in_place_of = MappingProxyType({"nominal_length": "length"})
 
-    length: Length | None = Field(None, gt=0, description="the unstretched length of the belt, in m")
+    length: Length | None = Field(
+        None,
+        gt=0,
+        description="the unstretched length of the belt; without it and `installed_tension` that which sets the first "
+        "spring-loaded tensioner to its nominal position, in m",
+    )
     installed_tension: Force | None = Field(
         None, gt=0, description="the tension of the belt at rest in the drive, instead of its length, in N"
     )
@@ -327,12 +332,6 @@ class Belt(Part):
             )
         return self
 
-    @model_validator(mode="after")
-    def _has_length_or_tension(self) -> Self:
-        if self.length is None and self.installed_tension is None:
-            raise ValueError("length is missing. Give the unstretched length, nominal_length or installed_tension")
-        return self
-
     @property
     def given_length(self) -> float:
         """The given length, m.
@@ -343,10 +342,7 @@ class Belt(Part):
             If it is not given; the drive computes it, see `Drive.belt_length`.
         """
         if self.length is None:
-            raise ModelError(
-                f"belt.length is open; the drive computes it for installed_tension = {self.installed_tension:g} N. "
-                "Use drive.belt_length, or give length."
-            )
+            raise ModelError("belt.length is open; the drive computes it. Use drive.belt_length, or give length.")
         return self.length
 
     @property

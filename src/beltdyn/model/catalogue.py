@@ -85,6 +85,11 @@ class Entry(Part):
     pulley_diameter: Literal["datum", "effective", "outside"] = Field(
         "outside", description="the diameter that is twice the radius of a pulley: datum, effective or outside"
     )
+    groove_height: Length = Field(
+        0.0,
+        ge=0,
+        description="the height of the groove above the datum line, half of outside less datum diameter, in m",
+    )
     smallest_diameter: Length | None = Field(None, gt=0, description="the smallest recommended pulley diameter, in m")
     largest_fleeting_angle: Angle | None = Field(
         None, gt=0, lt=pi / 2, description="the largest fleeting angle of a span at a pulley, in rad"

@@ -72,6 +72,9 @@ def complete(layout: Layout) -> Completed:
         belt=belt.replace(**found, installed_tension=None), contact=_with_stiffness(contact, estimate.stiffness)
     )
     choices += _choices(given, estimate)
+    if layout.nominal is not None:
+        reason = f'sets the tensioner of "{layout.nominal}" to its nominal position'
+        choices = (Choice("belt.length", estimate.length, "m", reason), *choices)
     return Completed(
         belt=given.belt.replace(**_chosen(choices, "belt.")),
         pulleys=pulleys,

@@ -15,9 +15,11 @@ from beltdyn.elements import ELEMENTS, ElementKind
 from beltdyn.errors import ModelError
 from beltdyn.machines import FunctionLoad, MovingTensioner, Tensioner
 from beltdyn.machines.tensioners.registry import AnyTensioner
+from beltdyn.model.as_supplied import as_supplied
 from beltdyn.model.belt import Belt
 from beltdyn.model.completion import Completed, complete
 from beltdyn.model.contact import Contact
+from beltdyn.model.duty import DutyPoint, check_duty
 from beltdyn.model.end import AnyEnd, PathEnd, ends_on_path
 from beltdyn.model.layout import Given, Layout, lay_out
 from beltdyn.model.path import Path
@@ -38,9 +40,9 @@ _MOST_NAMED = 8
 class Drive(Part):
     """A belt drive, validated, with all derived values.
 
-    The constructor's arguments are `belt`, `pulley` (a list of pulleys, counter-clockwise), `contact`, `tensioner` and
-    `end` (lists), `simulation`, `steady` and `limits`, each a part or a mapping of its arguments, `gravity`, and `name`
-    and `description`.
+    The constructor's arguments are `belt`, `pulley` (a list of pulleys, counter-clockwise), `contact`, `tensioner`,
+    `end` and `duty` (lists), `simulation`, `steady` and `limits`, each a part or a mapping of its arguments, `gravity`,
+    and `name` and `description`.
 
     The parts hold only the given values, from which copies (`replace`) and files are made. Derived values are
     attributes of the drive: `belt_length`, also if the tension is given instead; `path` and `centers`, with pulleys of
@@ -72,6 +74,9 @@ class Drive(Part):
     ends: tuple[AnyEnd, ...] = Field(
         (), alias="end", description="the groups [[end]], first and second, of an open belt"
     )
+    duty: tuple[DutyPoint, ...] = Field(
+        (), description="the groups [[duty]], operating points with their shares of time"
+    )
     simulation: Simulation = Field(description="the group [simulation]")
     steady: Steady = Field(default_factory=Steady, description="the group [steady], the mesh of steady running")
     limits: Limits = Field(
@@ -85,8 +90,8 @@ class Drive(Part):
     def __repr__(self) -> str:
         names = [pulley.name for pulley in self.pulleys]
         pulleys = ", ".join(names) if len(names) <= _MOST_NAMED else f"{len(names)} pulleys"
-        belt, length = self.belt, self.belt.length
-        size = f"of {length:.5g} m" if length is not None else f"at {belt.installed_tension:.5g} N"
+        tension = self.belt.installed_tension if self.belt.length is None else None
+        size = f"of {self.belt_length:.5g} m" if tension is None else f"at {tension:.5g} N"
         tensioners = f", {len(self.tensioners)} tensioner{'s' * (len(self.tensioners) > 1)}" if self.tensioners else ""
         return f'Drive "{self.title}": {pulleys}; {"open " * bool(self.ends)}belt {size}{tensioners}'
 
@@ -97,6 +102,16 @@ class Drive(Part):
         refuse_functions(self, "other processes get a drive as text, without functions", "run it in this process")
         refuse_kinds_of_scripts(self)
         return drive_of_text, (self.text, tuple(dict.fromkeys(kind.origin for kind in self.own_kinds)))
+
+    @model_validator(mode="before")
+    @classmethod
+    def _takes_what_suppliers_give(cls, data: Any, info: ValidationInfo) -> Any:
+        return as_supplied(data, info)
+
+    @model_validator(mode="after")
+    def _duty_fits_the_pulleys(self) -> Self:
+        check_duty(self.duty, [one.name for one in self.pulleys])
+        return self
 
     @model_validator(mode="after")
     def _has_friction(self) -> Self:

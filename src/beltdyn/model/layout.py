@@ -81,6 +81,9 @@ class Layout(NamedTuple):
     """Around these pulleys."""
     choices: tuple[Choice, ...] = ()
     """Numerical parameters chosen for it."""
+    nominal: str | None = None
+    """Pulley of the tensioner that the belt's length sets to its nominal position; None if the length is given, or is
+    that for a given tension."""
 
 
 def loaded(belt: Belt, ends: tuple[PathEnd, ...]) -> Belt:
@@ -95,9 +98,14 @@ def lay_out(given: Given) -> Layout:
     Fixed tensioners move their pulleys; where a length and an installed tension are given, one of them takes up what is
     missing.
     """
+    nominal = _require_length(given)
     pulleys = given.pulleys_in_place
     path = given.path_around(pulleys)
     check_tensioners(given.tensioners, pulleys, path)
+    if nominal is not None:
+        tension = _nominal_tension(given, path)
+        belt = given.belt.replace(installed_tension=tension)
+        return Layout(given._replace(belt=belt), pulleys, path, nominal=nominal)
     if given.is_settled:
         check_length(given.belt.given_length, path.length)
     if given.belt.length is None or given.belt.installed_tension is None:
@@ -107,6 +115,31 @@ def lay_out(given: Given) -> Layout:
     given = _tightened(given, path)
     pulleys = given.pulleys_in_place
     return Layout(given, pulleys, given.path_around(pulleys), choices)
+
+
+def _require_length(given: Given) -> str | None:
+    """Pulley of the tensioner whose nominal position gives the length of the belt; None if length or tension do."""
+    belt = given.belt
+    if belt.length is not None or belt.installed_tension is not None:
+        return None
+    if given.ends or not given.has_springs:
+        raise ValueError(
+            "belt.length is missing. Give the unstretched length, nominal_length or installed_tension, or a "
+            "spring-loaded tensioner of a closed belt, whose nominal position then gives the length"
+        )
+    return next(one.pulley for one in given.tensioners if isinstance(one, MovingTensioner))
+
+
+def _nominal_tension(given: Given, path: Path) -> float:
+    """Tension with which the first spring-loaded tensioner stands at its nominal position, N."""
+    one = carriers_of(given.tensioners, given.names, path)[0]
+    force, lengthens = one.force(0.0), float(path.gradient(one.pulley) @ one.place(0.0)[1])
+    if not force > 0.0:
+        raise ValueError(
+            f'belt.length is missing, and the tensioner of "{one.tensioner.pulley}", whose nominal position would give '
+            f"it, has preload = {force:.4g} there. Give its preload at the nominal position, or the length of the belt"
+        )
+    return force / lengthens
 
 
 def with_chosen_stiffness(given: Given, path: Path) -> tuple[Given, tuple[Choice, ...]]:

@@ -11,7 +11,7 @@ from beltdyn.machines.loads.load import Load
 from beltdyn.model.alignment import judge_alignment
 from beltdyn.model.drive import Drive
 from beltdyn.model.installation import Installation
-from beltdyn.model.prepared import install
+from beltdyn.model.prepared import install, prepare
 from beltdyn.model.pulley import Pulley
 from beltdyn.parts.messages import Finding, listing
 from beltdyn.parts.quantity import RPM
@@ -26,6 +26,10 @@ _BLOW = 0.05
 """Change of tension by a sudden start, over the tension at rest, that gives a warning."""
 _ANGLES = 64
 """Angles over which the torque of a load is averaged."""
+_OFF_NOMINAL = 0.2
+"""Change of a spring's force from its preload, over it, from which the given center is not the nominal position."""
+_HEAVIER = 0.9
+"""Inertia of a tensioner without its pulley, over that with it, below which the mass of the pulley counts."""
 _TAKES = 1e-3
 """Least share of a load in the total power."""
 
@@ -36,6 +40,8 @@ def judge_plausibility(drive: Drive, installation: Installation) -> Iterator[Fin
     yield from _small_pulleys(drive)
     yield from _sides(drive)
     yield from _tight_side(drive, installation)
+    yield from _off_nominal(drive, installation)
+    yield from _massless(drive)
     yield from _sudden_start(drive, installation)
     yield from judge_alignment(drive, installation.path)
 
@@ -164,6 +170,47 @@ def _tight_side(drive: Drive, installation: Installation) -> Iterator[Finding]:
             f"slack-side tension of {max(held - total / speed, 0.0):.4g} N behind {name}, not {held:.4g} N.",
             f"Move it to the span where the belt leaves {name}, or reverse {name}: speeds are positive "
             "counter-clockwise.",
+        )
+
+
+def _off_nominal(drive: Drive, installation: Installation) -> Iterator[Finding]:
+    """Spring-loaded tensioners that rest far from the center that is given, where the preload is not that at rest."""
+    for carrier, position in zip(prepare(drive).carriers, installation.tensioner_positions.tolist(), strict=True):
+        one, there = carrier.tensioner, carrier.force(position)
+        if not abs(there - one.preload) > _OFF_NOMINAL * abs(one.preload):
+            continue
+        unit = "N m" if one.turns else "N"
+        leverage = abs(float(drive.path.gradient(carrier.pulley) @ carrier.place(0.0)[1]))
+        yield Finding(
+            f"the tensioner of {one.pulley} rests {one.written(position)} from the given center of its pulley, "
+            "where its "
+            f"spring gives {there:.4g} {unit}, not preload = {one.preload:.4g} {unit}.",
+            f"If the center is the nominal position, its tension is {one.preload / leverage:.4g} N, not "
+            f"{installation.tension:.4g} N at rest. preload is the force at the given center, not that of the free "
+            "arm.",
+            "Give center and preload of the same position, for an arm by free_angle; or omit the length of the belt, "
+            "which then sets the tensioner to its nominal position.",
+        )
+
+
+def _massless(drive: Drive) -> Iterator[Finding]:
+    """Spring-loaded tensioners without the mass of their pulleys, whose inertia shows that they have some."""
+    for one in drive.moving_tensioners:
+        number = drive.carried(one)
+        pulley, center = drive.pulleys[number], drive.centers[number]
+        least = pulley.inertia / pulley.radius**2
+        own = one.moved_inertia(center, 0.0)
+        whole = one.moved_inertia(center, least)
+        if pulley.mass > 0.0 or not own < _HEAVIER * whole:
+            continue
+        unit = "kg m^2" if one.turns else "kg"
+        yield Finding(
+            f"the pulley of the tensioner {one.pulley} has no mass, but its moment of inertia needs at least "
+            f"{least:.3g} kg at a radius of {1e3 * pulley.radius:.4g} mm.",
+            f"The tensioner moves {own:.3g} {unit} instead of {whole:.3g} {unit} or more, so its natural "
+            "frequencies are "
+            f"up to {math.sqrt(whole / own) - 1.0:.0%} too high.",
+            f"Give pulley[{one.pulley}].mass.",
         )
 
 

@@ -113,8 +113,8 @@ class Prepared:
 
     @property
     def installed_tension(self) -> float | None:
-        """Tension at rest that the drive asks for, N; None where the length gives it."""
-        return self.drive.belt.installed_tension
+        """Tension at rest that the drive or its nominal position ask for, N; None where the length gives it."""
+        return self.drive.layout.given.belt.installed_tension
 
     @property
     def belt_length(self) -> float:

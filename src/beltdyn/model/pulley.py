@@ -17,7 +17,7 @@ from beltdyn.machines.loads.registry import AnyLoad
 from beltdyn.machines.profiles.harmonic import SpeedHarmonics
 from beltdyn.machines.profiles.profile import Profile
 from beltdyn.machines.profiles.registry import SpeedProfile, TorqueProfile
-from beltdyn.model.belt import Belt, Side
+from beltdyn.model.belt import Belt, Side, read_side
 from beltdyn.model.contact import Contact
 from beltdyn.parts.kind_fields import OneOf, key_field
 from beltdyn.parts.part import Part
@@ -72,10 +72,14 @@ class Diameter(Part):
     )
 
 
+ON_THE_BELT = ("datum", "effective", "pitch", "outside")
+"""Kinds of diameters whose radius depends on the belt."""
+
+
 def _describe_diameter(schema: dict[str, Any]) -> None:
     """Add the diameter, which is replaced by the radius on reading, to the JSON schema."""
     schema["properties"] |= Diameter.model_json_schema()["properties"]
-    schema["required"].remove("radius")
+    schema["required"] = [key for key in schema["required"] if key not in ("radius", "center")]
     schema["anyOf"] = [{"required": ["radius"]}, {"required": ["diameter"]}]
 
 
@@ -102,6 +106,12 @@ class Pulley(Part):
     name: Name = Field(description="the name of the pulley, as text")
     center: tuple[Coordinate, Coordinate] = Field(description="the center of the pulley as [x, y], in m")
     radius: Length = Field(gt=0, description="the radius of the pulley at the contact surface of the belt, in m")
+    diameter_kind: Literal["datum", "effective", "pitch", "outside", "flat"] | None = Field(
+        None,
+        description='the kind of diameter: "datum" of V-belts, "effective" of V-ribbed belts, "pitch" of the tension '
+        'line, "outside" of the rim, or "flat" for the back of the belt; by default that by which pulleys of this belt '
+        "are sold",
+    )
     surface: AnySurface | None = Field(
         None, description="the surface, a group [pulley.surface], by default a smooth circle of this radius"
     )
@@ -132,8 +142,10 @@ class Pulley(Part):
     )
 
     def value_of(self, key: str) -> Any:
-        """As for any part; the diameter is twice the radius."""
-        return 2.0 * self.radius if key == "diameter" else super().value_of(key)
+        """As for any part; the diameter is twice the radius, unless its kind depends on the belt."""
+        if key == "diameter":
+            return None if self.diameter_kind in ("pitch", "outside") else 2.0 * self.radius
+        return super().value_of(key)
 
     @classmethod
     def alternatives(cls) -> Mapping[str, FieldInfo]:
@@ -146,12 +158,30 @@ class Pulley(Part):
         if not isinstance(data, Mapping) or "diameter" not in data:
             return data
         values = dict(data)
-        diameter = values.pop("diameter")
+        diameter, kind = values.pop("diameter"), values.get("diameter_kind")
         if diameter is None:
             return values
         if values.get("radius") is not None:
             raise ValueError("radius and diameter exclude each other. Keep one of them")
-        return values | {"radius": Diameter.model_validate({"diameter": diameter}).diameter / 2}
+        size = Diameter.model_validate({"diameter": diameter}).diameter
+        if kind in ON_THE_BELT:
+            raise ValueError(
+                f'diameter_kind = "{kind}" depends on the belt, which this pulley does not know. Give radius, or the '
+                "keys of the pulley as a mapping to Drive"
+            )
+        return values | {"radius": size / 2}
+
+    @model_validator(mode="before")
+    @classmethod
+    def _a_flat_runs_on_the_back(cls, data: Any) -> Any:
+        if not isinstance(data, Mapping) or data.get("diameter_kind") != "flat":
+            return data
+        if read_side(data.get("side", "outside")) != "outside":
+            raise ValueError(
+                'diameter_kind = "flat" is that of a pulley on the back of the belt, but side = "inside". Set side = '
+                '"outside", or another kind of diameter'
+            )
+        return {**data, "side": "outside"}
 
     @field_validator("center", mode="before")
     @classmethod

@@ -169,6 +169,8 @@ class Limits(Part):
     largest_utilization: Ratio | None = Field(
         None, gt=0, description="the largest utilization of a pulley: design power over the rated power of the belt"
     )
+    least_cord_life: Time | None = Field(None, gt=0, description="the least life of the cords, such as 5000 h, in s")
+    least_rib_life: Time | None = Field(None, gt=0, description="the least life of the ribs, in s")
     service_factor: Ratio | None = Field(
         None, gt=0, le=5, description="the service factor, design power over power, in the utilization; by default 1"
     )

@@ -27,6 +27,9 @@ _MORE_UNITS = "newton_meter = newton * meter = Nm", "newton_millimeter = newton 
 """Spellings of drive engineers; kNm etc. follow."""
 _TURNS = re.compile(r"(?:U|rev|1) ?/ ?min|min(?:\^|\*\*)?-1|min⁻¹")
 """Other spellings of rpm for angular speeds."""
+_SENSE = re.compile(r"(?P<rest>.*?)\s+(?P<sense>clockwise|cw|counter-clockwise|ccw)\s*", re.DOTALL)
+"""The sense of a speed or torque, for clockwise drives with positive numbers."""
+_WITH_SENSE = frozenset({"rad/s", "N*m"})
 _CELSIUS = re.compile("°\\s?C")
 """The degree Celsius, whose sign no name of a unit has."""
 _LONGEST_TEXT = 60
@@ -54,7 +57,9 @@ def _registry() -> "pint.UnitRegistry[float]":
 
 
 def to_si(text: str, unit: str) -> float:
-    """Convert a text such as ``"25 mm"`` into a number in `unit`."""
+    """Convert a text such as ``"25 mm"``, or ``"800 rpm clockwise"``, into a number in `unit`."""
+    if unit in _WITH_SENSE and len(text) <= _LONGEST_TEXT and (match := _SENSE.fullmatch(text)):
+        return to_si(match["rest"], unit) * (-1.0 if match["sense"] in ("clockwise", "cw") else 1.0)
     nominal, tolerance = _without_tolerance(text, unit)
     match = _NUMBER.fullmatch(nominal) if len(text) <= _LONGEST_TEXT else None
     if match is None:

@@ -14,7 +14,8 @@ from beltdyn.transient.sweep import without_schedules
 def held_at(drive: Drive, at: float | str | None) -> Drive:
     """Hold speeds, torques and schedules as they are at an instant, with the belt's length or take-up found."""
     held = at_instant(drive, at)
-    return held if held.belt.installed_tension is None else bring_to_stand(prepare(held)).drive
+    prepared = prepare(held)
+    return held if prepared.installed_tension is None else bring_to_stand(prepared).drive
 
 
 def at_instant(drive: Drive, at: float | str | None) -> Drive:
@@ -63,6 +64,20 @@ def with_torque(drive: Drive, number: int, torque: float) -> Drive:
         )
     motors = tuple(load for load in one.load if is_motor(load))
     return with_pulley(drive, number, one.replace(torque=Constant(value=torque), load=motors))
+
+
+def with_power(drive: Drive, number: int, power: float) -> Drive:
+    """Let the shaft of a pulley take a power (W) at its speed without slip, in place of its torque and loads."""
+    driver = driver_of(drive)
+    speed = drive.pulleys[driver].speed
+    turning = 0.0 if speed is None else float(speed.at([0.0])[0]) * float(drive.path.radii[driver])
+    if turning == 0.0:
+        raise ModelError(
+            f"the power of {drive.pulleys[number].name} needs the speed of {drive.pulleys[driver].name}. Give the "
+            "speed, "
+            "or a torque in place of the power."
+        )
+    return with_torque(drive, number, -power / (turning / float(drive.path.radii[number])))
 
 
 def with_load(drive: Drive, factor: float) -> Drive:

@@ -1,9 +1,9 @@
 """Duty cycle: operating points of a duty table, and means weighted by duration."""
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from functools import partial
 from pathlib import Path
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -11,14 +11,29 @@ from numpy.typing import ArrayLike, NDArray
 from beltdyn.arrays import FloatArray
 from beltdyn.errors import ModelError
 from beltdyn.model import Drive
+from beltdyn.model.duty import PASS, columns_of
 from beltdyn.parts.table_file import HeadedColumn, read_headed
-from beltdyn.points.changed_drive import at_speed, held_at, with_load, with_torque
+from beltdyn.points.changed_drive import at_speed, driver_of, held_at, sense_of, with_load, with_power, with_torque
 from beltdyn.points.operating_points import VARIABLES, Axes, OperatingPoints
 from beltdyn.results import Result, Variable
 from beltdyn.solvers.progress import Report
 
-UNITS = {"duration": "s", "load": "", "temperature": "degC", "speed": "rad/s", "torque": "N m"}
+UNITS = {
+    "duration": "s",
+    "share": "",
+    "load": "",
+    "temperature": "degC",
+    "speed": "rad/s",
+    "torque": "N m",
+    "power": "W",
+}
 """What columns hold, and their SI units."""
+_OF_PULLEYS = ("speed", "torque", "power")
+_HEADINGS = (
+    '"duration [s]" or "share [%]", "load", "temperature [°C]", "speed [rpm]" of the driver, or "NAME speed '
+    '[rpm]", "NAME '
+    'torque [N m]" or "NAME power [kW]"'
+)
 _MEANS = ("pulley_slip", "power", "hub_load", "span_tension", "loss")
 _EXPONENT = 3.0
 """Of the load in the life of ball bearings (ISO 281)."""
@@ -28,17 +43,17 @@ class Column(NamedTuple):
     """A column of a duty table."""
 
     what: str
-    """"duration", "load", "temperature", "speed" or "torque"."""
+    """"duration", "load", "temperature", "speed", "torque" or "power"."""
     pulley: str
-    """Of a speed or torque; empty of others."""
-    values: list[float]
-    """In SI units."""
+    """Of a speed, torque or power; empty of others, and of the driver's speed in its sense of rotation."""
+    values: Sequence[Any]
+    """In SI units; None where a row leaves it open."""
 
 
 def duty(
     drive: Drive,
     *,
-    table: Path | str,
+    table: Path | str | None = None,
     at: float | str | None = None,
     force_tolerance: float | None = None,
     output: Path | str | None = None,
@@ -47,17 +62,18 @@ def duty(
 ) -> Result:
     r"""Compute the operating points of a duty table, with means weighted by duration.
 
-    The table is a CSV file with a line of headings: "duration [s]", "NAME speed [rpm]" and "NAME torque [N m]" of
-    pulleys, "load", the factor on all torques and loads of the drive file but those of motors, and "temperature [°C]"
-    of the belt, on which its life depends. Each line is an operating point. Quantities without a column are those of
-    the drive file.
+    The table is that of the drive file, its groups ``[[duty]]``, or a CSV file with a line of headings: "duration [s]"
+    or "share [%]" of time, "speed [rpm]" of the driver in its sense of rotation, "NAME power [kW]", the power that a
+    pulley takes, or "NAME torque [N m]" and "NAME speed [rpm]", counter-clockwise positive, "load", the factor on all
+    torques and loads of the drive file but those of motors, and "temperature [°C]" of the belt, on which its life
+    depends. Each line is an operating point. Quantities without a column are those of the drive file.
 
     Parameters
     ----------
     drive
         The drive.
     table
-        The CSV file.
+        The CSV file; by default the groups ``[[duty]]`` of the drive file.
     at
         Instant at which the rest of the drive is evaluated, such as "0.5 s", or in s; by default the end of the
         simulation.
@@ -81,7 +97,7 @@ def duty(
     Raises
     ------
     ModelError
-        If the file is not a duty table, or the drive cannot run steadily.
+        If there is no duty table, or the drive cannot run steadily.
     ConvergenceError
         If no row has steady running.
 
@@ -92,7 +108,9 @@ def duty(
     >>> bd.duty(drive, table="duty.csv").dataset.efficiency.dims
     ('row',)
     """
-    columns = read_duty(Path(table))
+    columns = duty_of(drive, table)
+    if columns is None:
+        raise ModelError("the drive has no duty. Give groups [[duty]] in the drive file, or a CSV file with table.")
     held = held_at(drive, at)
     durations = durations_of(columns)
     axes = {"row": (Variable(("row",), "1", "Row", "int64"), np.arange(1, durations.size + 1))}
@@ -104,44 +122,60 @@ def duty(
     return points.result()
 
 
+def duty_of(drive: Drive, table: Path | str | None) -> list[Column] | None:
+    """The duty of a table, or else of the drive file; None without either."""
+    if table is not None:
+        return read_duty(Path(table))
+    return [Column(*key, values) for key, values in columns_of(drive.duty).items()] if drive.duty else None
+
+
 def read_duty(path: Path) -> list[Column]:
-    """Read a duty table."""
+    """Read a duty table; shares of time are those of an hour."""
     columns = [_column(one) for one in read_headed("table", path)]
-    durations = [one.values for one in columns if one.what == "duration"]
-    if len(durations) != 1 or min(durations[0]) < 0.0 or not sum(durations[0]) > 0.0:
-        raise ModelError(f'{path} needs one column "duration [s]" of non-negative numbers, not all zero.')
+    times = [(place, one) for place, one in enumerate(columns) if one.what in ("duration", "share")]
+    numbers = [value for _, one in times for value in one.values if value is not None]
+    if len(times) != 1 or min(numbers) < 0.0 or not sum(numbers) > 0.0:
+        raise ModelError(
+            f'{path} needs one column "duration [s]" or "share [%]" of non-negative numbers, not all zero.'
+        )
+    place, time = times[0]
+    scale = PASS if time.what == "share" else 1.0
+    columns[place] = Column("duration", "", [scale * value for value in numbers])
     return columns
 
 
 def _column(given: HeadedColumn) -> Column:
     """A column in SI units."""
     pulley, _, what = given.what.rpartition(" ")
-    if what not in UNITS or bool(pulley) != (what in ("speed", "torque")):
-        raise ModelError(
-            f'{given.path}: the heading "{given.what}" must be "duration [s]", "load", "temperature [°C]", "NAME speed '
-            '[rpm]" or "NAME torque [N m]".'
-        )
+    if what not in UNITS or (bool(pulley) != (what in _OF_PULLEYS) and given.what != "speed"):
+        raise ModelError(f'{given.path}: the heading "{given.what}" must be {_HEADINGS}.')
     return Column(what, pulley.strip(), given.values(UNITS[what]))
 
 
 def durations_of(columns: list[Column]) -> FloatArray:
     """Durations of the rows of a table, s."""
-    return np.array(next(one.values for one in columns if one.what == "duration"))
+    return np.array(next(one.values for one in columns if one.what == "duration"), dtype=float)
 
 
 def at_row(held: Drive, columns: list[Column], row: int) -> Drive:
-    """The drive at the operating point of a row of a table."""
-    loads = [one.values[row] for one in columns if one.what == "load"]
-    if loads and loads[0] < 0.0:
-        raise ModelError(f"row {row + 1}: load = {loads[0]:g} is negative, with which loads would drive.")
-    changed = with_load(held, loads[0] if loads else 1.0)
-    for one in columns:
-        if one.pulley:
-            change = at_speed if one.what == "speed" else with_torque
-            changed = change(changed, held.number_of(one.pulley), one.values[row])
+    """The drive at the operating point of a row of a table: speeds first, from which powers give torques."""
+    given = [(one, value) for one in columns if (value := one.values[row]) is not None]
+    load = next((value for one, value in given if one.what == "load"), 1.0)
+    if load < 0.0:
+        raise ModelError(f"row {row + 1}: load = {load:g} is negative, with which loads would drive.")
+    changed = with_load(held, load)
+    for one, value in sorted(given, key=lambda column: column[0].what != "speed"):
+        if one.what == "speed" and not one.pulley:
+            driver = driver_of(held)
+            changed = at_speed(changed, driver, sense_of(held, driver) * value)
+        elif one.what in _CHANGES:
+            changed = _CHANGES[one.what](changed, held.number_of(one.pulley), value)
         elif one.what == "temperature":
-            changed = changed.replace(belt=changed.belt.replace(temperature=one.values[row]))
+            changed = changed.replace(belt=changed.belt.replace(temperature=value))
     return changed
+
+
+_CHANGES = {"speed": at_speed, "torque": with_torque, "power": with_power}
 
 
 def _means(arrays: Mapping[str, NDArray[np.float64]], durations: NDArray[np.float64]) -> Axes:

@@ -12,7 +12,7 @@ from beltdyn.arrays import FloatArray
 from beltdyn.errors import ModelError
 from beltdyn.model import Drive, load
 from beltdyn.points.changed_drive import held_at
-from beltdyn.points.duty import Column, at_row, durations_of, read_duty
+from beltdyn.points.duty import Column, at_row, durations_of, duty_of
 from beltdyn.points.operating_points import PULLEY, Axes, OperatingPoints
 from beltdyn.results import Result, Run, Variable, open_result
 from beltdyn.results.belt_history import turn_history
@@ -56,7 +56,8 @@ def life(
     drive
         The drive; its belt has `cord_fatigue` or `rib_fatigue`, as some profiles have.
     table
-        The duty table, a CSV file as for `duty`; by default the drive as it is, for an hour.
+        The duty table, a CSV file as for `duty`; by default the groups ``[[duty]]`` of the drive file, and without
+        these the drive as it is, for an hour.
     run
         A run over time of this drive, such as a start or a run-up, or its result file. Its damage is added.
     repeats
@@ -98,7 +99,7 @@ def life(
     1.0
     """
     _require_data(drive)
-    columns = [Column("duration", "", [HOUR])] if table is None else read_duty(Path(table))
+    columns = duty_of(drive, table) or [Column("duration", "", [HOUR])]
     held, durations = held_at(drive, at), durations_of(columns)
     event = None if run is None else _repeated(damage_of_run(_run_of(drive, run)), repeats)
     compared = None if reference is None else _reference(reference, partial(life, table=table, at=at))

@@ -8,6 +8,7 @@ import numpy as np
 
 from beltdyn.analyses import EQUILIBRIUM, RUN
 from beltdyn.arrays import FloatArray
+from beltdyn.model import Limits
 from beltdyn.results.means import pulley_means
 from beltdyn.results.result import Result
 from beltdyn.results.run import Run
@@ -62,11 +63,18 @@ def key_numbers(result: Result) -> tuple[KeyNumber, ...]:
     ['largest slip', 'largest hub load']
     """
     limits, found = result.drive.limits, _FINDERS.get(result.kind)
-    return tuple(KeyNumber(*one, getattr(limits, one[0])) for one in found(result)) if found else ()
+    return tuple(KeyNumber(*one, _limit(limits, *one)) for one in found(result)) if found else ()
 
 
 Found = tuple[str, float, str, str]
 """Key, value, unit, and where."""
+_HOUR = 3600.0
+
+
+def _limit(limits: Limits, key: str, _value: float, unit: str, _where: str) -> float | None:
+    """A limit of the drive file in the unit of its key number."""
+    limit: float | None = getattr(limits, key)
+    return limit / _HOUR if limit is not None and unit == "h" else limit
 
 
 def _of_run(run: Result) -> Iterator[Found]:
@@ -111,6 +119,16 @@ def _of_table(result: Result) -> Iterator[Found]:
             yield _worst(key, values, unit, places, list(map(str, dataset[of].values)))
 
 
+def _of_life(result: Result) -> Iterator[Found]:
+    yield from _of_table(result)
+    dataset = result.dataset
+    for what in ("cord", "rib"):
+        if f"{what}_life" in dataset:
+            share = dataset[f"{what}_share"]
+            most = str(share["pulley"].values[int(share.values.argmax())]) if share.notnull().any() else ""
+            yield f"least_{what}_life", float(dataset[f"{what}_life"]), "h", f"{most}, largest share" if most else ""
+
+
 def _places(dataset: "xr.Dataset") -> list[str]:
     """The operating points in words, in the order of the table; one empty text at rest."""
     axes = [dataset[name] for name in str(dataset.attrs.get("axes", "")).split()]
@@ -133,5 +151,6 @@ def _worst(key: str, values: FloatArray, unit: str, places: Sequence[str], of: S
 _FINDERS: dict[str, Callable[[Result], Iterator[Found]]] = {
     RUN: _of_run,
     **dict.fromkeys((EQUILIBRIUM, "operating_map", "duty"), _of_table),
+    "life": _of_life,
 }
 """Kind of result -> what finds its key numbers."""

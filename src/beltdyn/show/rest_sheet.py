@@ -54,7 +54,7 @@ def rest_sheet(given: Drive, drive: Drive, installation: Installation) -> Sheet:
 
 
 def _facts(given: Drive, drive: Drive, installation: Installation) -> list[tuple[str, str]]:
-    asked_for = given.belt.installed_tension is not None
+    asked_for = prepare(given).installed_tension is not None
     length, path = drive.belt_length, installation.path.length
     unused = unused_settings(drive.belt, drive.contact) if drive.frame.stays else []
     return [

@@ -218,7 +218,7 @@ def test_a_tightened_belt_of_given_length_takes_up_more(make_drive: MakeDrive) -
 
 def test_what_is_open_has_no_value_before_the_drive(make_drive: MakeDrive) -> None:
     drive = make_drive("flat", contact={"allowed_penetration": 1e-5}, installed_tension=200.0)
-    with pytest.raises(ModelError, match=r"belt\.length is open.* installed_tension = 200 N\. Use drive.belt_length"):
+    with pytest.raises(ModelError, match=r"belt\.length is open; .* Use drive\.belt_length"):
         _ = drive.belt.given_length
     with pytest.raises(ModelError, match=r"contact\.stiffness is open; .* Use prepare\(drive\)\.contact"):
         _ = drive.contact.given("stiffness")

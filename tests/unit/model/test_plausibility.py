@@ -6,7 +6,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from beltdyn.model import Drive, advise, install, loads
+from beltdyn.model import Drive, advise, install, loads, prepare
 from beltdyn.model.plausibility import judge_plausibility, other_diameters
 
 EXAMPLES = {
@@ -123,3 +123,23 @@ def test_a_start_whose_speeds_jump() -> None:
     assert told(drive.with_({"simulation.start": "steady"})) == []
     rising = {"kind": "cosine_ramp", "start": 0.0, "end": 0.1, "value": "7640 rpm"}
     assert told(two_pulleys(belt, speed=rising)) == []
+
+
+def test_a_center_that_is_not_that_of_the_preload() -> None:
+    """The belt of another position: the arm turns until its spring balances it."""
+    drive = EXAMPLES["alternator_drive"]
+    wrong = drive.with_({"belt.length": 1.01 * drive.belt_length})
+    (text,) = [one for one in told(wrong) if "not preload" in one]
+    there = install(wrong)
+    (carrier,) = prepare(wrong).carriers
+    assert f"its spring gives {carrier.force(float(there.tensioner_positions[0])):.4g} N m" in text
+    assert f"not {there.tension:.4g} N at rest" in text
+
+
+def test_a_tensioner_without_the_mass_of_its_pulley() -> None:
+    """A rim of the moment of inertia J and the radius R has a mass of J / R^2 or more."""
+    drive = EXAMPLES["accessory_drive"].with_({"pulley[tensioner].mass": 0.0, "pulley[tensioner].inertia": "6 kg cm^2"})
+    (text,) = told(drive)
+    least, arm = 6e-4 / 0.035**2, 6e-4
+    assert f"needs at least {least:.3g} kg at a radius of 35 mm" in text
+    assert f"up to {np.sqrt(1.0 + least * 0.075**2 / arm) - 1.0:.0%} too high" in text

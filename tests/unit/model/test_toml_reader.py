@@ -58,6 +58,7 @@ def test_schema_knows_every_group() -> None:
         "contact",
         "tensioner",
         "end",
+        "duty",
         "simulation",
         "steady",
         "limits",

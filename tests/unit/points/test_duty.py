@@ -49,6 +49,26 @@ def test_means(table: Path) -> None:
     assert float(found.equivalent_hub_load[0]) == pytest.approx(cubic)
 
 
+def test_powers_and_shares_of_a_file_and_of_the_drive_give_the_same(tmp_path: Path) -> None:
+    """At the speeds without slip; shares are of an hour."""
+    drive: Drive = better(loaded_two_pulley())
+    file = tmp_path / "duty.csv"
+    file.write_text("share [%], speed [rpm], driven power [kW]\n25, 1000, 2.0\n75, 600, 1.5\n", encoding="utf-8")
+    points = [
+        {"share": 0.25, "speed": "1000 rpm", "power": {"driven": "2 kW"}},
+        {"share": 0.75, "speed": "600 rpm", "power": {"driven": "1.5 kW"}},
+    ]
+    one, other = duty(drive, table=file).dataset, duty(drive.replace(duty=points)).dataset
+    np.testing.assert_allclose(one.duration, [900.0, 2700.0])
+    ratio = float(drive.radii[0] / drive.radii[1])
+    torques = np.array([-2000.0, -1500.0]) / (ratio * np.array([1000.0, 600.0]) * np.pi / 30.0)
+    np.testing.assert_allclose(one.shaft_torque.sel(pulley="driven"), torques)
+    for name in ("power_in", "span_tension", "duration", "mean_efficiency"):
+        np.testing.assert_allclose(other[name], one[name])
+    with pytest.raises(ModelError, match=r"the drive has no duty\. Give groups \[\[duty\]\]"):
+        duty(drive)
+
+
 @pytest.mark.parametrize(
     ("text", "words"),
     [
@@ -56,7 +76,8 @@ def test_means(table: Path) -> None:
         ("load\n1\n", 'needs one column "duration'),
         ("duration [s]\n-1\n", 'needs one column "duration'),
         ("duration [s], wind\n1, 2\n", 'the heading "wind" must be'),
-        ("duration [s], speed [rpm]\n1, 2\n", 'the heading "speed" must be'),
+        ("duration [s], torque [N m]\n1, 2\n", 'the heading "torque" must be'),
+        ("duration [s], share [%]\n1, 2\n", 'needs one column "duration'),
         ("duration [s], load\n1\n", "line 2: 1 cells but 2 headings"),
         ("duration [s], load\n1, many\n", 'line 2: "many"'),
         ("duration [s], driver speed [m]\n1, 2\n", "must be in units of rad/s"),

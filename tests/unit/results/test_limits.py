@@ -8,6 +8,7 @@ import pytest
 import xarray as xr
 
 from beltdyn.model import Drive
+from beltdyn.points.life import life
 from beltdyn.results import KeyNumber, Result, Run, key_numbers
 
 LIMITS = {"largest_slip": 0.01, "largest_hub_load": 130.0, "least_slip_safety": 4.0}
@@ -72,3 +73,14 @@ def test_a_belt_of_a_rated_profile_is_judged_by_its_utilization(make_run: Callab
     assert found.passes is (found.value <= 0.5)
     assert (found.unit, served.passes) == ("%", None)
     assert served.value == pytest.approx(1.4 * found.value)
+
+
+def test_lives_are_judged_in_hours(drive: Drive) -> None:
+    line = {"cycles": [1e7, 1e9], "forces": [100.0, 50.0], "bending_force": 0.1, "source": "test"}
+    limited = drive.replace(belt=drive.belt.replace(cord_fatigue=line), limits={"least_cord_life": "100 h"})
+    result = life(limited)
+    found = by_key(result)["least_cord_life"]
+    assert (found.unit, found.limit) == ("h", 100.0)
+    assert found.value == pytest.approx(float(result.dataset.cord_life))
+    assert found.passes is (found.value >= 100.0)
+    assert "largest share" in found.where

@@ -19,3 +19,6 @@ from beltdyn.machines.loads.table import (
 from beltdyn.machines.loads.table import (
     LoadTable as LoadTable,
 )
+from beltdyn.machines.loads.table import (
+    PowerTable as PowerTable,
+)

@@ -3,7 +3,7 @@
 from abc import abstractmethod
 from collections.abc import Mapping, Sequence
 from math import ceil, tau
-from typing import Any, Literal, Self
+from typing import Annotated, Any, Literal, Self
 
 import numpy as np
 from pydantic import ConfigDict, Field, ValidationInfo, model_validator
@@ -13,7 +13,7 @@ from beltdyn.kernel import kernel
 from beltdyn.kinds import register
 from beltdyn.machines.loads.load import Load, LoadTorque, ShaftState, nearer_kink
 from beltdyn.machines.profiles.functions import first_above
-from beltdyn.parts.quantity import Angle, AngularSpeed, Torque
+from beltdyn.parts.quantity import Angle, AngularSpeed, Power, Torque
 from beltdyn.parts.table_file import check_points, describe_file, take_file, take_grid
 from beltdyn.records import record
 
@@ -107,6 +107,62 @@ class LoadTable(Load):
     def numbers(self) -> Sequence[float]:
         """Speeds, rad/s, then torques, N m."""
         return (*self.speeds, *self.torques)
+
+
+# A power over speed, as sheets of accessories give it
+
+
+@register
+class PowerTable(Load):
+    """The power that an accessory takes over its speed, by one point or more; it opposes the motion in either sense.
+
+    The torques of the points, power over speed, are joined by straight lines; the torque is constant beyond the last
+    point, and proportional to the speed before the first. The points are `speeds` and `powers`, or the two columns of
+    the CSV file `file`, which is read when the table is made: a relative path starts at the folder of the drive file.
+
+    Examples
+    --------
+    >>> load = bd.model.PowerTable(kind="power", speeds=["3000 rpm"], powers=["2 kW"])
+    >>> load.torque_over([0.0], 314.16).round(3).item()
+    -6.366
+    """
+
+    constants = LOAD_TABLE
+    torque_at = interpolated
+    next_kink = next_point
+
+    model_config = ConfigDict(
+        json_schema_extra=lambda schema: describe_file(schema, ("speeds", "powers"), "two columns, speeds and powers")
+    )
+
+    kind: Literal["power"] = Field(description="the kind of load")
+    speeds: tuple[Annotated[AngularSpeed, Field(gt=0)], ...] = Field(
+        min_length=1, description="the speeds of the points, of either sense, in rad/s"
+    )
+    powers: tuple[Annotated[Power, Field(ge=0)], ...] = Field(
+        min_length=1, description="the powers taken at these speeds, in W"
+    )
+
+    @model_validator(mode="before")
+    @classmethod
+    def _read_file(cls, data: Any, info: ValidationInfo) -> Any:
+        return take_file(data, info, "speeds", "powers")
+
+    @model_validator(mode="after")
+    def _is_a_function_of_speed(self) -> Self:
+        check_points("speeds", self.speeds, "powers", self.powers)
+        return self
+
+    def values(self) -> Mapping[str, Any]:
+        """The number of its points, of both senses and at rest."""
+        return {"count": 2 * len(self.speeds) + 1}
+
+    @property
+    def numbers(self) -> Sequence[float]:
+        """Speeds, rad/s, then torques, N m."""
+        torques = [power / speed for speed, power in zip(self.speeds, self.powers, strict=True)]
+        speeds = [*(-one for one in reversed(self.speeds)), 0.0, *self.speeds]
+        return (*speeds, *reversed(torques), 0.0, *(-one for one in torques))
 
 
 # A torque over the shaft angle through points, periodic and smooth, and optionally over speed

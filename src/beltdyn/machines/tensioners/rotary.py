@@ -2,20 +2,24 @@
 
 from collections.abc import Mapping
 from math import cos, sin
+from types import MappingProxyType
 from typing import Annotated, Any, ClassVar, Literal
 
 import numpy as np
-from pydantic import Field
+from pydantic import ConfigDict, Field, model_validator
+from pydantic.fields import FieldInfo
 
 from beltdyn.arrays import FloatArray
 from beltdyn.kernel import kernel
 from beltdyn.kinds import register
 from beltdyn.machines.tensioners.tensioner import LEAST_LEVERAGE, SPRING, Center, MovingTensioner
+from beltdyn.parts.part import Part
 from beltdyn.parts.quantity import (
     Angle,
     AngularSpeed,
     Coordinate,
     Inertia,
+    Length,
     Mass,
     Ratio,
     Torque,
@@ -25,6 +29,36 @@ from beltdyn.parts.quantity import (
 from beltdyn.records import record
 
 ArmAngle = Annotated[Angle, Field(ge=-np.pi, le=np.pi)]
+
+Sense = Literal["counter-clockwise", "clockwise"]
+
+
+class ArmAsSupplied(Part):
+    """The arm of a tensioner by its angles, counter-clockwise from the x axis."""
+
+    arm_length: Length | None = Field(
+        None, gt=0, description="the length of the arm, instead of the center of its pulley, in m"
+    )
+    arm_angle: Angle | None = Field(
+        None, description="the angle of the arm at its nominal position, counter-clockwise from the x axis, in rad"
+    )
+    free_angle: Angle | None = Field(
+        None,
+        description="the angle of the free arm, whose spring has no torque: with `rate` it gives `preload`; without "
+        "`arm_angle` and center, and with `preload` and `sense`, the nominal position, in rad",
+    )
+    load_stop_angle: Angle | None = Field(
+        None,
+        description="the angle of the arm at its load stop: it gives `stops`, the other one at the free arm, in rad",
+    )
+
+
+def _describe_arm(schema: dict[str, Any]) -> None:
+    """Add the angles, which are replaced by center, preload and stops on reading, to the JSON schema."""
+    schema["properties"] |= ArmAsSupplied.model_json_schema()["properties"]
+    schema["required"].remove("preload")
+    schema["anyOf"] = [{"required": ["preload"]}, {"required": ["free_angle"]}]
+
 
 ARM = record(
     pivot="2f8",  # p, m
@@ -56,6 +90,8 @@ class RotaryTensioner(MovingTensioner):
     (0.1, 0.05)
     """
 
+    model_config = ConfigDict(json_schema_extra=lambda schema: _describe_arm(schema))
+    in_place_of = MappingProxyType({"free_angle": "preload", "load_stop_angle": "stops"})
     turns: ClassVar[bool] = True
     constants = ARM
     center_at = rotary_center
@@ -71,6 +107,9 @@ class RotaryTensioner(MovingTensioner):
     )
     preload: Torque = Field(description="the spring moment at the given pulley center, in N*m")
     rate: TorsionalStiffness = Field(0.0, ge=0, description="the spring rate, in N*m/rad")
+    sense: Sense | None = Field(
+        None, description="the sense in which the spring turns the arm; by default that in which the path lengthens"
+    )
     damping: TorsionalDamping = Field(0.0, ge=0, description="the viscous damping, in N m s/rad")
     tensioning_friction: Torque = Field(0.0, ge=0, description="the dry friction while the path lengthens, in N*m")
     yielding_friction: Torque = Field(0.0, ge=0, description="the dry friction while the path shortens, in N*m")
@@ -80,6 +119,23 @@ class RotaryTensioner(MovingTensioner):
     )
     stop_stiffness: TorsionalStiffness | None = Field(None, gt=0, description="the stiffness of the stops, in N*m/rad")
     stop_damping: TorsionalDamping = Field(0.0, ge=0, description="the damping of the stops, in N m s/rad")
+
+    @classmethod
+    def alternatives(cls) -> Mapping[str, FieldInfo]:
+        """The angles replace center, preload and stops."""
+        return ArmAsSupplied.model_fields
+
+    @model_validator(mode="before")
+    @classmethod
+    def _knows_its_pulley(cls, data: Any) -> Any:
+        arm = {key: data[key] for key in ArmAsSupplied.model_fields if key in data} if isinstance(data, Mapping) else {}
+        if not arm:
+            return data
+        ArmAsSupplied.model_validate(arm)
+        raise ValueError(
+            f"{next(iter(arm))} depends on the pulley, which this tensioner does not know. Give preload, stops and the "
+            "center of the pulley, or the keys of the tensioner as a mapping to Drive"
+        )
 
     @property
     def anchor(self) -> tuple[float, float]:
@@ -99,6 +155,15 @@ class RotaryTensioner(MovingTensioner):
             raise ValueError(
                 f'the arm of the tensioner of "{self.pulley}" cannot tension the belt: its rotation hardly changes the '
                 "length of the path. Move its pivot"
+            )
+        if self.sense is not None and (found > 0.0) != (self.sense == "counter-clockwise"):
+            other = "clockwise" if found < 0.0 else "counter-clockwise"
+            raise ValueError(
+                f'sense = "{self.sense}" of the tensioner of "{self.pulley}": its spring would slacken the belt, '
+                "whose path "
+                f"lengthens by {abs(found) * self.reach(center):.3g} m per rad as the arm turns {other}. Correct "
+                "the sense, "
+                "or the side of the belt that touches the pulley"
             )
         return found
 

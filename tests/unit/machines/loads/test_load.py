@@ -3,11 +3,12 @@
 from pathlib import Path
 from typing import Any
 
+import numpy as np
 import pytest
 
 from beltdyn.errors import ModelError
 from beltdyn.machines import Load
-from beltdyn.model import LoadTable, Motor, Resistance
+from beltdyn.model import LoadTable, Motor, PowerTable, Resistance
 
 MOTOR = {"kind": "motor", "breakdown_torque": "12 N m", "breakdown_slip": 0.2, "synchronous_speed": "1500 rpm"}
 
@@ -35,6 +36,8 @@ MOTOR = {"kind": "motor", "breakdown_torque": "12 N m", "breakdown_slip": 0.2, "
             "file and speeds and torques exclude each other",
         ),
         (LoadTable, {"kind": "table", "file": "nowhere.csv"}, "cannot be read"),
+        (PowerTable, {"kind": "power", "speeds": [0.0], "powers": [1.0]}, "must be greater than 0"),
+        (PowerTable, {"kind": "power", "speeds": [1.0], "powers": [-1.0]}, "must be at least 0"),
         (Motor, MOTOR | {"synchronous_speed": 0.0}, "synchronous_speed = 0 leaves the slip undefined"),
         (Motor, MOTOR | {"breakdown_slip": 1.2}, "must be at most 1"),
         (Motor, MOTOR | {"breakdown_torque": 0.0}, "must be greater than 0"),
@@ -61,6 +64,25 @@ def test_a_table_from_a_file(tmp_path: Path) -> None:
     file.write_text("speed,torque\n0,0\n100, -3.5\n")
     table = LoadTable.model_validate({"kind": "table", "file": file})
     assert (table.speeds, table.torques) == ((0.0, 100.0), (0.0, -3.5))
+
+
+def test_power_over_speed_opposes_the_motion_in_either_sense(tmp_path: Path) -> None:
+    """2 kW at 1000 rpm and 3 kW at 3000 rpm: 19.10 and 9.55 N m, on straight lines, constant beyond."""
+    load = PowerTable(kind="power", speeds=["1000 rpm", "3000 rpm"], powers=["2 kW", "3 kW"])
+    rpm = np.pi / 30.0
+    torques = [2000.0 / (1000.0 * rpm), 3000.0 / (3000.0 * rpm)]
+    for speed, expected in (
+        (500.0, torques[0] / 2),
+        (1000.0, torques[0]),
+        (2000.0, np.mean(torques)),
+        (9e3, torques[1]),
+    ):
+        for sense in (1.0, -1.0):
+            found = load.torque_over(np.zeros(1), sense * speed * rpm)[0]
+            assert found == pytest.approx(-sense * expected)
+    file = tmp_path / "pump.csv"
+    file.write_text("speed [rpm],power [kW]\n1000,2\n3000,3\n")
+    assert PowerTable.model_validate({"kind": "power", "file": file}).powers == load.powers
 
 
 def test_a_motor_drives_up_to_its_synchronous_speed_and_a_resistance_drives_nothing() -> None:
