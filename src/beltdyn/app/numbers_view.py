@@ -10,7 +10,7 @@ from nicegui import background_tasks, ui
 from beltdyn.app.computing import PREPARING, Answer, Asked, Calculator
 from beltdyn.app.session import Session
 from beltdyn.errors import BeltdynError
-from beltdyn.model import install
+from beltdyn.model import estimate_at_rest, prepare
 from beltdyn.show.rest_sheet import rest_sheet
 from beltdyn.show.sheet import Facts, Table
 
@@ -120,7 +120,8 @@ class NumbersView:
         drive = self._session.draft.drive
         assert drive is not None
         try:
-            parts, told = rest_sheet(drive, drive, install(drive)).parts, ""
+            prepared, found = estimate_at_rest(prepare(drive))
+            parts, told = rest_sheet(drive, prepared.drive, found, computed=False).parts, ""
         except BeltdynError as error:
             parts, told = (), str(error)
         self._show(Answer(parts, (), told, 0.0))

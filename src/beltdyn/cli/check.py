@@ -16,11 +16,13 @@ def check(
     /,
     *more: Path,
     figure: Annotated[Path | None, Parameter(alias="-f")] = None,
+    equilibrium: bool | None = None,
     force: Annotated[bool, Parameter(negative="")] = False,
 ) -> int:
     """Validate drive files, and show each drive at rest.
 
-    All files are checked, even if some are invalid; the exit code is 2 if any file is invalid.
+    The answer says whether it is the computed equilibrium or that of closed forms, which need no compilation. All files
+    are checked, even if some are invalid; the exit code is 2 if any file is invalid.
 
     Parameters
     ----------
@@ -31,11 +33,13 @@ def check(
     figure
         Also plot the layout of a single drive to this file, such as layout.png. Only figures that beltdyn wrote are
         replaced.
+    equilibrium
+        Whether to compute the static equilibrium. By default it is computed where its kernels are compiled.
     force
         Also replace files that beltdyn did not write.
     """
     if not more:
-        _check(file, figure, force)
+        _check(file, figure, equilibrium, force)
         return 0
     if figure is not None:
         raise ModelError(
@@ -45,14 +49,14 @@ def check(
     for number, one in enumerate((file, *more)):
         show("\n" * (number > 0) + str(one))
         try:
-            _check(one, None, force)
+            _check(one, None, equilibrium, force)
         except BeltdynError as error:
             show_error("\n".join(lines_of_file(one, error)))
             codes.append(error.exit_code)
     return min(codes, default=0)
 
 
-def _check(file: Path, figure: Path | None, force: bool) -> None:
+def _check(file: Path, figure: Path | None, equilibrium: bool | None, force: bool) -> None:
     """Check one drive file."""
     from beltdyn.model import load
     from beltdyn.show.check import check as check_drive
@@ -63,12 +67,14 @@ def _check(file: Path, figure: Path | None, force: bool) -> None:
 
         require_replaceable(figure, is_marked, force)
     with progress_bar() as report:
-        checked = check_drive(drive, report)
+        checked = check_drive(drive, report, equilibrium=equilibrium)
     if checked.failure:
-        show("No static equilibrium was found. These are closed-form estimates without bending and weight.\n")
+        show("No static equilibrium was found. These are closed forms.\n")
     show_parts(checked.sheet.parts)
     show()
     show_warnings(checked.warnings)
+    if not (checked.computed or checked.failure):
+        show(f"Compute the static equilibrium: beltdyn check {file} --equilibrium")
     if figure is None:
         show(f"Plot the layout: beltdyn check {file} --figure layout.png")
     else:

@@ -12,7 +12,7 @@ from beltdyn.kernel.cache import (
     kernel_cache,
     source_hash,
 )
-from beltdyn.kernel.decorator import Kernel, interpreted, kernel
+from beltdyn.kernel.decorator import Kernel, interpreted, kernel, runs_compiled
 from beltdyn.kernel.kinds import KernelKinds, KindRows, labels
 from beltdyn.kernel.progress import CompilationReport, observe_compilation, report_compilation, watch_compilation
 
@@ -35,6 +35,7 @@ __all__ = [
     "labels",
     "observe_compilation",
     "report_compilation",
+    "runs_compiled",
     "source_hash",
     "watch_compilation",
 ]

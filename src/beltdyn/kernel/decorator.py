@@ -1,14 +1,16 @@
 """The one decorator of compiled code.  Numba is imported at the first call of a kernel, not where it is written."""
 
 import functools
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
 from contextvars import ContextVar
 from typing import Any, Generic, ParamSpec, TypeVar, cast, overload
 from weakref import WeakSet
 
 P = ParamSpec("P")
 R = TypeVar("R")
-_interpreting = ContextVar("_interpreting", default=False)
+_COMPILE, _INTERPRET, _LOAD = range(3)
+_mode = ContextVar("_mode", default=_COMPILE)
 _kernels: WeakSet["Kernel[..., Any]"] = WeakSet()
 
 
@@ -30,9 +32,17 @@ class Kernel(Generic[P, R]):
 
     def __call__(self, *args: P.args, **kwargs: P.kwargs) -> R:
         """Call the compiled function, or inside of `interpreted` the function itself."""
-        if _interpreting.get():
-            return self.py_func(*args, **kwargs)
+        if mode := _mode.get():
+            if mode == _INTERPRET:
+                return self.py_func(*args, **kwargs)
+            if not self._is_kept(args):
+                raise _NotCompiledError
         return cast(R, self.dispatcher(*args, **kwargs))
+
+    def _is_kept(self, args: tuple[Any, ...]) -> bool:
+        """Whether a call needs no compilation; Numba's own decorator does not say."""
+        is_kept = getattr(self.dispatcher, "is_kept", None)
+        return is_kept(args) if is_kept is not None else self.dispatcher is self.py_func
 
     def __reduce__(self) -> tuple[type["Kernel[P, R]"], tuple[Callable[P, R], bool]]:
         return Kernel, (self.py_func, self.inline)
@@ -71,10 +81,30 @@ def interpreted(function: Callable[P, R]) -> Callable[P, R]:
     """Let Python run a kernel and those that it calls, for a few calls where nothing is to be compiled."""
 
     def run(*args: P.args, **kwargs: P.kwargs) -> R:
-        token = _interpreting.set(True)
-        try:
+        with _in_mode(_INTERPRET):
             return function(*args, **kwargs)
-        finally:
-            _interpreting.reset(token)
 
     return run
+
+
+def runs_compiled(function: Callable[P, object], *args: P.args, **kwargs: P.kwargs) -> bool:
+    """Run a function up to the first call that needs compilation; whether there is none, with plain compilation no."""
+    try:
+        with _in_mode(_LOAD):
+            function(*args, **kwargs)
+    except _NotCompiledError:
+        return False
+    return True
+
+
+class _NotCompiledError(Exception):
+    """A kernel is not compiled for its arguments."""
+
+
+@contextmanager
+def _in_mode(mode: int) -> Iterator[None]:
+    token = _mode.set(mode)
+    try:
+        yield
+    finally:
+        _mode.reset(token)

@@ -91,6 +91,12 @@ class QuickDispatcher(CPUDispatcher):  # type: ignore[misc]
             if collecting:
                 gc.enable()
 
+    def is_kept(self, arguments: tuple[Any, ...]) -> bool:
+        """Whether a call with these arguments needs no compilation."""
+        sig = tuple(map(self.typeof_pyval, arguments))
+        entry = self._entry(sig)
+        return sig in self.overloads or (entry is not None and entry.is_file())
+
     @cached_property
     def _files(self) -> "_Cache | None":
         """Where its machine code is kept; nowhere without a file that its source comes from."""

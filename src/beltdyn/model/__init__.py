@@ -50,6 +50,7 @@ from beltdyn.model.prepared import Prepared, install, prepare, tensioner_balance
 from beltdyn.model.pulley import Pulley
 from beltdyn.model.rating import Rating
 from beltdyn.model.resolution import ERROR_LIMITS, Running, elements_needed, layer_lengths, mesh_errors, unresolved
+from beltdyn.model.rest_estimate import estimate_at_rest
 from beltdyn.model.simulation import Limits, Simulation, Steady
 from beltdyn.model.study import CalibrationStudy, OptimizationStudy, ParameterStudy
 from beltdyn.model.tensioner_balance import TensionerBalance
@@ -116,6 +117,7 @@ __all__ = [
     "describe_time",
     "dumps",
     "elements_needed",
+    "estimate_at_rest",
     "example",
     "install",
     "json_schema",

@@ -16,7 +16,14 @@ from typing import BinaryIO
 
 import numpy as np
 
-from beltdyn.kernel import CACHE_VARIABLE, holds_kernels, kernel_cache, report_compilation, watch_compilation
+from beltdyn.kernel import (
+    CACHE_VARIABLE,
+    holds_kernels,
+    kernel_cache,
+    report_compilation,
+    runs_compiled,
+    watch_compilation,
+)
 from beltdyn.observation.band_limit import compile_filter
 from beltdyn.results.friction_work import ARC_PARTS, Touch, WorkSoFar, add_friction_work
 from beltdyn.results.mid_span import fill_mid_spans
@@ -38,13 +45,31 @@ def compile_kernels(system: System, state: State) -> None:
     """Call every kernel that static equilibrium, generalized-alpha and observation need, on no work at all."""
     with _second_process(system, state):
         _compile_observing(system)
+        _compile_recording()
     compile_solving(system, state)
 
 
+def compile_for_rest(system: System, state: State) -> None:
+    """Call the kernels that static equilibrium needs."""
+    with _second_process(system, state):
+        _compile_observing(system)
+    compile_solving(system, state)
+
+
+def rest_is_compiled(system: System, state: State) -> bool:
+    """Whether static equilibrium needs no compilation."""
+    if not holds_kernels(kernel_cache()):
+        return False  # without the import of Numba
+    return runs_compiled(_compile_observing, system) and runs_compiled(compile_solving, system, state)
+
+
 def _compile_observing(system: System) -> None:
+    observe(system, np.empty(0), np.empty((0, 0)), np.empty((0, 0)))
+
+
+def _compile_recording() -> None:
     time, states, places = np.empty(0), np.empty((0, 0)), np.empty((0, 0, 2))
     shown, touched = np.empty(0, dtype=np.bool_), np.empty((0, 0), dtype=np.int8)
-    observe(system, time, states, states)
     touch, work = Touch(time, places, places, touched, states), np.empty((0, 0, ARC_PARTS + 1))
     done = WorkSoFar(np.empty((2, 0, 0)), states)
     add_friction_work(touch, np.empty((0, 0, 3)), time, time, shown, done, work)

@@ -1,14 +1,14 @@
 """Check a drive before any analysis: at rest, with what is probably not meant."""
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 from beltdyn.errors import ConvergenceError
-from beltdyn.model import Drive, Installation, advise, install, unstable_balance
+from beltdyn.model import Drive, Installation, advise, estimate_at_rest, install, prepare, unstable_balance
 from beltdyn.show.notebook import picture, templates
 from beltdyn.show.rest_sheet import rest_sheet
 from beltdyn.show.sheet import Sheet, as_text
 from beltdyn.solvers.progress import Report
-from beltdyn.state.installation import bring_to_rest
+from beltdyn.state.installation import bring_to_rest, is_compiled
 
 
 @dataclass(frozen=True, repr=False)
@@ -18,19 +18,21 @@ class Check:
     drive: Drive
     """The drive, with the belt length or the take-up that gives its installed tension."""
     installation: Installation
-    """Tension, penetrations, hub loads and span frequencies at rest, of the equilibrium or, without one, estimated."""
+    """Tension, penetrations, hub loads and span frequencies at rest."""
     warnings: list[str]
     """What is probably not meant, by how much it matters, and remedies."""
     sheet: Sheet
     """Tables and facts for a reader."""
+    computed: bool = field(default=True)
+    """Whether the installation is that of the computed equilibrium, and not of closed forms."""
     failure: ConvergenceError | None = field(default=None)
-    """Why there is no static equilibrium."""
+    """Why there is no static equilibrium, if it was sought."""
 
     def __repr__(self) -> str:
         count = len(self.warnings)
         return (
             f'Check of "{self.drive.title}": {self.installation.tension:.4g} N at rest'
-            f"{' (estimated)' * (self.failure is not None)}, {count or 'no'} warning{'s' * (count != 1)}"
+            f"{' (closed form)' * (not self.computed)}, {count or 'no'} warning{'s' * (count != 1)}"
         )
 
     def __str__(self) -> str:
@@ -42,8 +44,11 @@ class Check:
         return page.render(**shown, kind="drive", status="at rest", warnings=self.warnings)
 
 
-def check(drive: Drive, progress: Report | None = None) -> Check:
+def check(drive: Drive, progress: Report | None = None, *, equilibrium: bool | None = None) -> Check:
     """Bring a drive to rest, and look for what is probably not meant.
+
+    Closed forms need no compilation of kernels. Their tensions, hub loads and span frequencies are within 1 % of the
+    computed equilibrium on meshes that resolve the tension; see `beltdyn.model.estimate_at_rest`.
 
     Parameters
     ----------
@@ -51,11 +56,13 @@ def check(drive: Drive, progress: Report | None = None) -> Check:
         The drive.
     progress : callable, optional
         Called with a `Progress` before compilation and before the search.
+    equilibrium : bool, optional
+        Whether to compute the static equilibrium; by default where its kernels are compiled.
 
     Returns
     -------
     Check
-        Of closed-form estimates, without bending and weight, and with a `failure`, if there is no static equilibrium.
+        With a `failure`, and of closed forms, if there is no static equilibrium.
 
     Examples
     --------
@@ -65,11 +72,20 @@ def check(drive: Drive, progress: Report | None = None) -> Check:
     >>> checked.installation.hub_loads.shape
     (2, 2)
     """
-    estimate = install(drive)
-    try:
-        rest = bring_to_rest(drive, progress)
-    except ConvergenceError as error:
-        return Check(drive, estimate, advise(drive, estimate), rest_sheet(drive, drive, estimate), error)
-    unstable = [str(unstable_balance(rest.unstable))] if rest.unstable else []
-    found = rest.installation
-    return Check(rest.drive, found, [*unstable, *advise(drive, estimate)], rest_sheet(drive, rest.drive, found))
+    told = advise(drive, install(drive))
+    if equilibrium or (equilibrium is None and is_compiled(drive)):
+        try:
+            rest = bring_to_rest(drive, progress)
+        except ConvergenceError as error:
+            return replace(_estimated(drive, told), failure=error)
+        unstable = [str(unstable_balance(rest.unstable))] if rest.unstable else []
+        found = rest.installation
+        return Check(rest.drive, found, [*unstable, *told], rest_sheet(drive, rest.drive, found))
+    return _estimated(drive, told)
+
+
+def _estimated(drive: Drive, told: list[str]) -> Check:
+    """A drive at rest by closed forms."""
+    prepared, found = estimate_at_rest(prepare(drive))
+    sheet = rest_sheet(drive, prepared.drive, found, computed=False)
+    return Check(prepared.drive, found, told, sheet, computed=False)

@@ -34,10 +34,13 @@ _HALF_TURN = 179.95
 """Angle from which a direction is shown as 180.0, degrees."""
 
 
-def rest_sheet(given: Drive, drive: Drive, installation: Installation) -> Sheet:
-    """Summarize a drive at rest."""
+_METHODS = {False: "closed form, within 1 % of the computed equilibrium; penetrations less so", True: "computed"}
+
+
+def rest_sheet(given: Drive, drive: Drive, installation: Installation, *, computed: bool = True) -> Sheet:
+    """Summarize a drive at rest, as computed or by closed forms."""
     parts: list[Table | Facts] = [
-        Facts(tuple(_facts(given, drive, installation))),
+        Facts((*_facts(given, drive, installation), ("static equilibrium", _METHODS[computed]))),
         Table("Pulleys at rest", _PULLEY_HEADINGS, tuple(_pulleys(drive, installation))),
         Table("Spans at rest", _SPAN_HEADINGS, tuple(_spans(drive, installation))),
     ]

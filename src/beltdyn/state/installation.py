@@ -15,7 +15,7 @@ from beltdyn.model import Drive, Installation
 from beltdyn.model import Path as BeltPath
 from beltdyn.model.prepared import Prepared, prepare
 from beltdyn.model.tensioner_balance import balance_tensioners
-from beltdyn.observation.compilation import compile_kernels
+from beltdyn.observation.compilation import compile_for_rest, rest_is_compiled
 from beltdyn.parts.messages import listing
 from beltdyn.solvers.progress import Phase, Progress, Report
 from beltdyn.state.static import find_equilibrium, standing, tensioner_compliance
@@ -148,12 +148,19 @@ def rest_of(prepared: Prepared, progress: Report | None = None) -> Rest:
     """Static equilibrium of a drive on equal elements, with its installed tension, if given; see `bring_to_rest`."""
     system = drive_system(prepared)
     _tell(prepared, progress, "compiling")
-    compile_kernels(system, laid(system, prepared.path))
+    compile_for_rest(system, laid(system, prepared.path))
     _tell(prepared, progress, "equilibrium")
     rest, wanted = _at_rest(prepared), prepared.installed_tension
     if wanted is not None:
         rest = tighten(rest, wanted, _at_rest)
     return rest._replace(unstable=_unstable(rest))
+
+
+def is_compiled(drive: Drive) -> bool:
+    """Whether `bring_to_rest` needs no compilation."""
+    prepared = prepare(on_equal_elements(drive))
+    system = drive_system(prepared)
+    return rest_is_compiled(system, laid(system, prepared.path))
 
 
 def on_equal_elements(drive: Drive) -> Drive:

@@ -1,5 +1,6 @@
 """Tension of a belt at rest on pulleys of penalty contact: stretch, penetration, ends of contact."""
 
+from math import sqrt
 from typing import NamedTuple
 
 from beltdyn.errors import ModelError
@@ -51,7 +52,8 @@ def static_tension(
     """
     from scipy.optimize import brentq
 
-    belt = _Belt(length, distance, radii, law, contact_stiffness, bending_stiffness)
+    section = Section(law, contact_stiffness, bending_stiffness)
+    belt = _Belt(length, distance, radii, section)
     rigid = float(law.tension(open_belt(distance, radii).length / length))
     most = min(1.1 * rigid, _DEEPEST * contact_stiffness * min(radii) ** 2)
     least = max(1e-3 * most, 4.0 * bending_stiffness / min(radii) ** 2)
@@ -61,7 +63,7 @@ def static_tension(
             "the belt is slack, or too stiff in bending to follow them. Shorten it."
         )
     found = float(brentq(lambda tension: _path(belt, tension)[1] - length, least, most))
-    one, other = _arcs(belt, found)
+    one, other = (arc_at_rest(section, found, radius) for radius in radii)
     return StaticTension(found, (one.tension, other.tension), (one.depth, other.depth), _path(belt, found)[0])
 
 
@@ -71,46 +73,94 @@ class _Belt(NamedTuple):
     length: float
     distance: float
     radii: tuple[float, float]
+    section: "Section"
+
+
+class Section(NamedTuple):
+    """What a belt is made of, and how hard its contact is."""
+
     law: StretchParameters
     contact: float
+    """N/m^2."""
     bending: float
+    """N m^2."""
 
 
-class _Arc(NamedTuple):
+class ArcAtRest(NamedTuple):
     """A belt in the middle of its arc on a pulley."""
 
     tension: float
+    """N."""
     stretch: float
     depth: float
+    """Penetration, m."""
 
 
 def _path(belt: _Belt, tension: float) -> tuple[float, float]:
     """Length of the path under a tension of the spans, and unstretched length of the belt on it, m."""
-    arcs = _arcs(belt, tension)
+    arcs = [arc_at_rest(belt.section, tension, radius) for radius in belt.radii]
     inner = belt.radii[0] - arcs[0].depth, belt.radii[1] - arcs[1].depth
     way = open_belt(belt.distance, inner)
-    ends = sum(2 * _end(arc.depth, radius, belt.bending / tension) for arc, radius in zip(arcs, inner, strict=True))
-    unstretched = (2 * way.span + ends) / float(belt.law.stretch(tension))
+    ends = sum(
+        2 * end_of_contact(arc.depth, radius, belt.section.bending / tension)
+        for arc, radius in zip(arcs, inner, strict=True)
+    )
+    unstretched = (2 * way.span + ends) / float(belt.section.law.stretch(tension))
     for arc, radius, wrap in zip(arcs, inner, way.wrap, strict=True):
         unstretched += radius * wrap / arc.stretch
     return way.length + ends, unstretched
 
 
-def _arcs(belt: _Belt, tension: float) -> tuple[_Arc, _Arc]:
-    """Both arcs under a tension of the spans."""
-    return _arc(belt, tension, belt.radii[0]), _arc(belt, tension, belt.radii[1])
+def arc_at_rest(section: Section, tension: float, radius: float) -> ArcAtRest:
+    """Depth, stretch and tension in the middle of an arc, under a tension of the spans (N), on a radius (m).
 
-
-def _arc(belt: _Belt, tension: float, radius: float) -> _Arc:
-    """Depth, stretch and tension on an arc; what the depth adds to the tension converges like d / R."""
+    What the depth adds to the tension converges like d / R.
+    """
     here, depth = tension, 0.0
     for _ in range(50):
-        g = float(belt.law.stretch(here))
-        depth = 0.5 * (radius - (radius**2 - 4.0 * here * g / belt.contact) ** 0.5)
-        here = tension + 0.5 * belt.contact * depth**2 / g - 2.0 * belt.bending / (radius - depth) ** 2
-    return _Arc(here, float(belt.law.stretch(here)), depth)
+        g = float(section.law.stretch(here))
+        depth = 0.5 * (radius - max(radius**2 - 4.0 * here * g / section.contact, 0.0) ** 0.5)
+        here = tension + 0.5 * section.contact * depth**2 / g - 2.0 * section.bending / (radius - depth) ** 2
+    return ArcAtRest(here, float(section.law.stretch(here)), depth)
 
 
-def _end(depth: float, radius: float, bend: float) -> float:
-    """What an end of contact adds to the path, m; bend is EI / T0, m^2."""
+def end_of_contact(depth: float, radius: float, bend: float) -> float:
+    """What an end of contact adds to the path around a radius inside of the penetration, m; bend is EI / T0, m^2."""
     return float(5 / 12 * depth * (radius * depth) ** 0.5 / radius + bend**1.5 / (12 * radius**2))
+
+
+def span_radius(depth: float, radius: float, bend: float, wrap: float) -> float:
+    """Radius of the circle around the center of a pulley that the lines of its straight spans touch, m.
+
+    Without friction the moment of tension T and bending moment M about the center is the same along the belt. With that
+    in the middle of the arc, of curvature 1/R and with T_a = T + k_p d^2 / 2 - EI / 2 R^2 and M = EI / R,
+
+        R_s = R - d / 2 + EI / 2 T R.
+
+    A wrap angle below 2 l / R with l^2 = EI / T is too small for this curvature. The belt touches the rim at a point,
+    bends there by wrap / 2 to both sides within l, and R_s = R cos(wrap / 2) + l sin(wrap / 2), to second order
+
+        R_s = R - d / 2 + l a - R a^2 / 2,   a = min(wrap / 2, l / R),
+
+    which is both.
+
+    Parameters
+    ----------
+    depth : float
+        Penetration d, m.
+    radius : float
+        R of the pulley, m.
+    bend : float
+        EI / T, m^2.
+    wrap : float
+        Angle between the spans, rad.
+
+    Examples
+    --------
+    >>> from beltdyn.theory.static_tension import span_radius
+    >>> span_radius(0.0, 0.05, 4e-6, wrap=3.0)  # EI / 2 T R = 0.04 mm
+    0.05004
+    """
+    length = sqrt(bend)
+    bent = min(0.5 * wrap, length / radius)
+    return radius - 0.5 * depth + bent * (length - 0.5 * radius * bent)

@@ -1,12 +1,13 @@
 """The decorator of kernels: nothing is compiled before the first call, or at all where Python is to run them."""
 
 import pickle
+from time import perf_counter
 from typing import Any
 
 import numpy as np
 import pytest
 
-from beltdyn.kernel import interpreted, kernel
+from beltdyn.kernel import compiles_quickly, interpreted, kernel, runs_compiled
 
 
 @kernel
@@ -42,6 +43,20 @@ def test_python_runs_a_kernel_and_those_that_it_calls(monkeypatch: pytest.Monkey
     assert interpreted(fresh)(4.0) == 8.0
     with pytest.raises(AssertionError, match="compiled"):
         fresh(4.0)
+
+
+def test_what_is_not_compiled_is_known_without_compilation() -> None:
+    factor = perf_counter()  # no other run of the test has it, or its machine code
+
+    @kernel
+    def fresh(x: float) -> float:
+        return factor * x
+
+    assert not runs_compiled(fresh, 1.0)
+    assert not fresh.dispatcher.signatures  # type: ignore[attr-defined]
+    assert fresh(1.0) == factor
+    assert runs_compiled(fresh, 1.0) or not compiles_quickly()
+    assert not runs_compiled(fresh, 1)  # for integers it is another
 
 
 def test_an_error_ends_the_interpretation() -> None:

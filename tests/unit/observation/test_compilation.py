@@ -10,6 +10,7 @@ import pytest
 from beltdyn.observation.compilation import usable_cores
 
 COMPILE = """
+from beltdyn.model import prepare
 from validation.published import loaded_two_pulley
 from beltdyn.observation.compilation import compile_kernels
 from beltdyn.solvers.engine import dispatch

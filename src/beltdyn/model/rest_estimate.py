@@ -1,0 +1,190 @@
+"""The belt at rest in closed form, with bending stiffness, penetration and weight.
+
+Spans pull along tangents of circles of `theory.static_tension.span_radius`, so that hub loads on pulleys of small wrap
+differ from those of a path without penetration. The length of the belt is that of `theory.static_tension`; sag adds
+(w l)^2 l / 24 T^2 to a span of length l with the weight w across it. Between heights the tension differs by the weight
+of the belt between them. Neglected are the weight of tensioners, and what arcs miss that are shorter than the layers at
+their ends.
+"""
+
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+
+from beltdyn.arrays import FloatArray
+from beltdyn.model.carrier import moved
+from beltdyn.model.installation import Installation
+from beltdyn.model.path import Path
+from beltdyn.model.prepared import Prepared
+from beltdyn.theory.static_tension import ArcAtRest, Section, arc_at_rest, end_of_contact, span_radius
+
+_ROUNDING = 1e-9
+_STEP = 1e-5
+_MOST_STEPS = 20
+
+
+def estimate_at_rest(prepared: Prepared) -> tuple[Prepared, Installation]:
+    """Estimate the belt at rest, without compiled code.
+
+    Parameters
+    ----------
+    prepared : Prepared
+        The drive.
+
+    Returns
+    -------
+    prepared : Prepared
+        With the belt length, or the take-up, that gives the installed tension, if given.
+    installation : Installation
+        Within 1 % of static equilibrium where arcs are several times as long as the layers at their ends, penetrations
+        excepted. A slack belt has the estimate without bending and weight.
+
+    Raises
+    ------
+    ModelError
+        If no belt or no take-up gives the installed tension.
+
+    Examples
+    --------
+    >>> prepared, installation = bd.model.estimate_at_rest(bd.model.prepare(drive))
+    >>> print(f"{installation.tension:.2f} N")
+    26.74 N
+    """
+    belt = _balanced(prepared)
+    if belt is None:
+        return prepared, prepared.installation
+    if prepared.installed_tension is not None:
+        missing = prepared.belt_length - belt.length
+        prepared = prepared.tightened(missing if prepared.drive.belt.length is None else missing * belt.stretch)
+    depths = belt.tension * belt.stretch / (prepared.radii * prepared.contact_stiffness)
+    return prepared, prepared.installed(belt.span_tensions, depths, belt.hub_loads, belt.positions)
+
+
+@dataclass(frozen=True)
+class _Belt:
+    """A belt at rest under a tension of its spans, with the spring-loaded tensioners at some positions."""
+
+    prepared: Prepared
+    tension: float
+    positions: FloatArray
+
+    @cached_property
+    def arcs(self) -> list[ArcAtRest]:
+        """The middle of each arc."""
+        belt = self.prepared.belt
+        section = Section(belt.stretch_parameters, self.prepared.contact_stiffness, belt.bending_stiffness)
+        return [arc_at_rest(section, self.tension, radius) for radius in self.prepared.radii.tolist()]
+
+    @cached_property
+    def spans(self) -> Path:
+        """The path whose spans are the lines of the spans."""
+        path = self.prepared.path
+        for _ in range(_MOST_STEPS):
+            wraps, before = path.wrap_angles.tolist(), path.radii
+            path = self._around(
+                [span_radius(arc.depth, r, self._bend, wrap) for (arc, r), wrap in zip(self._rims, wraps, strict=True)]
+            )
+            if np.all(np.abs(path.radii - before) <= _ROUNDING * np.abs(before)):
+                break
+        return path
+
+    @property
+    def stretch(self) -> float:
+        """Of the spans."""
+        return float(self.prepared.belt.stretch_parameters.stretch(self.tension))
+
+    @property
+    def length(self) -> float:
+        """Unstretched length, m."""
+        inner = [radius - arc.depth for arc, radius in self._rims]
+        path = self._around(inner)
+        sag = float(np.sum((self._across * path.span_lengths / self.tension) ** 2 * path.span_lengths)) / 24.0
+        ends = sum(
+            2.0 * end_of_contact(arc.depth, r, self._bend) for (arc, _), r in zip(self._rims, inner, strict=True)
+        )
+        on_arcs = sum(
+            wrap * r / arc.stretch for wrap, r, arc in zip(path.wrap_angles.tolist(), inner, self.arcs, strict=True)
+        )
+        return float((path.span_lengths.sum() + sag + ends) / self.stretch + on_arcs)
+
+    @property
+    def excess(self) -> FloatArray:
+        """Force of each spring and its stops over that of the belt, N or N m; see `balance_tensioners`."""
+        excess = [
+            one.force(q) - self.tension * float(self.spans.gradient(one.pulley) @ one.place(q)[1])
+            for one, q in zip(self.prepared.carriers, self.positions.tolist(), strict=True)
+        ]
+        return np.array(excess)
+
+    @property
+    def span_tensions(self) -> FloatArray:
+        """In the middle of the spans, N; the mean of a closed belt, and that at a pulled end, is the tension."""
+        lifted = -(self.spans.span_points.mean(axis=1) @ self._weight)
+        pulled = [number for number, end in enumerate(self.prepared.path_ends) if end.pull is not None]
+        if self.spans.ends is None or not pulled:
+            return np.asarray(self.tension + lifted - lifted.mean())
+        return np.asarray(self.tension + lifted + self.spans.ends[pulled[0]] @ self._weight)
+
+    @property
+    def hub_loads(self) -> FloatArray:
+        """Of the spans, and of the weight of the belt up to their middles, N, shape (n, 2)."""
+        path, pulls = self.spans, self.span_tensions[:, None] * self.spans.span_directions
+        before = np.arange(path.count) - 1
+        carried = path.wrap_angles * np.abs(path.radii) + 0.5 * (
+            path.span_lengths[before] + path.span_lengths[: path.count]
+        )
+        return np.asarray(pulls[: path.count] - pulls[before] + carried[:, None] * self._weight)
+
+    @property
+    def _bend(self) -> float:
+        return self.prepared.belt.bending_stiffness / self.tension
+
+    @property
+    def _rims(self) -> list[tuple[ArcAtRest, float]]:
+        return list(zip(self.arcs, self.prepared.radii.tolist(), strict=True))
+
+    @property
+    def _weight(self) -> FloatArray:
+        """Of a meter of the stretched belt, N/m, shape (2,)."""
+        return self.prepared.belt.mass_per_length / self.stretch * np.array(self.prepared.gravity)
+
+    @property
+    def _across(self) -> FloatArray:
+        x, y = self._weight
+        return np.asarray(self.spans.span_directions @ np.array([-y, x]))
+
+    def _around(self, radii: list[float]) -> Path:
+        path = self.prepared.path
+        return moved(Path(path.centers, np.sign(path.radii) * radii, path.ends), self.prepared.carriers, self.positions)
+
+
+def _balanced(prepared: Prepared) -> _Belt | None:
+    """The belt with its tension, and its tensioners in balance, by Newton's method; None if slack or not found."""
+    first, given = prepared.installation, prepared.installed_tension or prepared.loaded_belt.installed_tension
+    if not first.tension > 0.0:
+        return None
+
+    def belt_at(unknown: FloatArray) -> _Belt:
+        tension = given if given is not None else first.tension * float(unknown[-1])
+        return _Belt(prepared, tension, first.tensioner_positions + travel * unknown[: len(travel)])
+
+    def residual(unknown: FloatArray) -> FloatArray:
+        belt = belt_at(unknown)
+        forces = belt.excess * travel / (first.tension * size)
+        return forces if given is not None else np.append(forces, (belt.length / prepared.belt_length - 1.0) / strain)
+
+    size = float(prepared.radii.min())
+    travel = np.array([size / np.linalg.norm(one.place(0.0)[1]) for one in prepared.carriers])
+    strain = max(first.strain, _STEP)
+    unknown = np.append(np.zeros(len(travel)), [1.0] * (given is None))
+    try:
+        for _ in range(_MOST_STEPS):
+            missing = residual(unknown)
+            if np.all(np.abs(missing) < _ROUNDING):
+                return belt_at(unknown)
+            slopes = [(residual(unknown + _STEP * way) - missing) / _STEP for way in np.eye(len(unknown))]
+            unknown = unknown - np.linalg.solve(np.transpose(slopes), missing)
+    except (ValueError, np.linalg.LinAlgError):
+        return None
+    return None
