@@ -12,7 +12,7 @@ from beltdyn.model.alignment import judge_alignment
 from beltdyn.model.drive import Drive
 from beltdyn.model.installation import Installation
 from beltdyn.model.prepared import install, prepare
-from beltdyn.model.pulley import Pulley
+from beltdyn.model.pulley import Pulley, fastest_rim
 from beltdyn.parts.messages import Finding, listing
 from beltdyn.parts.quantity import RPM
 
@@ -47,12 +47,25 @@ def judge_plausibility(drive: Drive, installation: Installation) -> Iterator[Fin
 
 
 def _tension(drive: Drive, installation: Installation) -> Iterator[Finding]:
+    """Compare the tension with the rating, at rest or with the m v^2 that adds to it under a sprung tensioner."""
     belt, tension = drive.belt, installation.tension
     most, ribs = belt.largest_tension, belt.value_of("ribs")
-    if most is None or tension < most:
+    speed = fastest_rim(drive.pulleys, drive.radii)
+    sprung = installation.tensioner_positions.size > 0
+    running = tension + sprung * belt.mass_per_length * speed**2
+    if most is None or running < most:
         return
     each = (lambda force: f"{force:.4g} N ({force / ribs:.3g} N per rib or belt)") if ribs else "{:.4g} N".format
     more = f"Use at least {math.ceil(ribs * tension / most)} of them, reduce" if ribs else "Use a larger belt, reduce"
+    if tension < most:
+        limit = math.sqrt((most - tension) / belt.mass_per_length)
+        yield Finding(
+            f"at {speed:.4g} m/s, the largest belt speed, the tension is {each(running)}, of which "
+            f"{running - tension:.4g} N are centrifugal; the belt is rated for {each(most)}.",
+            "The cords stretch permanently, and belt and bearings fail early.",
+            f"Reduce the speed below {limit:.3g} m/s, or use a lighter belt.",
+        )
+        return
     readings = _other_readings(drive) if belt.length is not None else []
     yield Finding(
         f"the tension at rest is {each(tension)}, but the belt is rated for {each(most)}.",

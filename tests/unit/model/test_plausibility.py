@@ -50,6 +50,18 @@ def test_a_rib_at_450_newton_and_more() -> None:
     assert told(two_pulleys(belt | {"installed_tension": 2850.0, "largest_tension": "3 kN"})) == []
 
 
+def test_the_centrifugal_tension_of_a_belt_that_a_spring_takes_up() -> None:
+    """m v^2 adds to the tension; between fixed centers it only takes pressure off the pulleys."""
+    drive = EXAMPLES["alternator_drive"]
+    mass, crank = drive.belt.mass_per_length, drive.pulleys[0]
+    limit = np.sqrt((2700.0 - 300.0) / mass)
+    slow, fast = (drive.with_({"pulley[crank].speed.value": part * limit / crank.radius}) for part in (0.97, 1.05))
+    assert told(slow) == []
+    (text,) = told(fast)
+    assert "centrifugal; the belt is rated for 2700 N (450 N per rib or belt). " in text
+    assert f"Reduce the speed below {limit:.3g} m/s" in text
+
+
 def test_what_would_set_a_tension_right_is_named_where_a_length_sets_it() -> None:
     """Diameters of the tension line, given as effective ones, stretch a belt of fixed centers by 2 pi offset."""
     around = 1.0 + 0.12 * np.pi

@@ -1,5 +1,6 @@
 """Lost contact, slack spans, and excessive penetration, tension or strain."""
 
+import math
 from collections.abc import Iterator
 
 import numpy as np
@@ -131,11 +132,12 @@ def large_tension(evidence: Evidence) -> Iterator[Finding]:
     most, tension = evidence.prepared.belt.largest_tension, np.nan_to_num(np.asarray(evidence.recorded["span_tension"]))
     if most is not None and tension.max() >= most:
         row, span = np.unravel_index(int(tension.argmax()), tension.shape)
+        wider = math.ceil(100.0 * tension.max() / most) / 100.0
         yield Finding(
             f"the span {names(evidence.recorded, 'span')[span]} carries {tension[row, span]:.4g} N at t = "
             f"{evidence.time[row]:.4g} s; the belt is rated for {most:.4g} N.",
             "The cords stretch permanently, and belt and bearings fail early.",
-            f"Choose a belt at least {tension.max() / most:.2g} times as wide, or reduce the tension or the load.",
+            f"Choose a belt at least {wider:.4g} times as wide, or reduce the tension or the load.",
         )
 
 
