@@ -61,15 +61,7 @@ class LostOutputError(OutputError):
 
 
 class SlipError(SimulationError):
-    """Gross slip of a pulley that ends the analysis.
-
-    Parameters
-    ----------
-    fault : str
-        Which pulley, when and why.
-    remedy : str
-        What to do.
-    """
+    """Gross slip of a pulley that ends the analysis."""
 
     def __init__(self, fault: str, remedy: str) -> None:
         super().__init__(f"{fault} {remedy}")

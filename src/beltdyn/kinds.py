@@ -35,15 +35,7 @@ class Parameter(NamedTuple):
 
 
 class Registry(Mapping[str, K], Generic[K]):
-    """The kinds of a family by name, in the order of their registration.
-
-    Parameters
-    ----------
-    family
-        What messages call a kind, such as "friction law".
-    contract
-        The class of the kinds; of kinds that are classes themselves, their base.
-    """
+    """The kinds of a family by name, in the order of their registration."""
 
     families: ClassVar[list["Registry[Any]"]] = []
     """All registries."""

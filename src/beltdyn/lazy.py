@@ -12,15 +12,7 @@ from typing import Any
 
 
 class LazyNames(Mapping[str, Any]):
-    """The names of a stub file.
-
-    Parameters
-    ----------
-    package
-        The package that the relative imports of the stub start from.
-    stub
-        The stub file.
-    """
+    """The names of a stub file, imported on demand relative to `package`."""
 
     def __init__(self, package: str, stub: Path) -> None:
         self._places = dict(_imported(ast.parse(stub.read_text(encoding="utf-8")), package))

@@ -17,18 +17,7 @@ class Quadrature(NamedTuple):
 
 
 def gauss_points(count: int) -> Quadrature:
-    """Points and weights of Gauss-Legendre quadrature on [0, 1].
-
-    Parameters
-    ----------
-    count
-        Number of points, at least 1; polynomials up to degree 2 count - 1 are integrated exactly.
-
-    Returns
-    -------
-    Quadrature
-        Arrays of shape (count,), dimensionless; the weights add up to 1.
-    """
+    """Points and weights of Gauss-Legendre quadrature on [0, 1], exact up to degree 2 count - 1."""
     points, weights = _legendre(count)
     return Quadrature(0.5 * (points + 1.0), 0.5 * weights)
 
@@ -41,19 +30,7 @@ def _legendre(count: int) -> tuple[FloatArray, FloatArray]:
 
 
 def lobatto_points(count: int) -> Quadrature:
-    """Points and weights of Gauss-Lobatto quadrature on [0, 1], which has a point at either end.
-
-    Parameters
-    ----------
-    count
-        Number of points, at least 2 (the trapezoidal rule); polynomials up to degree 2 count - 3 are integrated
-        exactly.
-
-    Returns
-    -------
-    Quadrature
-        Arrays of shape (count,), dimensionless; the weights add up to 1.
-    """
+    """Points and weights of Gauss-Lobatto quadrature on [0, 1], ends included, exact up to degree 2 count - 3."""
     polynomial = Legendre.basis(count - 1)
     points = np.concatenate([[-1.0], polynomial.deriv().roots().real, [1.0]])
     weights = 1.0 / (count * (count - 1) * polynomial(points) ** 2)
@@ -61,11 +38,5 @@ def lobatto_points(count: int) -> Quadrature:
 
 
 def running_integral(values: FloatArray, places: FloatArray) -> FloatArray:
-    """Integral of samples from the first place up to each, by the trapezoidal rule, zero at first.
-
-    Parameters
-    ----------
-    values, places : ndarray, shape (k,)
-        Samples, and where they are taken.
-    """
+    """Integral of samples from the first place up to each, by the trapezoidal rule, zero at first."""
     return np.append(0.0, np.cumsum(0.5 * (values[1:] + values[:-1]) * np.diff(places)))

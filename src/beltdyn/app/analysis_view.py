@@ -119,15 +119,7 @@ _OFTEN = 0.25
 
 
 class AnalysisView:
-    """The part of the page that runs analyses.
-
-    Parameters
-    ----------
-    session : Session
-        The drive, with the analyses of the tab.
-    watch : callable
-        Called with snapshots of a run while it is computed, and with None at its end.
-    """
+    """The part of the page that runs analyses; `watch` is called with snapshots of a run, and with None at its end."""
 
     def __init__(self, session: Session, watch: Callable[["Glimpse | None"], None]) -> None:
         self._session, self._watch = session, watch

@@ -114,15 +114,7 @@ _TYPED = ("number", "text", "point", "numbers")
 
 
 class FormView:
-    """The form of a group of the drive file.
-
-    Parameters
-    ----------
-    session : Session
-        The drive.
-    apply : callable
-        Called with the edits of a user's input.
-    """
+    """The form of a group of the drive file; `apply` is called with the edits of a user."""
 
     def __init__(self, session: Session, apply: Callable[[list[Edit]], None]) -> None:
         self._session, self._apply = session, apply

@@ -61,21 +61,7 @@ class Outcome(NamedTuple):
 
 
 class Job:
-    """An analysis in a separate process.
-
-    Parameters
-    ----------
-    name : str
-        Of the analysis.
-    text : str
-        The drive file.
-    folder : Path
-        Where its relative paths start.
-    result : Path
-        The result file; the report is beside it.
-    options : mapping
-        Of the analysis.
-    """
+    """An analysis of a drive file in a separate process; the report is written beside the result."""
 
     def __init__(self, name: str, text: str, folder: Path, result: Path, options: Mapping[str, Any]) -> None:
         self._heard, told = SPAWN.Pipe(duplex=False)

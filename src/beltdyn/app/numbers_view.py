@@ -51,15 +51,7 @@ class Slider(ui.slider):
 
 
 class NumbersView:
-    """The tables below the canvas.
-
-    Parameters
-    ----------
-    session : Session
-        The drive.
-    calculator : Calculator or None
-        What computes them; without one there are estimates at rest alone.
-    """
+    """The tables below the canvas; without a calculator, estimates at rest alone."""
 
     def __init__(self, session: Session, calculator: Calculator | None) -> None:
         self._session, self._calculator = session, calculator

@@ -28,13 +28,8 @@ if TYPE_CHECKING:
 class Canvas(Element, component="canvas.js"):
     """An SVG on which pulleys are placed, dragged and sized.
 
-    Parameters
-    ----------
-    on_act : callable
-        Is given what is done: an action, the number of a pulley or tensioner, numbers in m, and whether it is done or
-        still going on.
-    on_choose : callable
-        Is given the number of the pulley that is chosen, or None.
+    `on_act` is called with the action, the number of the pulley or tensioner, numbers in m, and whether it is done;
+    `on_choose` with the number of the pulley chosen, or None.
     """
 
     def __init__(self, on_act: Callable[[Mapping[str, Any]], None], on_choose: Callable[[object], None]) -> None:
@@ -79,15 +74,7 @@ def _told(event: GenericEventArguments) -> Mapping[str, Any]:
 
 
 class FileMenu:
-    """The menu of the drive file.
-
-    Parameters
-    ----------
-    session : Session
-        The drive.
-    update : callable
-        Called after another drive is loaded.
-    """
+    """The menu of the drive file; `update` is called after another drive is loaded."""
 
     def __init__(self, session: Session, update: Callable[[], None]) -> None:
         self._session, self._update = session, update
@@ -196,15 +183,7 @@ _TENSIONER_KINDS = ("rotary", "sliding", "fixed")
 
 
 class Page:
-    """The page of one tab.
-
-    Parameters
-    ----------
-    workspace : Workspace
-        What all tabs share.
-    session : Session, optional
-        The drive of the tab; by default a new one.
-    """
+    """The page of one tab, by default with a new session."""
 
     def __init__(self, workspace: Workspace) -> None:
         self.session = Session(workspace)

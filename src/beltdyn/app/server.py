@@ -46,18 +46,8 @@ def new_token() -> str:
 class Guard:
     """An application that forwards permitted requests and rejects all others.
 
-    A page of another site may send requests to a server on this machine, and find its port; what it cannot do is to
-    know the token, to be of the same origin, or, by a name of its own that leads to this machine, to send the right
-    Host.
-
-    Parameters
-    ----------
-    application : Application
-        What is guarded.
-    token : str
-        With which all addresses begin.
-    hosts : iterable of str
-        Names with the port, such as ``127.0.0.1:8000``, under which the server is asked for.
+    A page of another site may send requests to a server on this machine, and find its port. It cannot know the token
+    with which all addresses begin, be of the same origin, or, by a host name of its own, send the right Host.
     """
 
     def __init__(self, application: Application, token: str, hosts: Iterable[str]) -> None:

@@ -30,18 +30,8 @@ class State(NamedTuple):
 class Document:
     """A drive file being edited: its data may be invalid temporarily, its text is always TOML.
 
-    Comments and the order of the text are kept by tomlkit. Where the text that it gives would say something else than
-    the data, the whole file is written anew, without comments.
-
-    Parameters
-    ----------
-    text : str
-        TOML.
-
-    Raises
-    ------
-    ValueError
-        If it is not.
+    tomlkit keeps comments and order. Where its text would say something else than the data, the whole file is written
+    anew, without comments.
     """
 
     def __init__(self, text: str) -> None:
@@ -134,20 +124,7 @@ _ON_TENSIONERS: Mapping[str, Callable[[Mapping[str, Any], int, Mapping[str, floa
 
 
 class Session:
-    """The drive of one tab.
-
-    Parameters
-    ----------
-    workspace : Workspace
-        The folder, and the drive file to begin with.
-
-    Attributes
-    ----------
-    job : Job or None
-        The analysis that is computed.
-    outcomes : list of (str, Outcome)
-        The last analyses that have ended, by their names, the latest first.
-    """
+    """The drive of one tab, the analysis being computed, and the last outcomes, latest first."""
 
     def __init__(self, workspace: Workspace) -> None:
         self.workspace = workspace

@@ -39,13 +39,7 @@ class Glimpse(NamedTuple):
 
 
 class Watcher:
-    """Reads a growing result file at intervals that hardly slow the run.
-
-    Parameters
-    ----------
-    result : Path
-        The result file.
-    """
+    """Reads a growing result file at intervals that hardly slow the run."""
 
     def __init__(self, result: Path) -> None:
         self._result = result

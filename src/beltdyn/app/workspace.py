@@ -23,13 +23,7 @@ _MOST_FOLDERS = 500
 
 
 class Folder:
-    """Drive files below a folder.
-
-    Parameters
-    ----------
-    root : Path
-        The folder.
-    """
+    """Drive files below a folder."""
 
     def __init__(self, root: Path) -> None:
         self.root = root.resolve()
@@ -119,17 +113,7 @@ class Example(NamedTuple):
 
 
 class Workspace:
-    """Data shared by all tabs.
-
-    Parameters
-    ----------
-    folder : Folder
-        Where drive files are.
-    first : str, optional
-        Name of the file that a new tab opens.
-    calculator : Calculator, optional
-        What computes numbers that follow each change; without one there are estimates at rest.
-    """
+    """Data shared by all tabs; without a calculator, numbers that follow a change are estimates at rest."""
 
     def __init__(self, folder: Folder, first: str | None = None, calculator: Calculator | None = None) -> None:
         self.folder = folder

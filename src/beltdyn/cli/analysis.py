@@ -47,18 +47,7 @@ force
 
 
 def analysis_command(analysis: Analysis) -> Callable[..., int]:
-    """Make the command of an analysis.
-
-    Parameters
-    ----------
-    analysis
-        The analysis; the keyword arguments of its function become options.
-
-    Returns
-    -------
-    callable
-        The command, with the help of the function in its docstring.
-    """
+    """Make the command of an analysis: keyword arguments become options, the docstring its help."""
     function = analysis.function
 
     def command(

@@ -51,16 +51,6 @@ def main(arguments: Sequence[str] | None = None) -> None:
     The exit code is 0 for success, 2 for bad input, 3 for a simulation that could not continue, 4 for warnings under
     --strict, and for an interruption 128 plus the number of the signal: 130 for Ctrl-C.
     Linear algebra uses one thread unless OMP_NUM_THREADS says otherwise: the matrices are too small for more.
-
-    Parameters
-    ----------
-    arguments : sequence of str, optional
-        The words after `beltdyn`; by default those of this process.
-
-    Raises
-    ------
-    SystemExit
-        Always.
     """
     os.environ.setdefault("OMP_NUM_THREADS", "1")
     warnings.formatwarning = _warning_line

@@ -31,20 +31,7 @@ def takes_runs(analysis: Analysis) -> bool:
 
 
 def read_given(analysis: Analysis, file: Path) -> "Drive | Run":
-    """Read a drive file, or a result file if the analysis accepts runs.
-
-    Parameters
-    ----------
-    analysis
-        What is asked for.
-    file
-        The file.
-
-    Raises
-    ------
-    ModelError
-        If it is neither, or the drive cannot be used, or the results are those of another analysis.
-    """
+    """Read a drive file, or a result file if the analysis accepts runs."""
     from beltdyn.model import load
     from beltdyn.results import Run, open_result
     from beltdyn.results.dataset import is_result
@@ -71,37 +58,9 @@ def analyse_several(
     force: bool,
     **options: Any,
 ) -> int:
-    """Analyze drives in parallel, and show a table of them.
+    """Analyze drives in parallel, show a table of them, and return the exit code.
 
-    Parameters
-    ----------
-    analysis
-        The analysis.
-    files
-        Drive files, or result files of runs where the analysis takes them.
-    folder
-        Where to write the result files; by default beside the drive files.
-    jobs
-        How many at a time; by default as many as there are cores.
-    extras
-        What is written beside each result file.
-    strict
-        Whether warnings are errors.
-    force
-        Whether to replace other files than earlier results.
-    **options
-        Those of the analysis.
-
-    Returns
-    -------
-    int
-        The exit code.
-
-    Raises
-    ------
-    ModelError
-        Before anything is computed, if a drive file cannot be used, two drives would share a result file, or other
-        files than earlier results would be replaced.
+    All drive files and outputs are checked before anything is computed.
     """
     given = _read_all(analysis, files)
     results = _result_files(analysis, files, folder)

@@ -38,25 +38,13 @@ def new(
 
 
 def refuse_existing(file: Path) -> None:
-    """Make sure that a file is not there yet.
-
-    Raises
-    ------
-    ModelError
-        If it is.
-    """
+    """Raise ModelError if a file exists."""
     if file.exists():
         raise ModelError(f"{file} already exists and would be overwritten. Choose another name, or remove it.")
 
 
 def write_text(file: Path, text: str) -> None:
-    """Write a text file, and the folders it is in.
-
-    Raises
-    ------
-    ModelError
-        If it cannot be written.
-    """
+    """Write a text file and its folders."""
     from beltdyn.results.atomic import atomic_path, make_folder
 
     make_folder(file.parent)

@@ -20,13 +20,7 @@ if TYPE_CHECKING:
 
 
 def show_result(result: "Result") -> None:
-    """Write tables and facts of a result: 100 columns, and as few lines as a drive of seven pulleys needs to fit.
-
-    Parameters
-    ----------
-    result
-        The result.
-    """
+    """Write tables and facts of a result: 100 columns, and as few lines as a drive of seven pulleys needs to fit."""
     from beltdyn.show.sheet import Table, sheet
 
     title, parts = sheet(result)
@@ -71,13 +65,7 @@ NO_EXTRAS = Extras(csv=False, report=False)
 
 
 def require_output(path: Path, files: Iterable[Path], extras: Extras, force: bool) -> None:
-    """Make sure that results, tables and reports replace only files of their kind, and never a drive file.
-
-    Raises
-    ------
-    ModelError
-        If they would.
-    """
+    """Make sure that results, tables and reports replace only files of their kind, and never a drive file."""
     from beltdyn.results.atomic import require_replaceable, target_of
     from beltdyn.results.dataset import is_result
     from beltdyn.results.tables import require_tables, tables_folder
@@ -114,13 +102,7 @@ def analyse_to(
     force: bool = False,
     **options: Any,
 ) -> "Result":
-    """Analyze a drive into a file with a progress bar, show the result, and write the extras.
-
-    Raises
-    ------
-    SimulationError
-        If the analysis fails.
-    """
+    """Analyze a drive into a file with a progress bar, show the result, and write the extras."""
     from beltdyn.results.atomic import locked_output, stamp
 
     before = stamp(path)

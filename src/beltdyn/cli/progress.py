@@ -38,13 +38,7 @@ _COUNTED = "integrating", "operating points", "designs", "points", "no workers"
 
 @contextmanager
 def progress_bar() -> Iterator[Callable[["SolverProgress"], None]]:
-    """Show simulated time, step size and remaining time on standard error; announce a long run early, with the reason.
-
-    Yields
-    ------
-    callable
-        What the solver calls with its progress.
-    """
+    """Show simulated time, step size and remaining time on standard error; announce a long run early."""
     with _bar() as bar:
         task = bar.add_task("preparing", total=None, state="")
         told = False
@@ -82,18 +76,7 @@ def _state(progress: "SolverProgress") -> str:
 
 @contextmanager
 def runs_bar(at_end: str = "done") -> Iterator[Callable[["BatchProgress"], None]]:
-    """Show the number of completed runs, and a line for each active run, on standard error.
-
-    Parameters
-    ----------
-    at_end
-        The activity after all runs.
-
-    Yields
-    ------
-    callable
-        Called with the progress of the runs.
-    """
+    """Show the number of completed runs, and a line for each active run, on standard error."""
     from beltdyn.solvers.progress import FORECAST
 
     with _bar() as bar:

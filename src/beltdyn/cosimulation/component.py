@@ -59,13 +59,6 @@ class Component:
     """A drive in the hands of a host.
 
     A step that fails changes nothing: the component stays where it was, and can be stepped anew or set back.
-
-    Parameters
-    ----------
-    drive : Drive
-        The drive.
-    interface : Interface
-        What the host sets and reads.
     """
 
     drive: Drive

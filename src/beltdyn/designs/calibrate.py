@@ -66,27 +66,10 @@ def fit(
     known: bool,
     most: int = 100,
 ) -> Fit:
-    """Fit numbers between 0 and 1.
+    """Fit numbers between 0 and 1 to residuals over standard deviations, shape (m,), with derivatives of shape (m, n).
 
-    Parameters
-    ----------
-    residuals
-        Of numbers, shape (m,), over standard deviations.
-    jacobian
-        Their derivatives, shape (m, n).
-    start
-        Where to begin.
-    confidence
-        Of the intervals, between 0 and 1.
-    known
-        Whether the standard deviations are those of the measurements; otherwise one factor is unknown.
-    most
-        Evaluations, at most.
-
-    Raises
-    ------
-    KeyboardInterrupt
-        If the search is interrupted before derivatives at its start are known. Later it ends where it has come to.
+    Unless the standard deviations are `known`, one factor of them is estimated. An interruption ends the search where
+    it is, once derivatives at its start are known.
     """
     from scipy import stats
 

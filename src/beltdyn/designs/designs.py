@@ -25,15 +25,7 @@ CHANGE = 1e-5
 
 
 class SmallChanges:
-    """Makes neighbors of a drive; with an installed tension the belt's length, or the take-up, follows.
-
-    Parameters
-    ----------
-    given
-        The drive, with constant speeds and torques.
-    rest
-        It at rest, with the length, or the take-up, that its installed tension asks for.
-    """
+    """Makes neighbors of a drive; with an installed tension the belt's length, or the take-up, follows."""
 
     def __init__(self, given: Drive, rest: Standing) -> None:
         self._given, self._rest = given, rest
@@ -134,27 +126,7 @@ class Design:
 
 
 class Designs:
-    """Finds watched results of designs, and their derivatives.
-
-    Parameters
-    ----------
-    drive
-        The drive at the start.
-    numbers
-        Those that may change.
-    points
-        The operating points.
-    instant
-        What the study says of them.
-    watched
-        Results.
-    force_tolerance
-        As for `steady_state`.
-    tell
-        Called with the part of a design that is done, 0 to 1.
-    at_rest
-        Whether results are those of the belt at rest, in place of steady running.
-    """
+    """Finds watched results of designs and their derivatives, in steady running or at rest."""
 
     def __init__(
         self,

@@ -70,13 +70,7 @@ class StateModes(Protocol):
 
 
 class FoundModes:
-    """Modes of small motions about a state.
-
-    Parameters
-    ----------
-    motions
-        The drive about the state.
-    """
+    """Modes of small motions about a state."""
 
     def __init__(self, motions: SmallMotions) -> None:
         self._dry = dry_tensioners(motions.prepared)
@@ -105,15 +99,7 @@ class FoundModes:
 
 
 class FollowedModes:
-    """Modes about a state nearby, in the order of those of the state from which they are followed.
-
-    Parameters
-    ----------
-    base
-        Modes of that state.
-    motions
-        The drive about the state nearby, on the same mesh.
-    """
+    """Modes about a nearby state on the same mesh, in the order of those of the base state."""
 
     def __init__(self, base: FoundModes, motions: SmallMotions) -> None:
         self._base, self._motions = base, base.variants(motions)
@@ -217,14 +203,7 @@ _SPAN = 0.4
 
 
 class FoundState(ABC):
-    """A drive in a state that stays.
-
-    Parameters
-    ----------
-    near
-        The state from whose neighborhood it is, where it was found as a `neighbour`: its modes are followed from
-        there.
-    """
+    """A drive in a steady state, whose modes are followed from those of `near` if it is a neighbor of that."""
 
     def __init__(self, near: "FoundState | None") -> None:
         self._near = near
@@ -360,15 +339,7 @@ class Running(FoundState):
 
 
 class Resting(FoundState):
-    """A drive at rest, with a belt that slid into its place.
-
-    Parameters
-    ----------
-    rest
-        From `bring_to_stand`.
-    near
-        As for `FoundState`.
-    """
+    """A drive at rest, with a belt that slid into its place."""
 
     def __init__(self, rest: Standing, near: FoundState | None = None) -> None:
         super().__init__(near)

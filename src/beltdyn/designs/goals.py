@@ -49,35 +49,20 @@ class Aims:
         return int(self.watched[limit.result].at.sum())
 
     def goal_values(self, values: FloatArray) -> FloatArray:
-        """The values whose maximum is the goal: results of the goal with their sign, or their mean.
-
-        Parameters
-        ----------
-        values
-            Results, shape (points, results, ...).
-        """
+        """The values whose maximum is the goal, from results of shape (points, results, ...), with their sign."""
         chosen = self.sign * values[:, list(self.goal)]
         if self.mean:
             return np.tensordot(self.weights, chosen.mean(axis=1), 1)[None]
         return chosen.reshape(-1, *chosen.shape[2:])
 
     def goal_of(self, values: FloatArray) -> float:
-        """The goal of a design, in the unit of the result.
-
-        Parameters
-        ----------
-        values
-            Results, shape (points, results).
-        """
+        """The goal of a design, in the unit of the result, from results of shape (points, results)."""
         return float(self.sign * np.max(self.goal_values(values)))
 
     def distances(self, values: FloatArray) -> FloatArray:
-        """How far results are within limits, one for each limit and operating point at which it counts.
+        """Distances of results within limits, for each limit and operating point at which it counts.
 
-        Parameters
-        ----------
-        values
-            Results, shape (points, results); derivatives, shape (points, results, numbers), give derivatives.
+        Derivatives, shape (points, results, numbers), give derivatives.
         """
         found = []
         for limit in self.limits:

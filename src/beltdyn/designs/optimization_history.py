@@ -109,30 +109,7 @@ _COORDINATES = {
 
 
 class History:
-    """Designs as they are tried; an interruption keeps them.
-
-    Parameters
-    ----------
-    drive
-        The drive at the start.
-    numbers
-        Those that may change.
-    points
-        The operating points.
-    aims
-        Goal and limits.
-    output
-        Result file; without one the results stay in memory.
-    overwrite
-        Replace any regular files.
-    study
-        The study file, if there is one, which stays.
-
-    Raises
-    ------
-    ModelError
-        If a file would replace one that is not ours.
-    """
+    """Designs as they are tried; an interruption keeps them."""
 
     def __init__(
         self,

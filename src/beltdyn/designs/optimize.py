@@ -53,19 +53,7 @@ class _Place(NamedTuple):
 
 
 class Descent:
-    """Tries designs, each from the states of the last one that was better, until none is.
-
-    Parameters
-    ----------
-    designs
-        Finds their results.
-    aims
-        Goal and limits.
-    most
-        How many designs to try.
-    note
-        Called with each design that was tried.
-    """
+    """Tries designs, each from the states of the last one that was better, until none is."""
 
     def __init__(self, designs: Designs, aims: Aims, most: int, note: Callable[[Design], None]) -> None:
         self._designs, self._aims, self._most, self._note = designs, aims, most, note

@@ -136,17 +136,7 @@ def start_process(function: Callable[..., None], *arguments: Any) -> SpawnProces
 
 
 class LocalProcesses:
-    """A pool of processes of this machine, of which each uses one thread; one that is killed is replaced.
-
-    Parameters
-    ----------
-    jobs
-        How many; by default as many as there are cores.
-    begin
-        What prepares each process, with an event that tells it to end, and what else is shared.
-    shared
-        What else it is given.
-    """
+    """A pool of local processes of one thread each; one that is killed is replaced."""
 
     def __init__(
         self, jobs: int | None = None, begin: Callable[..., None] = start_worker, shared: tuple[Any, ...] = ()

@@ -134,28 +134,7 @@ class Series(NamedTuple):
 
 
 class Residuals:
-    """Residuals of designs, and their derivatives by parts of the ways between bounds.
-
-    Parameters
-    ----------
-    drive
-        The drive at the start.
-    numbers
-        Those that are fitted.
-    study
-        What was measured.
-    base
-        Folder from which paths of tables start.
-    force_tolerance
-        As for `steady_state`.
-    progress
-        Called now and then with a `Progress`.
-
-    Raises
-    ------
-    ModelError
-        If a table is none, or there are fewer measured values than numbers.
-    """
+    """Residuals of designs, and their derivatives with respect to numbers scaled to 0 to 1 between bounds."""
 
     def __init__(
         self,

@@ -144,29 +144,7 @@ def results_at_points(
     force_tolerance: float | None,
     tell: Callable[[int], None],
 ) -> tuple[FloatArray, list[str]]:
-    """Results at scattered numbers, each point followed from the drive as it is.
-
-    Parameters
-    ----------
-    drive
-        With constant speeds and torques.
-    tolerances
-        Path -> tolerance.
-    names
-        Of results.
-    count
-        Number of points.
-    at_rest, force_tolerance
-        As for `Designs`.
-    tell
-        Called with the number of points that are done.
-
-    Returns
-    -------
-    values : ndarray, shape (points that run, results)
-    failures : list of str
-        Why the others do not.
-    """
+    """Results at scattered points, shape (points that run, results), and why the others do not run."""
     from scipy.stats import norm, qmc
 
     numbers = [_free(drive, path, tolerance) for path, tolerance in tolerances.items()]
@@ -210,17 +188,7 @@ _VARIABLES = {
 
 
 def with_spread(result: Result, tolerances: Mapping[str, float], points: FloatArray | None) -> Result:
-    """Sensitivities with the spread of results by tolerances.
-
-    Parameters
-    ----------
-    result
-        Of `sensitivity`.
-    tolerances
-        Path -> tolerance.
-    points : ndarray, shape (points, results), optional
-        Results at scattered points.
-    """
+    """Sensitivities with the spread of results at scattered points, shape (points, results)."""
     dataset = result.dataset
     sizes = np.array([tolerances.get(str(path), np.nan) for path in dataset["number"].values])
     parts = dataset["derivative"].values * sizes

@@ -48,21 +48,7 @@ Chunk = tuple[int, ...]
 
 
 class Dispatch:
-    """Sends points out, and takes what comes back.
-
-    Parameters
-    ----------
-    workers
-        Who computes.
-    work
-        What is asked of every point.
-    changes
-        Gives what differs from the drive at a point.
-    take
-        Is given every outcome once, with units of results.
-    tell
-        Is called now and then.
-    """
+    """Sends points out, and takes what comes back."""
 
     def __init__(
         self,

@@ -42,15 +42,7 @@ class Row(NamedTuple):
 
 
 class StudyRows:
-    """The CSV file of a study.
-
-    Parameters
-    ----------
-    path
-        The file.
-    plan
-        The points.
-    """
+    """The CSV file of a study."""
 
     def __init__(self, path: Path, plan: Plan) -> None:
         self.path, self._plan = path, plan
@@ -170,21 +162,7 @@ _COMPUTING = "computing"
 class StudyTable:
     """The points of a study, a context that closes its files whatever happens; an interruption keeps what was found.
 
-    Parameters
-    ----------
-    study, drive, plan
-        What is computed.
-    output
-        Result file; the rows are beside it, with the ending ``.csv``. Without one, results stay in memory.
-    overwrite
-        Begin anew, whatever is there.
-    retry
-        Compute points again that failed.
-
-    Raises
-    ------
-    ModelError
-        If files cannot be written, are no results, or hold points of another study, which would be lost.
+    The rows are in a CSV file beside `output`; points of another study there are an error, as they would be lost.
     """
 
     def __init__(

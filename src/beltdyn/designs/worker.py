@@ -150,18 +150,7 @@ class ThisProcess:
 
 
 class DaskWorkers:
-    """Workers of a Dask cluster that is there already, of which each computes a point at a time.
-
-    Parameters
-    ----------
-    scheduler
-        Address of its scheduler, such as "tcp://host:8786".
-
-    Raises
-    ------
-    ModelError
-        If `dask.distributed` is not installed, or there is no scheduler.
-    """
+    """Workers of an existing Dask cluster, each of which computes one point at a time."""
 
     def __init__(self, scheduler: str) -> None:
         try:

@@ -46,15 +46,5 @@ class ByKind(Dispatch):
 
 
 def choice(name: str, functions: Mapping[str, Callable[..., Any]], others: Sequence[str]) -> Callable[..., Any]:
-    """Make a function that calls one of several kernels by the kind of a row.
-
-    Parameters
-    ----------
-    name
-        Its name.
-    functions
-        The kernel of each kind, by the field of the row that has the kind's constants; kinds may be added later.
-    others
-        Names of the further arguments.
-    """
+    """Make a function that calls one of several kernels, by the field of the row that has the kind's constants."""
     return ByKind(name, functions, others)

@@ -9,13 +9,7 @@ from beltdyn.kernel.cache import compiles_quickly
 
 
 class Dispatch(ABC):
-    """Several kernels with one name.
-
-    Parameters
-    ----------
-    name
-        Its name in error messages.
-    """
+    """Several kernels with one name."""
 
     unregistered: ClassVar[list["Dispatch"]] = []
     """Those not yet registered with plain compilation."""

@@ -15,15 +15,7 @@ _kernels: WeakSet["Kernel[..., Any]"] = WeakSet()
 
 
 class Kernel(Generic[P, R]):
-    """A function that is compiled at its first call.
-
-    Parameters
-    ----------
-    function
-        The function.
-    inline
-        Whether it becomes a part of every kernel that calls it.
-    """
+    """A function compiled at its first call, or inlined in the kernels that call it."""
 
     def __init__(self, function: Callable[P, R], inline: bool) -> None:
         self.py_func, self.inline = function, inline

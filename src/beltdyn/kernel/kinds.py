@@ -29,13 +29,6 @@ class KernelKinds(Registry[K]):
 
     The label of a kind from outside the package has the fingerprint of its kernels, so that kernels which call an
     edited law of the same name are others.
-
-    Parameters
-    ----------
-    family, contract
-        As for `Registry`.
-    record
-        Attribute of the kinds with the class of their parameters; empty where there is none.
     """
 
     def __init__(self, family: str, contract: type, record: str = "") -> None:
@@ -111,18 +104,9 @@ def _attributes(holder: Any) -> Iterable[Any]:
 
 
 class KindRows:
-    """Rows with constants of one of several kinds: those of the package, and own ones of a user where they are used.
+    """Rows with constants of one of several kinds; a user's kind changes the type of a row only in drives that have it.
 
-    So a user's kind changes the type of a row, and the kernels that take it, only in drives that have it.
-
-    Parameters
-    ----------
-    kinds
-        The registry.
-    constants
-        The record of the constants of a kind; None where a kind has none.
-    fields
-        The other fields, behind which `kind` has the place of the kind among those of the row.
+    After the `fields` of all rows, `kind` has the place of the kind among the constants.
     """
 
     def __init__(

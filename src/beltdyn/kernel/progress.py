@@ -25,13 +25,9 @@ def observe_compilation(report: CompilationReport) -> None:
 
 @contextmanager
 def watch_compilation(report: CompilationReport) -> Iterator[None]:
-    """Report the compilation of kernels; the last report of a compilation has equal numbers.
+    """Report kernels compiled and needed at each compilation; the last report has equal numbers.
 
-    Parameters
-    ----------
-    report
-        Called with two integers, the kernels compiled and the kernels needed, at each of them. The second is counted in
-        advance from the sources, and grows where another call needs more kernels.
+    The second number is counted in advance from the sources, and grows where another call needs more kernels.
     """
     observe_compilation(report)
     try:

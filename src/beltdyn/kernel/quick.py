@@ -42,19 +42,7 @@ _OPTIMISATION = type(numba.config.OPT)(1)
 
 
 class QuickDispatcher(CPUDispatcher):  # type: ignore[misc]
-    """A compiled function that shows itself to other kernels as code to be optimized along with them.
-
-    Parameters
-    ----------
-    function
-        The function.
-    options
-        Numba's options.
-    inline
-        Whether it becomes a part of every kernel that calls it.
-    folder
-        Where its machine code is kept.
-    """
+    """A compiled function that shows itself to other kernels as code to be optimized along with them."""
 
     def __init__(self, function: Any, options: dict[str, Any], inline: bool, folder: Path) -> None:
         self._options = options | _NO_EXTRAS

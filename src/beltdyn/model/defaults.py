@@ -109,19 +109,11 @@ def choose_damping(stiffness: float, belt: Belt) -> Choice:
 
 
 def choose_creep_ratio(pulleys: Sequence[Pulley], grips: FloatArray, strain: float) -> Choice:
-    """Choose the creep ratio of friction.
+    """Choose the creep ratio of friction from grips mu phi of the pulleys and the strain T / EA at rest.
 
-    Below the cap a slip velocity grows e-fold along an arc within the angle s E A / (mu T). The belt creeps at the
-    rim's entry by what is left of it there, which elastic creep does not know.
-
-    Parameters
-    ----------
-    pulleys : sequence of Pulley
-        Those without speed, torque, load and hub do not count, which carry next to nothing.
-    grips : ndarray, shape (n,)
-        Coefficients of friction, with the wedge, times the wrap angles.
-    strain : float
-        T / E A of the belt at rest.
+    Below the cap a slip velocity grows e-fold along an arc within the angle s EA / (mu T). At the rim's entry the belt
+    creeps by what is left of it there, which elastic creep does not know. Pulleys without speed, torque, load and hub
+    transmit next to nothing and do not count.
     """
     working = np.array([bool(one.speed or one.torque or one.load or one.hub) for one in pulleys])
     grip = float(np.min(grips[working & (grips > 0.0)], initial=math.pi))

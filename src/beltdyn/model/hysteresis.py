@@ -82,18 +82,9 @@ def bending_resistance(prepared: Prepared) -> float:
 
 
 def rolling_resistances(prepared: Prepared) -> FloatArray:
-    """Coefficients of rolling resistance equivalent to the compression losses of the belt.
+    """Coefficients rho of rolling resistance, shape (n,), equivalent to the compression losses of the belt at rest.
 
-    Per meter of belt, rho times the normal force along an arc of the angle phi takes rho phi T.  T is that at rest.
-
-    Parameters
-    ----------
-    prepared : Prepared
-
-    Returns
-    -------
-    ndarray, shape (n,)
-        rho of each pulley.
+    Per meter of belt, rho times the normal force along an arc of the angle phi takes rho phi T.
     """
     if prepared.belt.compression_loss_factor == 0.0:
         return np.zeros(len(prepared.pulleys))
@@ -101,17 +92,7 @@ def rolling_resistances(prepared: Prepared) -> FloatArray:
 
 
 def compression_losses(prepared: Prepared) -> FloatArray:
-    """Resisting force of compression on each pulley of a drive, at the tension at rest, N.
-
-    Parameters
-    ----------
-    prepared : Prepared
-
-    Returns
-    -------
-    ndarray, shape (n,)
-        Zero where the back of the belt touches, which no groove presses.
-    """
+    """Resistance by compression at each pulley, N, at rest; zero at the back of the belt, which no groove presses."""
     belt = prepared.belt
     if belt.contact_stiffness is None or belt.compression_loss_factor == 0.0:
         return np.zeros(len(prepared.pulleys))

@@ -208,16 +208,7 @@ class Path:
 def span_directions(centers: FloatArray, radii: FloatArray, ends: FloatArray | None = None) -> FloatArray:
     """Unit vectors u along the spans of paths around the same pulleys, shape (..., spans, 2).
 
-    With the left normal n of u, a tangent point is c - r n, so that n . (c_j - c_i) = r_j - r_i.
-
-    Parameters
-    ----------
-    centers : ndarray, shape (..., n, 2), m
-        Centers of the pulleys.
-    radii : ndarray, shape (n,), m
-        Signed radii.
-    ends : ndarray, shape (2, 2), m, optional
-        Of open paths.
+    With the left normal n of u, a tangent point is c - r n, so that n . (c_j - c_i) = r_j - r_i; radii are signed.
     """
     return _of_belt(_directions(*_circles(centers, radii, ends)), ends, axis=-2)
 
@@ -326,17 +317,7 @@ def obstacle(path: Path, around: Surroundings) -> Obstacle | None:
 
 
 def distance_from_belt(path: Path, around: Surroundings, center: ArrayLike, radius: float) -> float:
-    """Least distance of a round part from the surfaces of the belt, m; negative for an overlap.
-
-    Parameters
-    ----------
-    path : Path
-    around : Surroundings
-    center : array_like, shape (2,)
-        Center of the part, m.
-    radius : float
-        Its radius, m.
-    """
+    """Least distance of a round part from the surfaces of the belt, m; negative for an overlap."""
     place = np.asarray(center, dtype=float)
     nearest, facing = _from_spans(path, around, place[None])
     from_spans = np.linalg.norm(nearest, axis=-1) - facing

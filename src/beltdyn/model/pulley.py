@@ -268,17 +268,7 @@ class Pulley(Part):
 
 
 def fastest_rim(pulleys: Sequence[Pulley], radii: FloatArray, duration: float = math.inf) -> float:
-    """Speed of the fastest driven rim within a time (s), m/s; zero without one.
-
-    Parameters
-    ----------
-    pulleys : sequence of Pulley
-        The pulleys of a drive.
-    radii : ndarray, shape (pulleys,)
-        On which the belt's middle lies, m; of either sign.
-    duration : float, default inf
-        As of `Pulley.driven_speed`, s.
-    """
+    """Speed of the fastest driven rim within a time (s), m/s; zero without one."""
     speeds = np.array([pulley.driven_speed(duration) for pulley in pulleys])
     return float(np.max(np.abs(speeds * radii), initial=0.0))
 

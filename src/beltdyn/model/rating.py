@@ -119,18 +119,9 @@ class RatedBelt(NamedTuple):
     """m."""
 
     def on(self, diameters: FloatArray, wraps: FloatArray, speed: float, loaded: BoolArray) -> PowerRating:
-        """Rate the belt on its pulleys.
+        """Rate the belt on pulleys with diameters of its tension line (m), wrap angles (rad) and a belt speed (m/s).
 
-        Parameters
-        ----------
-        diameters : ndarray, shape (n,)
-            Of the tension line on the pulleys, m.
-        wraps : ndarray, shape (n,)
-            rad.
-        speed : float
-            Of the belt, m/s.
-        loaded : ndarray of bool, shape (n,)
-            Which pulleys transmit power; the largest of these counts in the ratio.
+        The largest loaded pulley counts in the ratio.
         """
         largest = np.max(diameters, where=loaded, initial=0.0)
         basic = self.rating.power(diameters, speed)

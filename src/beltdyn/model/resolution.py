@@ -98,24 +98,7 @@ def layer_length(bending: float, sinking: float) -> float:
 
 
 def graded_mesh(length: float, arcs: list[Arc], layer: float, fineness: float = FINENESS) -> FloatArray:
-    """Divide a closed belt into elements.
-
-    Parameters
-    ----------
-    length : float
-        Unstretched length, m.
-    arcs : list of Arc
-        In the order in which they follow each other along the belt, within 0 and the length.
-    layer : float
-        Length of the layers at the ends of arcs, m.
-    fineness : float
-        Factor on the number of elements.
-
-    Returns
-    -------
-    ndarray, shape (elements,)
-        Lengths of the elements, m. The first begins at zero.
-    """
+    """Divide a closed belt into elements, with layers (m) at the ends of arcs; lengths in m, the first from zero."""
     first = _FIRST * layer
     around = length - arcs[-1].end + arcs[0].start
     pieces = [_divide(arcs[0].start, first, around / _FEWEST, fineness, (False, True))]

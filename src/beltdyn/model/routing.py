@@ -18,29 +18,9 @@ _ANY_LENGTH = 1.0  # m
 
 
 def open_path(centers: FloatArray, radii: FloatArray, ends: Sequence[PathEnd], belt: Belt) -> Path:
-    """Lay the path of an open belt around pulleys.
+    """Lay the path of an open belt around pulleys of signed radii.
 
     The span to a pulled end runs along the force, and is as long as the belt, stretched by that force, leaves it.
-
-    Parameters
-    ----------
-    centers : ndarray, shape (n, 2), m
-        Centers of the pulleys.
-    radii : ndarray, shape (n,), m
-        Signed radii.
-    ends : sequence of PathEnd
-        The first and the second end.
-    belt : Belt
-        Its length, where an end is pulled.
-
-    Returns
-    -------
-    Path
-
-    Raises
-    ------
-    ValueError
-        If a belt with a pulled end has no length, or one that does not reach beyond the pulleys.
     """
     along = [np.zeros(2) if end.pull is None else end.pull / np.linalg.norm(end.pull) for end in ends]
     points = np.array(

@@ -102,31 +102,11 @@ class _Situation(NamedTuple):
 def balance_tensioners(
     path: Path, belt: Belt, contact: Contact, carriers: Sequence[Carrier]
 ) -> tuple[StaticEstimate, FloatArray]:
-    """Find the rest positions of spring-loaded tensioners by virtual work: force of spring and stops = T dL/dq.
+    """Find rest positions of spring-loaded tensioners by virtual work: force of spring and stops = T dL/dq.
 
     Of several balances each takes the stable one that is nearest to its nominal place, and an unstable one only where
-    none is stable. Weight and dry friction of a tensioner are left out, and so is what a change of the wrap angles does
-    to the penetration, which is of the order of penetration over radius.
-
-    Parameters
-    ----------
-    path : Path
-        Path with all tensioners at zero.
-    belt, contact
-        As for `static_estimate`.
-    carriers : sequence of Carrier
-        The tensioners, shape (K,).
-
-    Returns
-    -------
-    estimate : StaticEstimate
-    positions : ndarray, shape (K,)
-        Positions q of the tensioners, m or rad.
-
-    Raises
-    ------
-    ValueError
-        If a tensioner has no equilibrium, or no stable one at the installed tension.
+    none is stable. Weight and dry friction of a tensioner are left out, and so is the effect of wrap angles on
+    penetration, which is of the order of penetration over radius. ValueError if there is no balance.
     """
     return _balanced(_Layout(path, belt, contact, tuple(carriers)))
 
@@ -177,20 +157,7 @@ def _balanced(layout: _Layout) -> tuple[StaticEstimate, FloatArray]:
 def all_balances(
     path: Path, belt: Belt, contact: Contact, carriers: Sequence[Carrier], positions: FloatArray
 ) -> tuple[tuple[TensionerBalance, ...], ...]:
-    """Find all equilibria of each tensioner, with the others held.
-
-    Parameters
-    ----------
-    path, belt, contact, carriers
-        As for `balance_tensioners`.
-    positions : ndarray, shape (K,)
-        Where the tensioners stand, m or rad.
-
-    Returns
-    -------
-    tuple of tuples of TensionerBalance
-        For each tensioner, in ascending order of the positions.
-    """
+    """Find all equilibria of each tensioner in ascending order of position, with the others held."""
     situations = (_Situation(path, belt, contact, carriers, positions, number) for number in range(len(carriers)))
     return tuple(_described(situation) for situation in situations)
 
@@ -198,22 +165,7 @@ def all_balances(
 def held_belt(
     path: Path, belt: Belt, contact: Contact, carriers: Sequence[Carrier], positions: FloatArray, number: int
 ) -> StaticEstimate:
-    """Find the belt that holds a tensioner at a position, by virtual work: T = F / (dL/dq).
-
-    Parameters
-    ----------
-    path, belt, contact, carriers
-        As for `balance_tensioners`; the length of the belt does not matter.
-    positions : ndarray, shape (K,)
-        Where the tensioners stand, m or rad.
-    number : int
-        The tensioner that is in balance there.
-
-    Raises
-    ------
-    ValueError
-        If no tension holds it, or no belt runs around the pulleys there.
-    """
+    """Find the belt that holds a tensioner at a position, by virtual work: T = F / (dL/dq); ValueError if none does."""
     there, one, position = moved(path, carriers, positions), carriers[number], float(positions[number])
     leverage = float(there.gradient(one.pulley) @ one.place(position)[1])
     force = one.force(position)

@@ -39,14 +39,6 @@ def tension_checks(
 
     The span is a string with the bending stiffness of the belt between hinges, and stretched by its deflection where
     the pulleys are fixed; see `beltdyn.theory.stiff_span`.
-
-    Parameters
-    ----------
-    drive : Drive
-    installation : Installation
-        The belt at rest.
-    specified : float, optional
-        Tension in place of that of the installation, N.
     """
     if not installation.span_tensions.min() > 0.0:
         return ()

@@ -71,13 +71,7 @@ class Outputs(NamedTuple):
 
 
 class BandLimit:
-    """Filters what is seen at ends of steps, as they come.
-
-    Parameters
-    ----------
-    interval : float
-        Between outputs, s.
-    """
+    """A low-pass filter of values at ends of steps, for outputs at an interval (s)."""
 
     def __init__(self, interval: float) -> None:
         self._interval = interval
@@ -86,15 +80,7 @@ class BandLimit:
         self._gain = float(transfer(np.zeros(1))[0])
 
     def take(self, time: FloatArray, values: FloatArray) -> None:
-        """Go on to further states.
-
-        Parameters
-        ----------
-        time : ndarray, shape (k,)
-            s, after those before.
-        values : ndarray, shape (k, channels)
-            What is to be filtered.
-        """
+        """Take values, shape (k, channels), at later times."""
         before = self._values if len(self._time) else values[:0]
         self._time, self._values = np.append(self._time, time), np.concatenate([before, values])
 
@@ -103,16 +89,9 @@ class BandLimit:
         return float(self._time[-1 if last else -2]) - self._reach if len(self._time) > 2 else -np.inf
 
     def at(self, instants: FloatArray) -> FloatArray:
-        """Filtered values, and forget states that outputs after them do not need.
+        """Filtered values, shape (m, channels), at ascending instants; drops states that later outputs do not need.
 
-        Parameters
-        ----------
-        instants : ndarray, shape (m,)
-            s, ascending, up to `known_until`, none nearer to the first state than the reach of the filter.
-
-        Returns
-        -------
-        ndarray, shape (m, channels)
+        Instants are at most `known_until`, and beyond the filter's reach from the first state.
         """
         if not len(instants):
             return np.empty((0, self._values.shape[1]))

@@ -44,23 +44,10 @@ class EnergyAccount:
         self._largest = np.zeros(4)
 
     def closure(self, stored: FloatArray, potential: FloatArray, work: FloatArray, shown: BoolArray) -> FloatArray:
-        """Closure error in some of several successive states.
+        """Closure error in shown states; zero as long as no energy was put in.
 
-        Parameters
-        ----------
-        stored : ndarray, shape (m,)
-            E in those that are shown, J; the first state of all is one of them.
-        potential : ndarray, shape (k, 2)
-            V of springs and of weight, J.
-        work : ndarray, shape (k, 10)
-            In the order of `ENERGY_WORKS`: driver work, torque work, then losses, J.
-        shown : ndarray of bool, shape (k,)
-            Which m of them are.
-
-        Returns
-        -------
-        ndarray, shape (m,)
-            Zero as long as no energy was put in at all.
+        Of k states m are shown. Stored energy E has shape (m,), V of springs and weight (k, 2), works in the order of
+        `ENERGY_WORKS` (k, 10); J. The first state of all must be shown.
         """
         if self._initial is None:
             self._initial = float(stored[0]), potential[0].copy()
@@ -95,15 +82,7 @@ _OF_SHOWN = frozenset(name for name, per in OBSERVED.items() if per.shown)
 
 
 class Observer:
-    """Sees successive states, and keeps what has to be summed up over all of them.
-
-    Parameters
-    ----------
-    prepared, system
-        What is simulated.
-    belt_coordinate : ndarray, shape (points,)
-        Of the contact points, m.
-    """
+    """Sees successive states, and keeps what is summed over all of them."""
 
     def __init__(self, prepared: Prepared, system: System, belt_coordinate: FloatArray) -> None:
         self._prepared, self._system, self._belt_coordinate = prepared, system, belt_coordinate
@@ -115,20 +94,7 @@ class Observer:
         self._flutter = None if isinstance(system.frame, Flowing) else FlutterWatch(system)
 
     def see(self, states: Chunk, shown: BoolArray) -> Seen:
-        """Every recorded variable at further states but those that are coordinates and their rates.
-
-        Parameters
-        ----------
-        states
-            At least one state.
-        shown : ndarray of bool, shape (k,)
-            For which states all of them are wanted; for the very first one.
-
-        Returns
-        -------
-        Seen
-            Name -> array with one row for each state that is shown; and what spectra show, of every state.
-        """
+        """Recorded variables of the shown states, except coordinates and their rates, and spectra of every state."""
         seen = observe_motion(self._system, states.position, states.velocity, states.forces, shown)
         touched, centers, places = seen.contact_pulley, seen.pulley_center, seen.contact_position
         aside = mid_span_displacements(self._prepared, centers, places, touched)
@@ -197,15 +163,7 @@ _FAST = 0.05
 
 
 class SlipThrough:
-    """Watches the outputs of a run-up.
-
-    Parameters
-    ----------
-    prepared : Prepared
-        What is simulated.
-    swept : int
-        Number of the pulley whose speed rises.
-    """
+    """Watches the outputs of a run-up, in which the speed of the pulley `swept` rises."""
 
     def __init__(self, prepared: Prepared, swept: int) -> None:
         self._prepared, self._swept, self._radius = prepared, swept, float(prepared.radii[swept])

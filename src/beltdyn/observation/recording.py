@@ -120,26 +120,6 @@ class Recording:
 
     An interruption (Ctrl-C) ends the recording with the status "interrupted" and goes no further; an error ends it
     with the status "failed" and goes on to the caller.
-
-    Parameters
-    ----------
-    prepared, system
-        What is simulated.
-    output
-        Result file, or None for memory.
-    title
-        Title of the dataset.
-    progress
-        Whom to tell.
-    overwrite
-        Replace any regular file, and not only earlier results.
-    **attributes
-        Global attributes of the dataset, which an analysis adds.
-
-    Raises
-    ------
-    ModelError
-        If the file cannot be written, or would replace one that is no result.
     """
 
     def __init__(

@@ -153,17 +153,7 @@ _ENTERED: dict["LawKeys", tuple[str, ...]] = {}
 
 @dataclass(frozen=True, eq=False)
 class LawKeys:
-    """The keys that the laws of a family have in a part that names one of them.
-
-    Parameters
-    ----------
-    part
-        The part.
-    key
-        Its field with the name of the law.
-    laws
-        The family; laws have `parameters`.
-    """
+    """The parameters of a law family as keys of a part, whose field `key` names the law."""
 
     part: type[Part]
     key: str

@@ -23,15 +23,7 @@ def shorten(text: object, longest: int = _LONGEST_NAME) -> str:
 
 
 class ErrorLocation:
-    """Follows the location of an error through the JSON schema of a model, and through the user's data.
-
-    Parameters
-    ----------
-    model : type
-        The model that was validated.
-    data : mapping
-        What it was validated from.
-    """
+    """Follows an error through the JSON schema of a model and the user's data."""
 
     def __init__(self, model: type[BaseModel], data: Mapping[str, Any]) -> None:
         self._schema = _schema_of(model)

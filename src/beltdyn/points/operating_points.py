@@ -159,28 +159,6 @@ class OperatingPoints:
 
     A point that has no steady running is marked by its reason, and so is one at which anything else goes wrong; the
     others go on.
-
-    Parameters
-    ----------
-    kind
-        Name of the analysis.
-    drive
-        The drive.
-    axes
-        The table's dimensions.
-    output
-        Result file; without one the results stay in memory.
-    progress
-        Called after each point with a `Progress`.
-    overwrite
-        Replace any regular file by the results.
-    names
-        Which of `VARIABLES` are kept; by default all but those of fatigue.
-
-    Raises
-    ------
-    ModelError
-        If the drive cannot run steadily, or the file would replace one that is no result.
     """
 
     def __init__(

@@ -25,23 +25,10 @@ _OURS: ContextVar[frozenset[Path]] = ContextVar("_OURS", default=frozenset())
 
 
 class OutputLock:
-    """A lock on a file, which the operating system takes back from a process that is killed.
+    """A lock on a file (without links on the way to it), which a killed process gives back.
 
-    It lies in a file beside it, ``.NAME.lock``, which is removed when the lock is given back.
-
-    Parameters
-    ----------
-    path : Path
-        The file, without links on the way to it; by a hard link it is the same file.
-    patience : float
-        How long to wait for whoever holds the lock, s.
-
-    Raises
-    ------
-    ModelError
-        If another one holds the lock.
-    OSError
-        If there is no such folder, or no writing in it.
+    It lies beside the file, ``.NAME.lock``, and is removed when given back. ModelError if another process holds it
+    longer than `patience` (s).
     """
 
     def __init__(self, path: Path, patience: float = 0.0) -> None:

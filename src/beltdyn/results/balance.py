@@ -143,17 +143,9 @@ def _largest(recorded: Recorded, shares: FloatArray) -> Closure:
 
 
 def energy_put_in(recorded: Recorded) -> FloatArray:
-    """Energy put in up to each output: what was stored at first, and the largest works of each kind by then.
+    """Energy put in up to each output, J: the energy stored at first, and the largest works of each kind by then.
 
-    Parameters
-    ----------
-    recorded : Recorded
-        The results, with at least one output.
-
-    Returns
-    -------
-    ndarray, shape (outputs,)
-        J; works of drivers and torques, and of springs and weight, either way.
+    Works of drivers and torques, and of springs and weight, count either way.
     """
 
     def values(name: str) -> FloatArray:

@@ -44,13 +44,7 @@ class _Fields(NamedTuple):
 
 
 def turn_history(run: Run) -> BeltHistory:
-    """History of any material point over a turn of the belt in steady running, shape (elements, 1).
-
-    Parameters
-    ----------
-    run : Run
-        Steady running of a closed belt.
-    """
+    """History of any material point over a turn of the belt in steady running, shape (elements, 1)."""
     fields, prepared = _fields(run, slice(-1, None)), run.prepared
     speed = float(np.squeeze(run.dataset.attrs["belt_parameter"]))
     along = run.dataset["element_coordinate"].values

@@ -85,18 +85,10 @@ class Window:
         return np.asarray(_mean(values * factor, *self._cut(rows))[-1])
 
     def running_means(self, values: FloatArray) -> FloatArray:
-        """Means around every output.
+        """Means over windows with their middles at the outputs.
 
-        Parameters
-        ----------
-        values : ndarray, shape (outputs, ...)
-            At all outputs.
-
-        Returns
-        -------
-        ndarray, shape (outputs, ...)
-            Means over windows with their middles at the outputs. NaN before the middle of the first whole window, and
-            where a value in the window is NaN; from the middle of the last whole window on the mean over that one.
+        NaN before the middle of the first whole window, and where a value in the window is NaN; the last whole window's
+        mean from its middle on.
         """
         if not self.cycles:
             return values.copy()
@@ -127,15 +119,7 @@ class Window:
 
 
 def plain_window(time: FloatArray, start: float | None = None) -> Window:
-    """Give the window from an instant to the last output, whatever repeats.
-
-    Parameters
-    ----------
-    time : ndarray, shape (outputs,)
-        Times of the outputs, s.
-    start : float, optional
-        The instant, s; that of the first output by default.
-    """
+    """The window from an instant, by default the first output, to the last output."""
     start = float(time[0]) if start is None else start
     return Window(time, (Cycle(time, float(time[-1]) - start),))
 

@@ -103,16 +103,9 @@ def fatigue_by_name(run: Run) -> dict[str, Any]:
 
 
 class Lives:
-    """Lives of a belt under damage that goes on, h.
+    """Lives of a belt, h, under a damage per hour that goes on.
 
     The life of cords ends with the S-N line: where all forces are below its last point, that gives a lower bound.
-
-    Parameters
-    ----------
-    drive : Drive
-        The drive.
-    damage : Damage
-        Of an hour, on average.
     """
 
     def __init__(self, drive: Drive, damage: Damage) -> None:
@@ -152,16 +145,7 @@ def _cord_damage(drive: Drive, history: BeltHistory, count: Callable[[FloatArray
 def miner(line: CordFatigue, cycles: Cycles, pulley: IntArray, pulleys: int) -> tuple[FloatArray, float]:
     """Damage by each pulley by Miner's rule, and the largest equivalent force, N.
 
-    Parameters
-    ----------
-    line : CordFatigue
-        The S-N line.
-    cycles : Cycles
-        Cycles of the force in the cords, N; those that never pull do no damage.
-    pulley : ndarray of int, shape (k,)
-        The pulley at each value of the history; a cycle belongs to that of its largest force.
-    pulleys : int
-        Number of pulleys.
+    A cycle belongs to the pulley of its largest force; cycles that never pull do no damage.
     """
     pulls = cycles.high > 0.0
     force = line.equivalent_force(cycles.low[pulls], cycles.high[pulls])

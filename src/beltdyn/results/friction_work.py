@@ -17,13 +17,7 @@ _LEAST = 1e-9
 
 
 class MaterialWork:
-    """Hands on work by pieces of a mesh to the belt that was there.
-
-    Parameters
-    ----------
-    lengths : ndarray, shape (E,)
-        Of the pieces, m. Pieces of the belt are those that were there at the beginning.
-    """
+    """Transfers work in pieces of a mesh to the pieces of belt that were there, by their lengths (m)."""
 
     def __init__(self, lengths: FloatArray) -> None:
         self._ends = np.concatenate([[0.0], np.cumsum(lengths)])
@@ -31,19 +25,9 @@ class MaterialWork:
         self._passed = 0.0
 
     def take(self, by_mesh: FloatArray, passed: FloatArray) -> FloatArray:
-        """Go on to further states.
+        """Work on each piece of the belt since the beginning, J, from that in each piece of the mesh, shape (m, P, E).
 
-        Parameters
-        ----------
-        by_mesh : ndarray, shape (m, P, E)
-            Work since the beginning in each piece of the mesh, J.
-        passed : ndarray, shape (m,)
-            Length of belt that has passed since the beginning, m.
-
-        Returns
-        -------
-        ndarray, shape (m, P, E)
-            Work since the beginning on each piece of the belt, J.
+        `passed` is the length of belt that has passed by then, m.
         """
         if self._before is None:
             self._before, self._total = np.zeros(by_mesh.shape[1:]), np.zeros(by_mesh.shape[1:])
@@ -150,14 +134,7 @@ class WorkSoFar(NamedTuple):
 class FrictionWork:
     """Integrals over time of the power |f_t v_t|, by the trapezoidal rule over successive states.
 
-    Parameters
-    ----------
-    prepared : Prepared
-        The drive.
-    cell : ndarray, shape (points,)
-        Length of belt that each contact point stands for, m.
-    elements : int
-        Number of pieces of the belt, each with as many contact points.
+    `cell` is the length of belt of each contact point, m; each of the `elements` has as many points.
     """
 
     def __init__(self, prepared: Prepared, cell: FloatArray, elements: int) -> None:
@@ -169,21 +146,9 @@ class FrictionWork:
         self._done = WorkSoFar(np.zeros((2, *parts)), np.zeros(parts))
 
     def take(self, touch: Touch, shown: BoolArray) -> tuple[FloatArray, FloatArray]:
-        """Go on to further states.
+        """Work since the first state, J, for the m shown of k further states.
 
-        Parameters
-        ----------
-        touch
-            Contact in k states.
-        shown : ndarray of bool, shape (k,)
-            For which m of them the work is wanted.
-
-        Returns
-        -------
-        by_arc : ndarray, shape (m, pulleys, ARC_PARTS)
-            Work since the first state, J.
-        by_belt : ndarray, shape (m, pulleys, elements)
-            The same by place on the belt.
+        By place on the arc, shape (m, pulleys, ARC_PARTS), and on the belt, shape (m, pulleys, elements).
         """
         inlet, wrap = arc_ends(self._prepared, touch.center)
         arcs = np.stack([inlet, wrap, np.broadcast_to(self._turning, wrap.shape)], axis=-1)

@@ -22,41 +22,16 @@ if TYPE_CHECKING:
 
 
 def arc_ends(prepared: Prepared, centers: FloatArray) -> tuple[FloatArray, FloatArray]:
-    """Give the angles at which the belt's path reaches pulleys and the wrap angles.
-
-    Parameters
-    ----------
-    prepared : Prepared
-        Effective radii and sides.
-    centers : ndarray, shape (..., pulleys, 2)
-        Where the pulleys are, m.
-
-    Returns
-    -------
-    inlet, wrap : ndarray, shape (..., pulleys)
-        Angle of the tangent point where the span before each pulley ends, from the x axis; wrap angle; rad.
-    """
+    """Angles from the x axis at which the belt reaches pulleys, and wrap angles; shape (..., pulleys), rad."""
     radii, ends = prepared.path.radii, prepared.path.ends
     reached = np.roll(span_points(centers, radii, ends)[..., 1, :], 1, axis=-2)[..., : len(radii), :] - centers
     return np.arctan2(reached[..., 1], reached[..., 0]), wrap_angles(span_directions(centers, radii, ends), radii)
 
 
 def angle_from_inlet(place: FloatArray, inlet: ArrayLike, wrap: ArrayLike, turning: ArrayLike) -> FloatArray:
-    """Angle of points around a pulley in the direction of ascending belt coordinate.
+    """Angle of points around a pulley in the direction of ascending belt coordinate, rad; zero at the inlet.
 
-    Parameters
-    ----------
-    place : ndarray, shape (k, 2)
-        Points, from the pulley's center, m.
-    inlet, wrap : array_like, shape (k,) or a number
-        See `arc_ends`.
-    turning : array_like, shape (k,) or a number
-        1, or -1 for a pulley at the belt's back.
-
-    Returns
-    -------
-    ndarray, shape (k,)
-        rad, zero at the inlet, negative shortly before it.
+    Points are taken from the pulley's center; `turning` is -1 for a pulley at the belt's back, else 1.
     """
     free = 0.5 * (2.0 * np.pi - np.asarray(wrap))
     turned = np.asarray(turning) * (np.arctan2(place[:, 1], place[:, 0]) - np.asarray(inlet))
@@ -68,29 +43,13 @@ UNLOADED = 1e-4
 
 
 def rim_speeds(speed: FloatArray, prepared: Prepared) -> FloatArray:
-    """Speeds at which a belt without tension rolls on the rims, in the direction of ascending belt coordinate, m/s.
-
-    Parameters
-    ----------
-    speed : ndarray, shape (..., pulleys)
-        Pulley speeds, rad/s, counter-clockwise positive.
-    prepared : Prepared
-        A pulley at the belt's back turns clockwise where the others turn counter-clockwise.
-    """
+    """Speeds at which a belt without tension rolls on the rims, in the direction of ascending belt coordinate, m/s."""
     turning = np.array([pulley.turning for pulley in prepared.pulleys])
     return np.asarray(speed * prepared.rolling_radii * turning)
 
 
 def relative_loss(values: FloatArray, rim: FloatArray, reference: int) -> FloatArray:
-    """What values of every pulley exceed that of the reference by, m/s, over its rim's speed.
-
-    Parameters
-    ----------
-    values, rim : ndarray, shape (..., pulleys)
-        Values, and speeds of the rims as from `rim_speeds`, m/s.
-    reference : int
-        Number of a pulley; NaN where it stands still.
-    """
+    """Excess of values over that of the reference pulley, over its rim speed; NaN where it stands still."""
     against = slice(reference, reference + 1)
     lost, speed = values - values[..., against], rim[..., against]
     unknown = np.full(np.broadcast(lost, speed).shape, np.nan)
@@ -98,53 +57,19 @@ def relative_loss(values: FloatArray, rim: FloatArray, reference: int) -> FloatA
 
 
 def across(spans: FloatArray, prepared: Prepared) -> tuple[FloatArray, FloatArray]:
-    """Values of the spans before and after every pulley.
-
-    Parameters
-    ----------
-    spans : ndarray, shape (..., spans)
-        A value of every span.
-    prepared : Prepared
-        The drive.
-
-    Returns
-    -------
-    before, after : ndarray, shape (..., pulleys)
-        Of the spans that reach and leave each pulley, in the direction of ascending belt coordinate.
-    """
+    """Values of the spans before and after every pulley, in the direction of ascending belt coordinate."""
     pulleys = len(prepared.pulleys)
     return np.roll(spans, 1, axis=-1)[..., :pulleys], spans[..., :pulleys]
 
 
 def cells(belt_coordinate: FloatArray, length: float) -> FloatArray:
-    """Length of belt that each contact point stands for: half of the way to its neighbors, m.
-
-    Parameters
-    ----------
-    belt_coordinate : ndarray, shape (points,)
-        Ascending, m.
-    length : float
-        Unstretched length of the closed belt, m.
-    """
+    """Length of closed belt that belongs to each contact point, m: half of the way to its neighbors."""
     gaps = np.diff(belt_coordinate, append=belt_coordinate[0] + length)
     return np.asarray(0.5 * (gaps + np.roll(gaps, 1)))
 
 
 def element_lengths(dataset: "xr.Dataset", belt_length: float) -> FloatArray:
-    """Give the reference lengths of the elements.
-
-    Parameters
-    ----------
-    dataset : xarray.Dataset
-        A result; only ``node_coordinate`` and the number of elements are used.
-    belt_length : float
-        Unstretched length of the belt, m.
-
-    Returns
-    -------
-    ndarray, shape (elements,)
-        Lengths between a node and the next along the belt, m.
-    """
+    """Reference lengths of the elements of a result, m."""
     nodes = dataset["node_coordinate"].values
     return np.diff(nodes, append=nodes[0] + belt_length)[: dataset.sizes["element"]]
 
@@ -158,21 +83,10 @@ def recorded_kind(dataset: "xr.Dataset", prepared: Prepared) -> ElementKind:
 def sliding_velocity(
     slip_velocity: FloatArray, normal: FloatArray, touched: IntArray, pulley_speed: FloatArray, prepared: Prepared
 ) -> FloatArray:
-    """Slip velocity beyond creep: what is left of it when the friction law's creep v_c is taken away.
+    """Slip velocity beyond creep; zero where the belt does not press on a pulley.
 
-    v_c is the slip velocity at which |f_t| reaches mu f_n, which the friction law knows.
-    The result is sign(v_t) max(|v_t| - v_c, 0) where the belt presses on a pulley, and zero elsewhere.
-
-    Parameters
-    ----------
-    slip_velocity, normal : ndarray, shape (..., points)
-        v_t (m/s) and f_n (N/m).
-    touched : ndarray of int, shape (..., points)
-        Number of the pulley that a point touches, -1 where it is free.
-    pulley_speed : ndarray, shape (..., pulleys)
-        rad/s.
-    prepared : Prepared
-        Friction.
+    It is sign(v_t) max(abs(v_t) - v_c, 0), with v_c the slip velocity at which friction reaches mu f_n. `touched` has
+    pulley numbers, -1 where free.
     """
     rim = np.take_along_axis(pulley_speed * prepared.radii, touched, axis=-1)
     creep = prepared.friction_parameters.saturation(normal, prepared.frictions[touched], rim)
@@ -181,22 +95,7 @@ def sliding_velocity(
 
 
 def sliding_shares(sliding: FloatArray, pressed: BoolArray, cell: FloatArray) -> FloatArray:
-    """Part of every arc of contact on which the belt slides.
-
-    Parameters
-    ----------
-    sliding : ndarray, shape (k, points)
-        Result of `sliding_velocity`.
-    pressed : ndarray of bool, shape (k, pulleys, points)
-        Where the belt presses on each pulley; see `pressing`.
-    cell : ndarray, shape (points,)
-        Result of `cells`.
-
-    Returns
-    -------
-    ndarray, shape (k, pulleys)
-        Zero without contact.
-    """
+    """Part of every arc of contact on which the belt slides, shape (k, pulleys); zero without contact."""
     lengths = pressed @ cell
     slid = (pressed & (sliding != 0.0)[:, None]) @ cell
     return np.asarray(np.divide(slid, lengths, out=np.zeros_like(lengths), where=lengths > 0.0))
@@ -208,24 +107,10 @@ def pressing(normal: FloatArray, touched: IntArray, pulleys: int) -> BoolArray:
 
 
 def gross_sliding(sliding: FloatArray, pressed: BoolArray, prepared: Prepared) -> FloatArray:
-    """Velocity at which the belt slides on the whole arc of each pulley, m/s along the belt.
+    """Velocity at which the belt slides on the whole arc of each pulley, shape (k, pulleys), m/s along the belt.
 
-    The sliding velocity nearest to zero of all points that press; zero as soon as one of them only creeps, or slides
-    the other way.
-
-    Parameters
-    ----------
-    sliding : ndarray, shape (k, points)
-        Result of `sliding_velocity`.
-    pressed : ndarray of bool, shape (k, points, pulleys)
-        Result of `pressing`.
-    prepared : Prepared
-        Sides of the pulleys.
-
-    Returns
-    -------
-    ndarray, shape (k, pulleys)
-        Belt faster than the rim in the direction of ascending belt coordinate.
+    The sliding velocity nearest to zero of all points that press; zero if one of them only creeps, or slides the other
+    way. Positive where the belt is faster than the rim, in the direction of ascending belt coordinate.
     """
     lowest = np.where(pressed, sliding[:, None], np.inf).min(axis=-1)
     highest = np.where(pressed, sliding[:, None], -np.inf).max(axis=-1)
@@ -241,24 +126,7 @@ POINTS = 17
 
 
 def centerline(kind: ElementKind, coordinates: FloatArray, lengths: FloatArray, points: int = POINTS) -> FloatArray:
-    """Points on the centerline, by the Bezier curves of the elements.
-
-    Parameters
-    ----------
-    kind : ElementKind
-        Of the elements; `mechanics.recorded_kind` of a result.
-    coordinates : ndarray, shape (nodes, k)
-        Nodal coordinates of a result: positions (m) first.
-    lengths : ndarray, shape (elements,)
-        Reference length from each node to the next along the belt, m.
-    points : int
-        Points on a curve, ends included.
-
-    Returns
-    -------
-    ndarray, shape (nodes, points, 2)
-        Points on the curve that begins at each node, m.
-    """
+    """Points on the Bezier curve that begins at each node, ends included, shape (nodes, points, 2), m."""
     xi = np.linspace(0.0, 1.0, points)
     curves = np.arange(len(lengths))
     places = curve_points(kind, coordinates, lengths, np.repeat(curves, points), np.tile(xi, len(curves)))
@@ -268,26 +136,7 @@ def centerline(kind: ElementKind, coordinates: FloatArray, lengths: FloatArray, 
 def curve_points(
     kind: ElementKind, coordinates: FloatArray, lengths: FloatArray, curve: IntArray, xi: FloatArray
 ) -> FloatArray:
-    """Points anywhere on the centerline, at one instant or at several.
-
-    Parameters
-    ----------
-    kind : ElementKind
-        Of the elements.
-    coordinates : ndarray, shape (..., nodes, k)
-        Nodal coordinates of a result.
-    lengths : ndarray, shape (elements,)
-        Reference length from each node to the next along the belt, m.
-    curve : ndarray of int, shape (points,)
-        The node at which the curve of each point begins.
-    xi : ndarray, shape (points,)
-        Where on its curve each point is, from 0 to 1.
-
-    Returns
-    -------
-    ndarray, shape (..., points, 2)
-        m.
-    """
+    """Points on the centerline, shape (..., points, 2), m: each at xi in [0, 1] on the curve of a node."""
     points = curve_controls(kind, coordinates, lengths)
     degree, along = points.shape[-2] - 1, xi[:, None]
     order = np.arange(degree + 1)
@@ -308,14 +157,10 @@ def curve_controls(kind: ElementKind, coordinates: FloatArray, lengths: FloatArr
 
 
 def mean_curvature(kind: ElementKind, coordinates: FloatArray, lengths: FloatArray) -> FloatArray:
-    """Mean curvature of each curve of a closed belt: the turn of its tangent over its length.
+    """Mean curvature of each curve of a closed belt, shape (..., curves), 1/m, positive to the left.
 
-    At a node without a common tangent, as between straight elements, the tangent halves the kink.
-
-    Returns
-    -------
-    ndarray, shape (..., curves)
-        1/m, positive where the belt turns to the left; arguments as for `curve_points`.
+    The turn of the tangent over the length. At a node without a common tangent, as between straight elements, the
+    tangent halves the kink.
     """
     points = curve_controls(kind, coordinates, lengths)
     first, last = (_unit(points[..., after, :] - points[..., before, :]) for before, after in ((0, 1), (-2, -1)))

@@ -34,23 +34,9 @@ class ReplacedError(OSError):
 
 
 class GrowingFile:
-    """A file to which outputs are appended; it is closed and readable between any two of them.
+    """A file to which outputs are appended, closed and readable between any two of them.
 
-    Parameters
-    ----------
-    path : Path
-        Where to write the file, with everything but outputs.
-    layout : Layout
-        Names and reference coordinates.
-    attributes : mapping
-        Global attributes.
-    owner : str
-        The file that whoever writes has locked.
-
-    Raises
-    ------
-    OSError
-        If it cannot be written.
+    `owner` is the file that the writer has locked.
     """
 
     def __init__(self, path: Path, layout: Layout, attributes: Mapping[str, Any], owner: str = "") -> None:

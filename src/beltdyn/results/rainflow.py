@@ -32,13 +32,7 @@ class Cycles(NamedTuple):
 
 
 def turning_points(history: FloatArray) -> IntArray:
-    """Places of peaks, valleys and both ends of a history; of equal values the first.
-
-    Parameters
-    ----------
-    history : ndarray, shape (k,)
-        Values in their order.
-    """
+    """Indices of peaks, valleys and both ends of a history; of equal values the first."""
     moved = np.flatnonzero(np.diff(history, prepend=np.nan) != 0.0)
     slopes = np.sign(np.diff(history[moved]))
     turned = np.flatnonzero(slopes[1:] != slopes[:-1]) + 1
@@ -46,13 +40,7 @@ def turning_points(history: FloatArray) -> IntArray:
 
 
 def rainflow(history: FloatArray) -> Cycles:
-    """Count the cycles of a history; what remains at its ends counts as half cycles.
-
-    Parameters
-    ----------
-    history : ndarray, shape (k,)
-        Values in their order.
-    """
+    """Count the cycles of a history; what remains at its ends counts as half cycles."""
     points, found, kept = turning_points(history), list[tuple[int, int, float]](), list[int]()
     for point in points.tolist():
         kept.append(point)
@@ -67,13 +55,7 @@ def rainflow(history: FloatArray) -> Cycles:
 
 
 def rainflow_of_turn(history: FloatArray) -> Cycles:
-    """Count the cycles of a history that repeats: from its largest value on there are whole cycles only.
-
-    Parameters
-    ----------
-    history : ndarray, shape (k,)
-        Values of one period in their order.
-    """
+    """Count the cycles of a history that repeats: from its largest value on there are whole cycles only."""
     if not len(history):
         return rainflow(history)
     begin = int(np.argmax(history))

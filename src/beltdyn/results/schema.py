@@ -244,12 +244,7 @@ class Recorded(Protocol):
 
 
 class InMemory:
-    """Variables of a dataset as plain arrays, which are quicker to look at than labeled ones.
-
-    Parameters
-    ----------
-    dataset : xarray.Dataset
-    """
+    """Variables of a dataset as plain arrays, which are quicker to look at than labeled ones."""
 
     def __init__(self, dataset: "xr.Dataset") -> None:
         self._variables = dataset.variables

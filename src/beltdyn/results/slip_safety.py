@@ -39,20 +39,9 @@ def slip_safety_of_states(
 ) -> FloatArray:
     """Slip safety of each pulley: the factor on all loads at its gross slip, if the others hold.
 
-    Parameters
-    ----------
-    tension, belt_speed : ndarray, shape (..., spans)
-        N and m/s.
-    centers : ndarray, shape (..., pulleys, 2)
-        Where the pulleys are, m.
-    prepared : Prepared
-        Friction, mass per length, radii, stretch, and tensioners.
-
-    Returns
-    -------
-    ndarray, shape (..., pulleys)
-        1 on the edge of gross slip; the least one is that of the drive. NaN without a load, where the difference of
-        tensions at a pulley, over their sum, is below `UNLOADED`, and where the belt does not touch.
+    1 on the edge of gross slip. NaN without a load, where the difference of tensions at a pulley, over their sum, is
+    below `UNLOADED`, and where the belt does not touch. Arguments have shapes (..., spans), N and m/s, and (...,
+    pulleys, 2), m.
     """
     pulleys = len(prepared.pulleys)
     shape = tension.shape[:-1]

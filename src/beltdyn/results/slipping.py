@@ -28,26 +28,7 @@ def sliding_of_pulleys(
     slip_velocity: FloatArray,
     pulley_speed: FloatArray,
 ) -> dict[str, FloatArray]:
-    """Sum up sliding along the belt.
-
-    Parameters
-    ----------
-    prepared : Prepared
-        The drive.
-    belt_coordinate : ndarray, shape (points,)
-        Of the contact points, m.
-    touched : ndarray of int, shape (k, points)
-        Number of the pulley that each touches, -1 where it is free.
-    normal, slip_velocity : ndarray, shape (k, points)
-        N/m and m/s.
-    pulley_speed : ndarray, shape (k, pulleys)
-        rad/s.
-
-    Returns
-    -------
-    dict
-        ``sliding_speed`` (m/s, see `mechanics.gross_sliding`) and ``sliding_share``, shape (k, pulleys).
-    """
+    """Speed (m/s) and share of sliding of each pulley, shape (k, pulleys), from contact at points."""
     sliding = sliding_velocity(slip_velocity, normal, touched, pulley_speed, prepared)
     pressed = pressing(normal, touched, len(prepared.pulleys))
     return {
@@ -82,24 +63,6 @@ def slip_parts(
     the span has (`theory.elastic_creep.entry_strain`), on small pulleys by as much as it creeps. The rolling radii have
     a part of that already. A law of friction that starts at zero lets the belt creep where it touches, and on, while it
     bends.
-
-    Parameters
-    ----------
-    rim : ndarray, shape (..., pulleys)
-        Mean speeds of the rims, m/s; see `mechanics.rim_speeds`.
-    tension : ndarray, shape (..., spans)
-        Mean tensions, N.
-    gross : ndarray, shape (..., pulleys)
-        Mean velocities at which whole arcs slide, m/s; see `mechanics.gross_sliding`.
-    elapsed : float or ndarray, shape (...)
-        Time that means are taken over, s.
-    prepared : Prepared
-        The drive.
-
-    Returns
-    -------
-    SlipParts
-        NaN while the driver stands still: while its rim goes no further than the belt is stretched.
     """
     law = prepared.belt.stretch_parameters
     stretched = (law.stretch(np.max(tension, axis=-1)) - 1.0) * prepared.belt_length

@@ -29,20 +29,7 @@ _BLOCK = 16384
 
 
 class StagedFile:
-    """What h5py reads and writes in place of a file.
-
-    Parameters
-    ----------
-    path : Path
-        A file that exists.
-    checksums : Checksums, optional
-        Those of its contents, where they are known.
-
-    Raises
-    ------
-    OSError
-        If it cannot be opened for reading and writing.
-    """
+    """What h5py reads and writes in place of a file."""
 
     def __init__(self, path: Path, checksums: Checksums | None = None) -> None:
         self._file = path.open("r+b", buffering=0)

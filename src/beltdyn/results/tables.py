@@ -140,23 +140,7 @@ def tables_folder(path: Path) -> Path:
 
 
 def tables_of(result: Result) -> dict[str, Table]:
-    """Tables of a result, each a list of columns: what `write_csv` writes.
-
-    Parameters
-    ----------
-    result : Result
-        A run, or another result.
-
-    Returns
-    -------
-    dict
-        Name such as "pulleys" -> headings and values, shape (rows,): numbers or names.
-
-    Raises
-    ------
-    ModelError
-        If it is a run without an output.
-    """
+    """Tables of a result by name, such as "pulleys": headings and their columns, as `write_csv` writes them."""
     if not isinstance(result, Run):
         return _tables_of_names(result.dataset)
     result.require_output()

@@ -57,18 +57,9 @@ class _Geometry(NamedTuple):
 
 
 class TensionBalance:
-    """What holds the tension of a belt, as a change of known states: a row for each.
+    """The balance that determines the tension of a belt, as a change of n known states.
 
-    Unknowns are the mean tension, and how far each tensioner moves.
-
-    Parameters
-    ----------
-    prepared : Prepared
-        The drive.
-    tension, speed : ndarray, shape (n, spans)
-        Span tensions, N, and belt speeds, m/s, of the known states.
-    centers : ndarray, shape (n, pulleys, 2)
-        Where the pulleys are in them, m.
+    Unknowns are the mean tension and the displacements of tensioners. Span tensions and speeds have shape (n, spans).
     """
 
     def __init__(self, prepared: Prepared, tension: FloatArray, speed: FloatArray, centers: FloatArray) -> None:
@@ -91,15 +82,7 @@ class TensionBalance:
         self._held = self._residual(rows, np.ones(len(rows)), still)
 
     def under(self, differences: FloatArray, speed: float | FloatArray) -> Self:
-        """The balance under other loads at another belt speed (m/s), about its one known state.
-
-        Parameters
-        ----------
-        differences : ndarray, shape (n, spans)
-            Tensions less their mean, N.
-        speed : float or ndarray, shape (n,)
-            Of the belt in all spans, m/s.
-        """
+        """The balance about its one known state, for other belt speeds and differences from the mean tension."""
         other, count = copy(self), len(differences)
         for name in ("mean", "_centers", "_places", "_held"):
             setattr(other, name, np.repeat(getattr(self, name)[:1], count, axis=0))

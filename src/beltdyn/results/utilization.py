@@ -12,20 +12,10 @@ _LOADED = 0.01
 
 
 def rate(prepared: Prepared, speeds: FloatArray, powers: FloatArray, centers: FloatArray) -> PowerRating | None:
-    """Rate the belt of a drive on its pulleys; None where its profile has no rating.
+    """Rate the belt of a drive; None where its profile has no rating.
 
-    Parameters
-    ----------
-    prepared : Prepared
-    speeds, powers : ndarray, shape (n,)
-        Speeds of the pulleys, rad/s, and powers into the drive, W.
-    centers : ndarray, shape (n, 2)
-        Where the pulleys are, m; their wrap angles are those of straight spans, as in catalogues.
-
-    Returns
-    -------
-    PowerRating or None
-        NaN for pulleys on the back of the belt, for which catalogues have no rating.
+    Wrap angles are those of straight spans, as in catalogues. NaN for pulleys on the back of the belt, for which
+    catalogues have no rating.
     """
     belt = prepared.drive.rated_belt
     if belt is None:

@@ -65,11 +65,6 @@ class Ribbon:
 
     It has points at all nodes and at all places where contact is recorded, where values are those that are recorded; in
     between they are interpolated. An element has one tension.
-
-    Parameters
-    ----------
-    run : Run
-        The run.
     """
 
     def __init__(self, run: Run) -> None:
@@ -116,11 +111,6 @@ class Cylinders:
     """Pulleys as wide as the belt, with a marked sector that begins on the x axis when their angle is zero.
 
     They end below the ribbon, which shows the centerline, by half of the belt's thickness at least: it is seen on arcs.
-
-    Parameters
-    ----------
-    run : Run
-        The run.
     """
 
     def __init__(self, run: Run) -> None:
@@ -290,17 +280,7 @@ def _begin(group: h5py.Group, surface: Surface, times: FloatArray) -> None:
 
 
 class _SurfaceOverTime:
-    """A surface in a file, to which instants are appended.
-
-    Parameters
-    ----------
-    group : h5py.Group
-        Where it stands, with its polygons.
-    count : int
-        Number of all instants.
-    done : int
-        Of these that were written.
-    """
+    """A surface in a file, to which instants are appended; `done` of `count` were written."""
 
     def __init__(self, group: h5py.Group, count: int, done: int) -> None:
         self._group, self._steps, self._count, self._done = group, group["Steps"], count, done

@@ -44,17 +44,7 @@ class Ritz(NamedTuple):
 
 
 def arnoldi(apply: Callable[[ComplexArray], ComplexArray], size: int, most: int) -> Iterator[Ritz]:
-    """Find eigenvalues of a map, better after each batch of steps.
-
-    Parameters
-    ----------
-    apply
-        The map, from vectors of shape (size,) to such.
-    size
-        Of its vectors.
-    most
-        Batches of steps.
-    """
+    """Find eigenvalues of a map of vectors of shape (size,), better after each of at most `most` batches of steps."""
     most = min(most, -(-size // _BATCH))
     vector = np.random.default_rng(0).standard_normal(size).astype(complex)
     basis = [vector / np.linalg.norm(vector)]
@@ -137,19 +127,7 @@ class Pencil(NamedTuple):
         return int(self.by_state.shape[0])
 
     def coordinates(self, values: ComplexArray, vectors: ComplexArray) -> ComplexArray:
-        """Coordinates x of eigenvectors.
-
-        Parameters
-        ----------
-        values : ndarray, shape (k,)
-            Eigenvalues s, 1/s.
-        vectors : ndarray, shape (size, k)
-            Eigenvectors z.
-
-        Returns
-        -------
-        ndarray, shape (n, k)
-        """
+        """Coordinates x, shape (n, k), of k eigenvectors z of eigenvalues s."""
         placed = self.placed.size
         found: ComplexArray = self.free @ (_RATE * vectors[2 * placed :] / values)
         found[self.placed] += vectors[:placed]
@@ -157,20 +135,7 @@ class Pencil(NamedTuple):
 
 
 def pencil(stiffness: "csc_array", damping: "csc_array", mass: "csc_array", free: FloatArray) -> Pencil:
-    """Make the pencil of first order.
-
-    Parameters
-    ----------
-    stiffness, damping, mass : csc_array, shape (n, n)
-        K, C and M.
-    free : ndarray, shape (n, k)
-        N, motions without force: K N = 0.
-
-    Returns
-    -------
-    Pencil
-        Of order 2 n - k.
-    """
+    """The pencil of first order, of order 2 n - k, of K, C, M and motions N without force, K N = 0, shape (n, k)."""
     from scipy.linalg import qr
     from scipy.sparse import block_array, csc_array, diags_array, eye_array
 
@@ -193,20 +158,10 @@ def pencil(stiffness: "csc_array", damping: "csc_array", mass: "csc_array", free
 
 
 def unit_masses(mass: "csc_array") -> FloatArray:
-    """Scales of the coordinates in which their masses are one.
+    """Scales of the coordinates in which their masses are one; one for coordinates without mass.
 
     In other units the matrices are so far from normal that residuals tell nothing: slopes and curvatures of quintic
     elements are numbers of other sizes than places.
-
-    Parameters
-    ----------
-    mass : csc_array, shape (n, n)
-        M.
-
-    Returns
-    -------
-    ndarray, shape (n,)
-        One for coordinates without mass.
     """
     own = np.abs(mass.diagonal())
     scale: FloatArray = np.divide(1.0, np.sqrt(own), out=np.ones(own.size), where=own > 0.0)
@@ -257,30 +212,10 @@ def lightly_damped(values: ComplexArray) -> BoolArray:
 def swinging(
     given: Pencil, count: int, first: float = 10.0, *, counted: Callable[[ComplexArray], BoolArray] = swings
 ) -> tuple[ComplexArray, ComplexArray]:
-    """Eigenvalues that swing, from the slowest on, with their eigenvectors in columns.
+    """Oscillating eigenvalues from the slowest on, in columns their eigenvectors, of each conjugate pair one.
 
-    Parameters
-    ----------
-    given
-        The pencil.
-    count
-        How many of those that are counted.
-    first
-        Where to begin to look, rad/s.
-    counted
-        Which of those that swing are counted; all by default. Those between them are given, too.
-
-    Returns
-    -------
-    values : ndarray, shape (k,)
-        Growth rate and angular frequency above zero, 1/s; of each conjugate pair one. Fewer than `count` where the
-        pencil has no more, and at most `MOST_SWINGING` or `count`, whichever is more.
-    vectors : ndarray, shape (size, k)
-
-    Raises
-    ------
-    ConvergenceError
-        If eigenvalues are not found.
+    At least `count` of those `counted`, if the pencil has as many, with those between them; `MOST_SWINGING` or `count`
+    at most, whichever is more. The search starts at `first` (rad/s).
     """
     if given.size <= _SMALL:
         found, shapes = all_eigenvalues(given)

@@ -117,23 +117,10 @@ def correct(system: System, motion: Motion, multipliers: FloatArray, equations: 
 
 
 def accelerate(system: System, motion: Motion, multipliers: FloatArray, equations: Equations) -> bool:
-    """Accelerations and multipliers that the equations of motion ask for (Eq. 25, and Eq. 27 where nodes are shared).
+    """Accelerations and multipliers of the equations of motion (Eq. 25; Eq. 27 where nodes are shared).
 
-    Parameters
-    ----------
-    system
-        The system.
-    motion
-        The state; the motion of prescribed bodies is written into it, and its accelerations are overwritten.
-    multipliers : ndarray, shape (n,)
-        Overwritten.
-    equations
-        Arrays to work in; afterwards its body forces are those of the state.
-
-    Returns
-    -------
-    bool
-        False if the mass matrix is singular.
+    Both are overwritten, with the motion of prescribed bodies and the body forces of the state. False if the mass
+    matrix is singular.
     """
     motion.acceleration[:] = 0.0
     multipliers[:] = 0.0

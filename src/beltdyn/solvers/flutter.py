@@ -38,13 +38,7 @@ _ENOUGH = 24
 
 
 class Vibrations:
-    """Vibrations of a system about states in motion.
-
-    Parameters
-    ----------
-    system
-        The system.
-    """
+    """Vibrations of a system about states in motion."""
 
     def __init__(self, system: System) -> None:
         self._system, self._equations = system, new_equations(system)
@@ -61,17 +55,7 @@ class Vibrations:
     ) -> tuple[FloatArray, FloatArray, FloatArray]:
         """Entries of K, C and M at a state, in the order in which `matrix` takes them.
 
-        Parameters
-        ----------
-        time
-            s.
-        position, velocity : ndarray, shape (n N + D,)
-            The state.
-
-        Returns
-        -------
-        tuple of 3 ndarray
-            The ties of a joint, and of a mesh to its place, which are in any tangent, are left in K alone.
+        The ties of a joint, and of a mesh to its place, which are in any tangent, are left in K alone.
         """
         motion = Motion(time, position.copy(), velocity.copy(), np.zeros_like(position))
 
@@ -163,13 +147,7 @@ class Flutter(NamedTuple):
 
 
 def growth_rates(eigenvalues: ComplexArray) -> FloatArray:
-    """Rates at which vibrations grow, 1/s: zero for what grows without swinging, and for what was not found.
-
-    Parameters
-    ----------
-    eigenvalues : ndarray, shape (k,)
-        Growth rate and angular frequency, 1/s; nan where none was found.
-    """
+    """Growth rates of vibrations, 1/s: zero for growth without oscillation, and for eigenvalues not found (NaN)."""
     swinging = np.abs(eigenvalues.imag) > np.abs(eigenvalues.real)
     return np.asarray(np.where(swinging, eigenvalues.real, 0.0))
 
@@ -180,13 +158,7 @@ def flutter_shift(system: System) -> complex:
 
 
 class FlutterWatch:
-    """Notes when a belt slides, and a few states in which it does; at the end it finds how vibrations grow there.
-
-    Parameters
-    ----------
-    system
-        What is simulated.
-    """
+    """Notes when a belt slides, with a few states in which it does; at the end it finds how vibrations grow there."""
 
     def __init__(self, system: System) -> None:
         self._system, self._shift = system, flutter_shift(system)
@@ -200,17 +172,7 @@ class FlutterWatch:
     def take(
         self, time: FloatArray, position: FloatArray, velocity: FloatArray, seen: Mapping[str, NDArray[Any]]
     ) -> None:
-        """Take outputs.
-
-        Parameters
-        ----------
-        time : ndarray, shape (k,)
-            s.
-        position, velocity : ndarray, shape (k, n N + D)
-            The states.
-        seen
-            Fields of `Observations` in these states.
-        """
+        """Take outputs: k states, and their fields of `Observations`."""
         transit = self._transit_time(velocity, seen)
         self._time.append(time)
         self._transit.append(transit)
@@ -287,14 +249,8 @@ def growth_within(
 ) -> tuple[float, float, float]:
     """Largest growth in one stretch of sliding, as a logarithm, and when it begins and ends, s.
 
-    Parameters
-    ----------
-    time : ndarray, shape (k,)
-        Outputs of the stretch, s.
-    transit : ndarray, shape (k,)
-        For how long a vibration has been growing at most, s, before the belt carries it away.
-    instants, rates : ndarray, shape (samples,)
-        When the rate of growth is known, s, and what it is, 1/s.
+    `transit` is how long a vibration has grown at most before the belt carries it away, s; `rates` (1/s) are known at
+    `instants`.
     """
     rate, count = np.interp(time, instants, rates), len(time)
     total = running_integral(rate, time)

@@ -148,15 +148,7 @@ def empty_steps(system: System, count: int) -> Steps:
 
 
 def grown(state: IntegratorState, position: FloatArray, velocity: FloatArray) -> IntegratorState:
-    """The same integration with other places and speeds, of which there may be more at the end.
-
-    Parameters
-    ----------
-    state
-        Where it is; copied where it grows.
-    position, velocity : ndarray, shape (n N + D,)
-        The new ones.
-    """
+    """The same integration at another position and velocity, which may have further coordinates at the end."""
     more = position.size - state.position.size
 
     def longer(vector: FloatArray) -> FloatArray:
@@ -174,22 +166,7 @@ def grown(state: IntegratorState, position: FloatArray, velocity: FloatArray) ->
 
 
 def new_state(system: System, time: float, step: float, position: FloatArray, velocity: FloatArray) -> IntegratorState:
-    """Begin an integration.
-
-    Parameters
-    ----------
-    system
-        What is integrated.
-    time, step
-        Where to begin, and the first step to try, s.
-    position, velocity : ndarray, shape (n N + D,)
-        State to begin from; copied.
-
-    Returns
-    -------
-    IntegratorState
-        `engine.restart` has to give it accelerations before it can advance.
-    """
+    """Begin an integration; `engine.restart` has to give it accelerations before it can advance."""
     size, clock = position.size, blank(CLOCK)
     clock.time, clock.next_step, clock.contraction = time, step, 1.0
     return IntegratorState(
@@ -288,15 +265,7 @@ def _impulse(system: System, body: int, allowed: float, length: float) -> float:
 
 
 class StepBound:
-    """How far the next step of a solver may reach without missing what is prescribed.
-
-    Parameters
-    ----------
-    system
-        Belt, bodies, supports.
-    velocity_tolerance
-        Velocity that a step may miss, m/s.
-    """
+    """Bound on the next step, such that it misses at most `velocity_tolerance` (m/s) of prescribed motion."""
 
     def __init__(self, system: System, velocity_tolerance: float) -> None:
         self._system = system

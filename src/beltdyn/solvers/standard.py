@@ -208,26 +208,7 @@ class Stepwise:
 
 
 def first_order_chunk(equations: FirstOrder, time: FloatArray, y: FloatArray, step: float, reached: float) -> Chunk:
-    """States of the first-order system as integrators hand them out.
-
-    Parameters
-    ----------
-    equations
-        The system.
-    time : ndarray, shape (k,)
-        s.
-    y : ndarray, shape (k, size)
-        Unknowns at these times.
-    step
-        Length of the step in which they lie, s.
-    reached
-        Time that the solver has reached, s.
-
-    Returns
-    -------
-    Chunk
-        With prescribed bodies where they have to be, and the body forces of each state.
-    """
+    """States of the first-order system as integrators return them, with prescribed motion and body forces."""
     position, velocity, work = (np.ascontiguousarray(part) for part in equations.unpack(y))
     forces = equations.body_forces_at(time, position, velocity)
     work = np.pad(work, ((0, 0), (0, len(ENERGY_WORKS) - len(POWERS))))  # their own damping is not known

@@ -55,19 +55,9 @@ class Chunk:
         return replace(self, **arrays, forces=BodyForces(*(rows[states] for rows in self.forces)))
 
     def around(self, instants: Instants, before: float) -> BoolArray:
-        """Which states are the ends of steps that hold output instants.
+        """Mask of states at the ends of steps that hold output instants; `before` is the time of the previous state.
 
-        Parameters
-        ----------
-        instants
-            All of them.
-        before
-            Time of the state before the first of these, s.
-
-        Returns
-        -------
-        ndarray of bool, shape (k,)
-            Where a step ends on its only instant, its beginning is left out.
+        Where a step ends on its only instant, its beginning is left out.
         """
         counts = instants.counts_until(np.append(before, self.time))
         holds = np.diff(counts) > 0
@@ -75,20 +65,7 @@ class Chunk:
         return np.asarray(holds | np.append(inside[1:], False))
 
     def locate(self, instants: FloatArray) -> tuple[IntArray, FloatArray]:
-        """Find the states at which steps end that hold some instants.
-
-        Parameters
-        ----------
-        instants : ndarray, shape (m,)
-            s, ascending, not before the first state nor after the last one.
-
-        Returns
-        -------
-        end : ndarray of int, shape (m,)
-            Numbers of states.
-        part : ndarray, shape (m,)
-            Where in its step each instant lies: 1 at its end.
-        """
+        """The states at which steps end that hold some ascending instants, and the part of the step to each."""
         end = np.minimum(np.searchsorted(self.time, instants - SAME), len(self.time) - 1)
         before = self.time[np.maximum(end - 1, 0)]
         length = self.time[end] - before
@@ -96,17 +73,7 @@ class Chunk:
         return end, np.where(instants >= self.time[end] - SAME, 1.0, part)
 
     def at(self, instants: FloatArray) -> tuple[FloatArray, FloatArray]:
-        """Position and velocity at some instants: cubic Hermite interpolation within the steps.
-
-        Parameters
-        ----------
-        instants : ndarray, shape (m,)
-            As for `locate`.
-
-        Returns
-        -------
-        position, velocity : ndarray, shape (m, n N + D)
-        """
+        """Position and velocity at some instants, by cubic Hermite interpolation within the steps."""
         end, part = self.locate(instants)
         first, x = np.maximum(end - 1, 0), part[:, None]
         step = (self.time[end] - self.time[first])[:, None]
@@ -125,18 +92,9 @@ _ROWS = ("time", "step", "position", "velocity", "work")
 
 
 def interpolated(values: NDArray[Any], end: IntArray, part: FloatArray) -> NDArray[Any]:
-    """Interpolate linearly within steps what is seen at their ends: only there do the equations of motion hold.
+    """Interpolate linearly within steps values at their ends; of whole numbers, take that of the nearer end.
 
-    Parameters
-    ----------
-    values : ndarray, shape (k, ...)
-        At successive states; of whole numbers, that of the nearer end is taken.
-    end, part : ndarray, shape (m,)
-        Result of `Chunk.locate`.
-
-    Returns
-    -------
-    ndarray, shape (m, ...)
+    Only at the ends do the equations of motion hold.
     """
     if values.dtype.kind == "i":
         return np.asarray(values[np.where(part < 0.5, np.maximum(end - 1, 0), end)])

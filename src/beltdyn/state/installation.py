@@ -112,29 +112,8 @@ def bring_to_rest(drive: Drive, progress: Report | None = None) -> Rest:
 
     The closed form of `beltdyn.model.static_estimate`, which gives the initial length, neglects bending and weight. The
     length, or the take-up if the length is given, follows from the tension at rest by the secant method.
-
-    Parameters
-    ----------
-    drive
-        The drive.
-    progress
-        Called with a `Progress` before compilation and before the search.
-
-    Returns
-    -------
-    Rest
-        Its drive is the given one, except for the belt length or the take-up.
-
-    Raises
-    ------
-    ConvergenceError
-        If there is no equilibrium in which the belt touches every pulley, or none with the required tension.
-
-    Examples
-    --------
-    >>> rest = bd.state.installation.bring_to_rest(drive)
-    >>> rest._fields
-    ('prepared', 'system', 'state', 'seen', 'unstable')
+    ConvergenceError if there is no equilibrium in which the belt touches every pulley, or none with the required
+    tension.
     """
     moved = on_equal_elements(drive)
     found = rest_of(prepare(moved), progress)

@@ -89,19 +89,9 @@ _GENTLE = 0.3
 
 
 class SteadySearch:
-    """A drive on its way to steady running.
+    """A drive on a staying mesh on its way to steady running; its state is changed in place.
 
-    Parameters
-    ----------
-    prepared, system, state
-        The drive on a staying mesh. The state is changed in place.
-    time
-        At which speeds, torques and schedules are taken, s.
-
-    Attributes
-    ----------
-    tolerance
-        Of the last step of a search, over the smallest radius.
+    `tolerance` is that of the last step of a search, over the smallest radius.
     """
 
     def __init__(self, prepared: Prepared, system: System, state: State, time: float) -> None:
@@ -238,20 +228,10 @@ class SteadySearch:
         return Passed(self.setting, state, self.belt_parameter, self.unknowns())
 
     def move_to(self, lengths: FloatArray) -> None:
-        """Go on to another mesh of the same drive.
+        """Go on to another mesh of the same drive, with elements of lengths (m).
 
         A small element has little between damping in proportion to the rate of its stretch and full hysteresis, and the
         rate of a transferred curve is far off there. So damping comes first.
-
-        Parameters
-        ----------
-        lengths : ndarray, shape (elements,)
-            Reference lengths of its elements, m.
-
-        Raises
-        ------
-        ConvergenceError
-            If nothing is found there.
         """
         other = on_other_mesh(self.prepared, self.constant, lengths)
         self.state, self.constant = transfer(self.constant, self.state, other), other
@@ -266,20 +246,11 @@ class SteadySearch:
             )
 
     def friction_band(self, known: Mapping[str, FloatArray] | None = None) -> dict[str, FloatArray]:
-        """Where dry friction holds tensioners at most, m or rad.
+        """Ends of the bands in which dry friction may hold tensioners, m or rad; empty without friction.
 
-        Parameters
-        ----------
-        known
-            What this has given for a neighbor, among others. The ends are then those by the tangent, times the
-            factors that were found there.
-
-        Returns
-        -------
-        dict of str to ndarray, shape (K,)
-            "tensioner_position_after_tensioning" and "tensioner_position_after_yielding", the ends of the band in which
-            they may stand: where the path had become longer before, and shorter. Nothing without friction. Beside them
-            "tensioner_factor_after_tensioning" and so on: ways to the ends over those by the tangent.
+        "tensioner_position_after_tensioning" and "tensioner_position_after_yielding" have shape (K,): the path had
+        become longer before, or shorter. "tensioner_factor_after_..." are ways to the ends over those by the tangent;
+        with such of a neighbor in `known`, the ends follow from the tangent and these factors.
         """
         found, count = dict[str, FloatArray](), self.constant.tensioners.size
         tensioners = slice(self.state.position.size - count, self.state.position.size)

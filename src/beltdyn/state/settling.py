@@ -141,27 +141,9 @@ class _Left:
 def settle(
     task: Task, integrator: Integrator, stops: FloatArray, duration: float, progress: Report | None
 ) -> tuple[State, Settled]:
-    """Run until transients have died.
+    """Run until transients have died; the state at the last stop, or at the first one by which they have died.
 
-    Parameters
-    ----------
-    task
-        The drive at constant speeds, whose steps end on the stops.
-    integrator
-        Method of time integration.
-    stops : ndarray, shape (k,)
-        Ends of the windows over which means are taken, s.
-    duration
-        Of the run to come, s.
-    progress
-        Whom to tell.
-
-    Returns
-    -------
-    state
-        At the last stop, or at the first one by which transients have died.
-    settled
-        What it took.
+    Means are taken over windows that end on the stops (s).
     """
     left = _Left()
     for states in _between(integrator(task), stops):

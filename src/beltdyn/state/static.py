@@ -30,16 +30,9 @@ _SMALLEST_LENGTH = 1e-2
 
 @dataclass(frozen=True, eq=False)
 class Equilibrium:
-    """A static equilibrium with its iterates.
+    """A static equilibrium, with nodal coordinates of its iterates, shape (iterations + 1, N, 6).
 
-    Parameters
-    ----------
-    state
-        At rest.
-    iterates : ndarray, shape (iterations + 1, N, 6)
-        Nodal coordinates from the start to the equilibrium.
-    norms : ndarray, shape (iterations,)
-        Energy norm of the steps, as a mean strain of the belt: sqrt(residual . step / (E A alpha1 L)).
+    `norms` are energy norms of the steps, as a mean strain of the belt: sqrt(residual . step / (E A alpha1 L)).
     """
 
     state: State
@@ -59,31 +52,10 @@ def find_equilibrium(
     method: Literal["globalized", "newton"] = "globalized",
     max_iterations: int = 500,
 ) -> Equilibrium:
-    """Find a static equilibrium of a belt from an initial state.
+    """Find a static equilibrium of a belt from a resting initial state; "newton" is the plain iteration of the paper.
 
     Pulleys do not turn: the belt slides on them without friction, unless `start` gives them speeds, with which they rub
     on the resting belt. Tensioners move. `tensioner_compliance` shows whether the equilibrium is stable.
-
-    Parameters
-    ----------
-    system
-        Belt, pulleys, supports.
-    start
-        Initial state; its belt must be at rest.
-    method
-        "globalized", or "newton" for the plain iteration of the paper.
-    max_iterations
-        Largest number of iterations, by default 500.
-
-    Returns
-    -------
-    Equilibrium
-        The state with its iterates.
-
-    Raises
-    ------
-    ConvergenceError
-        If the iteration does not converge, or the stiffness is singular.
     """
     search = _Search(system, start)
     shift = 0.0
@@ -121,22 +93,10 @@ def standing(system: System) -> System:
 
 
 def tensioner_compliance(system: System, state: State) -> FloatArray:
-    """How far tensioners in static equilibrium move by forces on them, while the belt stays in equilibrium.
+    """Displacements of tensioners by forces on them, the belt in equilibrium, shape (K, K); m/N, rad/(N m) or 1/N.
 
-    The inverse of what elimination of the belt leaves of the stiffness. It is positive definite where the balance of
-    the tensioners is stable: the second variation of the energy, the belt following.
-
-    Parameters
-    ----------
-    system
-        Belt, pulleys, tensioners.
-    state
-        Static equilibrium.
-
-    Returns
-    -------
-    ndarray, shape (K, K)
-        m/N, rad/(N m), or 1/N; NaN where the stiffness is singular.
+    The inverse of what elimination of the belt leaves of the stiffness, NaN where that is singular. It is positive
+    definite where the balance of the tensioners is stable: the second variation of the energy, the belt following.
     """
     search, count = _Search(system, state), system.tensioners.size
     search.linearise(0.0)

@@ -150,21 +150,8 @@ def _no_rest(system: System) -> ConvergenceError:
 def carried(prepared: Prepared, other: Prepared, lengths: FloatArray, nodes: FloatArray) -> tuple[System, State]:
     """The mesh of a drive that differs a little from another one, and a state near to that of the other one.
 
-    Arcs keep their nodes: the mesh changes as the path does, and places and slopes as those of a belt laid on it.
-
-    Parameters
-    ----------
-    prepared, other
-        The drives.
-    lengths : ndarray, shape (N,)
-        Those of the elements of the other one, m.
-    nodes : ndarray, shape (6 N,)
-        Its nodal coordinates.
-
-    Returns
-    -------
-    system, state
-        A state without speeds, its bodies moved from zero by as much as tensioners move at rest.
+    Arcs keep their nodes: the mesh changes as the path does, and places and slopes as those of a belt laid on it. The
+    state has no speeds; its bodies move from zero by as much as tensioners move at rest.
     """
     before, after = other.installation, prepared.installation
     here, there = other.laid, Laid.on(after.path, prepared.belt_length, before.path.longest_span)

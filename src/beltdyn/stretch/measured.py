@@ -62,15 +62,7 @@ class Measured(NamedTuple):
 
 
 def through(strains: ArrayLike, tensions: ArrayLike) -> Measured:
-    """Law through measured points.
-
-    Parameters
-    ----------
-    strains
-        Elongations g - 1, ascending from zero.
-    tensions
-        N, ascending from zero.
-    """
+    """Law through measured elongations g - 1 and tensions (N), both ascending from zero."""
     from scipy.interpolate import CubicHermiteSpline, PchipInterpolator
 
     x, n = np.asarray(strains, dtype=float), np.asarray(tensions, dtype=float)

@@ -28,24 +28,10 @@ from beltdyn.system.hysteresis import hysteresis_rows
 
 
 def weight_forces(mesh: Discretization, nodes: int, gravity: tuple[float, float]) -> FloatArray:
-    """Generalized forces of a uniform gravity, the integral of rho A S^T g over the belt.
+    """Generalized forces of uniform gravity, the integral of rho A S^T g over the belt, shape (n * nodes,).
 
-    A uniform acceleration moves the material points alone, not the derivatives, so that the integral is the mass
-    matrix of an element times g at its points.
-
-    Parameters
-    ----------
-    mesh
-        The elements of the belt.
-    nodes
-        Number of nodes; the last element of a closed belt ends at the first.
-    gravity
-        Acceleration of gravity g, m/s^2.
-
-    Returns
-    -------
-    ndarray, shape (n * nodes,)
-        N for the rows of places, N m for those of r_x.
+    A uniform acceleration moves the material points alone, not the derivatives, so that the integral is the mass matrix
+    of an element times g at its points. The last element of a closed belt ends at the first node.
     """
     dof = len(mesh.scale)
     node = np.zeros(dof)

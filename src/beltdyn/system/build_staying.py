@@ -20,20 +20,7 @@ _STAYING_ELASTIC, _STAYING_CONTACT = 8, 12
 
 
 def staying_system(prepared: Prepared, lengths: FloatArray) -> System:
-    """Arrays of a drive with a closed belt on a staying mesh, of quintic elements with hysteresis of their own.
-
-    Parameters
-    ----------
-    prepared
-        The drive.
-    lengths : ndarray, shape (elements,)
-        Reference lengths of the elements, m.
-
-    Returns
-    -------
-    System
-        With a belt that does not flow.
-    """
+    """Arrays of a drive with a closed belt on a staying mesh of quintic elements with hysteresis, without flow."""
     belt = _staying_belt(prepared, lengths.size)
     contact = prepared.contact.replace(sampling="distributed", integration="zone", quadrature_points=_STAYING_CONTACT)
     system = system_of(prepared, belt, contact, "shared_node", lengths=lengths)
@@ -44,22 +31,7 @@ def staying_system(prepared: Prepared, lengths: FloatArray) -> System:
 
 
 def on_other_mesh(prepared: Prepared, system: System, lengths: FloatArray) -> System:
-    """The same arrays of a drive with a belt on another staying mesh.
-
-    Parameters
-    ----------
-    prepared
-        The drive.
-    system
-        From `staying_system`.
-    lengths : ndarray, shape (elements,)
-        Reference lengths of the elements, m.
-
-    Returns
-    -------
-    System
-        With the machines of the other one, and a belt that does not flow.
-    """
+    """The arrays of `staying_system` on another mesh, with the same machines."""
     belt = _staying_belt(prepared, lengths.size)
     mesh = discretize(belt, lengths)
     passing = passing_strains(prepared) if belt.has_hysteresis else None
@@ -110,19 +82,9 @@ def _with_section(system: System, **numbers: Any) -> System:
 
 
 def flowing_system(system: System, direction: FloatArray) -> System:
-    """The same drive for equations over time: how much belt has passed is a coordinate before those of tensioners.
+    """The same drive for equations over time: the length of belt passed is the last coordinate of the border.
 
-    Parameters
-    ----------
-    system
-        From `staying_system`.
-    direction : ndarray, shape (2,)
-        Unit vector along the belt at node 0.
-
-    Returns
-    -------
-    System
-        The unknown of its flow is the last of the border.
+    `direction` is the unit vector along the belt at node 0.
     """
     at = system.bodies.size - system.tensioners.size
     last = int(np.max(system.bodies.unknown, initial=-1)) + 1

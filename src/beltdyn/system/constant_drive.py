@@ -23,28 +23,9 @@ _SPEEDS = np.geomspace(1e-2, 300.0, 100)
 
 
 def operating_point(system: System, radii: FloatArray, prescribed: BoolArray) -> tuple[float, int | None]:
-    """Find the belt's speed without slip.
+    """The belt's speed without slip, m/s in the sense of the path, and the driver where no speed is prescribed.
 
-    Parameters
-    ----------
-    system
-        With constant speeds, torques and schedules.
-    radii : ndarray, shape (P,)
-        Signed radii of the path, m.
-    prescribed : ndarray of bool, shape (P,)
-        Which shafts have a prescribed speed.
-
-    Returns
-    -------
-    speed : float
-        m/s, positive in the sense of the path.
-    driver : int or None
-        The pulley whose torque drives, where no speed is prescribed.
-
-    Raises
-    ------
-    ModelError
-        If nothing drives.
+    Radii of the path are signed. ModelError if nothing drives.
     """
     from scipy.optimize import brentq
 
@@ -157,15 +138,7 @@ def rim_of_bodies(system: System) -> IntArray:
 
 
 def drive_shafts(system: System, velocity: FloatArray) -> None:
-    """Give shafts of known speed, and what springs couple to them, that speed.
-
-    Parameters
-    ----------
-    system
-        From `with_speeds_unknown`.
-    velocity : ndarray, shape (n N + D,)
-        Changed in place.
-    """
+    """Set the known speeds of shafts, and of what springs couple to them, in `velocity`."""
     first, shafts = system.first_body, system.pulleys.shaft
     for p in np.flatnonzero(system.bodies.unknown[shafts] < 0):
         velocity[first + shafts[p]] = system.profiles.segment.offset[p]
@@ -175,15 +148,7 @@ def drive_shafts(system: System, velocity: FloatArray) -> None:
 
 
 def guess_hubs(system: System, velocity: FloatArray) -> None:
-    """Guess speeds behind clutches, from those of the rims: with the rim, or slower where the clutch slips.
-
-    Parameters
-    ----------
-    system
-        With constant torques and schedules.
-    velocity : ndarray, shape (n N + D,)
-        With the speeds of the rims; those of hub bodies are overwritten.
-    """
+    """Guess speeds behind clutches in `velocity`: with the rim, or slower where the clutch slips."""
     first, torque, states = system.first_body, interpreted(shaft_torque), np.zeros(system.bodies.size)
     pulley, rigid = rim_of_bodies(system), rigid_links(system)
     shafts = system.pulleys.shaft
@@ -210,21 +175,9 @@ def own_torque(system: System, state: State, pulley: int, speed: float) -> float
 
 
 def twists(system: System, moments: FloatArray) -> FloatArray:
-    """Angles of the rims and hub bodies against their shafts, from the moments of the belt on the pulleys.
+    """Angles of rims and hub bodies against their shafts, shape (D - K,), from the moments of the belt, N m.
 
     In steady running each link of a hub chain transmits the moment of the belt.
-
-    Parameters
-    ----------
-    system
-        A system.
-    moments : ndarray, shape (P,)
-        N m.
-
-    Returns
-    -------
-    ndarray, shape (D - K,)
-        rad.
     """
     pulley, torque = rim_of_bodies(system), interpreted(link_torque)
     angles = np.zeros(pulley.size)

@@ -30,25 +30,7 @@ class Discretization(NamedTuple):
 
 
 def discretize(belt: Belt, lengths: FloatArray | None = None) -> Discretization:
-    """Cut a belt into elements.
-
-    Parameters
-    ----------
-    belt
-        The belt.
-    lengths : ndarray, shape (elements,), optional
-        Reference lengths of the elements, m; by default they are equal.
-
-    Returns
-    -------
-    Discretization
-        Elements of the kind ``belt.element_kind``.
-
-    Raises
-    ------
-    ModelError
-        If the lengths do not make the belt.
-    """
+    """Divide a belt into elements of its kind, by default of equal lengths; ModelError if lengths do not add up."""
     kind, section = belt.element_kind, belt_section(belt)
     whole = belt.given_length
     length = (
@@ -112,17 +94,5 @@ def point_coordinates(system: System) -> FloatArray:
 
 
 def nodal_coordinates(system: System, place: FloatArray, slope: FloatArray, bend: FloatArray) -> FloatArray:
-    """Nodal coordinates of a curve.
-
-    Parameters
-    ----------
-    system
-        The system.
-    place, slope, bend : ndarray, shape (N * points, 2)
-        r (m), dr/dx and d2r/dx2 (1/m) of the material points.
-
-    Returns
-    -------
-    ndarray, shape (N, n)
-    """
+    """Nodal coordinates, shape (N, n), of a curve r, dr/dx, d2r/dx2 at the material points, shape (N * points, 2)."""
     return element_kind(system).nodal(place, slope, bend)

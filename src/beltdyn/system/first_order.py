@@ -39,19 +39,7 @@ class JointConstraint:
     """Second bracket of Eq. 26, M^-1 C^T (C M^-1 C^T)^-1, shape (n N, n)."""
 
     def accelerations(self, force: FloatArray, constraint: FloatArray | None = None) -> FloatArray:
-        """Accelerations of the nodal coordinates (Eq. 26).
-
-        Parameters
-        ----------
-        force : ndarray, shape (n N,)
-            Generalized contact and elastic forces Q.
-        constraint : ndarray, shape (n,), optional
-            Q_d; zero for a rigid joint, whose constraint is linear.
-
-        Returns
-        -------
-        ndarray, shape (n N,)
-        """
+        """Accelerations of the nodal coordinates (Eq. 26) by forces Q and Q_d, which is zero for a rigid joint."""
         result = self.by_force @ force
         return result if constraint is None else result + self.by_constraint @ constraint
 
@@ -82,20 +70,7 @@ def mass_matrix(system: System) -> FloatArray:
 
 
 class FirstOrder:
-    """Rates and exact Jacobian of y = (positions, velocities, works).
-
-    Parameters
-    ----------
-    system
-        Belt, pulleys, supports.
-
-    Attributes
-    ----------
-    size : int
-        Number of unknowns, 2 (n N + D) + 8.
-    evaluations : int
-        Calls of `rates` so far.
-    """
+    """Rates and exact Jacobian of y = (positions, velocities, works), of size 2 (n N + D) + 8."""
 
     def __init__(self, system: System) -> None:
         self._system = system

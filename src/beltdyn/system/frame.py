@@ -29,22 +29,7 @@ from beltdyn.system.discretization import curve_lengths
 def centreline_points(
     system: System, position: FloatArray, along: FloatArray
 ) -> tuple[FloatArray, FloatArray, FloatArray]:
-    """Places of material points and their derivatives along the belt.
-
-    Parameters
-    ----------
-    system
-        The system.
-    position : ndarray, shape (n N + D,)
-        The state.
-    along : ndarray, shape (k,)
-        Belt coordinates of the points, m.
-
-    Returns
-    -------
-    place, slope, bend : ndarray, shape (k, 2)
-        r (m), dr/dx and d2r/dx2 (1/m).
-    """
+    """Places r (m), slopes dr/dx and bends d2r/dx2 (1/m) at belt coordinates (m), shape (k, 2)."""
     lengths, (points, powers, curve) = curve_lengths(system), _on_its_curves(system, position, along)
     degree = points.shape[1] - 1
     first = degree * np.diff(points, axis=1) / lengths[:, None, None]
@@ -131,16 +116,9 @@ class Flowing(NamedTuple):
 
 
 def staying(control: FloatArray, length: FloatArray, mass: float) -> Staying:
-    """Make the frame of a staying mesh, with a belt at rest.
+    """The frame of a staying mesh, with a belt at rest.
 
-    Parameters
-    ----------
-    control : ndarray, shape (elements, 1, degree + 1, v)
-        Control points of the centerline from the vectors, as many as these.
-    length : ndarray, shape (elements,)
-        Reference lengths, m.
-    mass
-        Mass of a meter of belt, kg/m.
+    Control points have shape (elements, 1, degree + 1, v), of as many vectors; `mass` is that of a meter, kg/m.
     """
     degree = control.shape[2] - 1
     basis = control[:, 0]
@@ -153,20 +131,10 @@ def staying(control: FloatArray, length: FloatArray, mass: float) -> Staying:
 
 
 def flowing(given: Staying, mass: FloatArray, vectors: tuple[int, ...], place: int, direction: FloatArray) -> Flowing:
-    """Make the frame of a staying mesh, for equations over time.
+    """The frame of a staying mesh, for equations over time.
 
-    Parameters
-    ----------
-    given
-        The same mesh in steady running.
-    mass : ndarray, shape (elements, 2 n, 2 n)
-        Mass matrices of the elements.
-    vectors
-        Where among the 2 n coordinates the vectors begin.
-    place
-        Of the length that has passed in a state.
-    direction : ndarray, shape (2,)
-        Unit vector along which node 0 does not move.
+    `vectors` are places of the vectors among the 2 n coordinates, `place` is that of the passed length in a state,
+    `direction` a unit vector along which node 0 does not move.
     """
     first = np.array(vectors)
     own = np.ascontiguousarray(mass[:, first[:, None], first])

@@ -63,16 +63,8 @@ def hysteresis_scratch(vectors: int) -> np.dtype[np.void]:
 def hysteresis_rows(belt: Belt, length: FloatArray, control: FloatArray, passing: Passing | None) -> Records:
     """Rows of `hysteresis_record` for the elements of a belt; none for a belt without loss factors.
 
-    Parameters
-    ----------
-    belt
-        The belt.
-    length : ndarray, shape (elements,)
-        Reference lengths of the elements, m.
-    control : ndarray, shape (elements, curves, degree + 1, v)
-        Control points of the curves of the centerline from its v vectors.
-    passing
-        How strains pass along the belt; by default from one element to the next, without strain at rest.
+    Control points have shape (elements, curves, degree + 1, v). Strains pass by default from one element to the next,
+    without strain at rest.
     """
     curves, count, vectors = control.shape[1:]
     kind = hysteresis_record(vectors)

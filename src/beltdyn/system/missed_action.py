@@ -150,20 +150,7 @@ def missed_work(
 
 
 def jump_work(system: System, before: FloatArray, after: FloatArray) -> float:
-    """Work that drivers do where prescribed speeds jump.
-
-    Parameters
-    ----------
-    system
-        The system.
-    before, after : ndarray, shape (n N + D,)
-        Velocities before and after the jump.
-
-    Returns
-    -------
-    float
-        The change of the kinetic energy of prescribed bodies, J.
-    """
+    """Work of drivers where prescribed speeds jump, J: the change of the kinetic energy of prescribed bodies."""
     first = system.first_body
     inertia = np.where(system.bodies.unknown < 0, system.bodies.inertia, 0.0)
     return float(0.5 * inertia @ (after[first:] ** 2 - before[first:] ** 2))

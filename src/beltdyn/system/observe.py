@@ -31,22 +31,7 @@ from beltdyn.system.state_forces import body_forces_at
 
 
 def observe(system: System, time: FloatArray, position: FloatArray, velocity: FloatArray) -> Observations:
-    """Observe a number of states.
-
-    Parameters
-    ----------
-    system
-        Belt, pulleys, supports.
-    time : ndarray, shape (k,)
-        s.
-    position, velocity : ndarray, shape (k, n N + D)
-        The states; the motion of prescribed bodies is written into them if they are contiguous.
-
-    Returns
-    -------
-    Observations
-        Derived quantities at every instant, all of them shown.
-    """
+    """Observe k states; the motion of prescribed bodies is written into them if they are contiguous."""
     time, position, velocity = (np.ascontiguousarray(array) for array in (time, position, velocity))
     forces = body_forces_at(system, time, position, velocity)
     return observe_motion(system, position, velocity, forces, np.ones(time.size, dtype=np.bool_))
@@ -55,24 +40,7 @@ def observe(system: System, time: FloatArray, position: FloatArray, velocity: Fl
 def observe_motion(
     system: System, position: FloatArray, velocity: FloatArray, forces: BodyForces, shown: BoolArray
 ) -> Observations:
-    """Observe a number of states whose body forces are known.
-
-    Parameters
-    ----------
-    system
-        Belt, pulleys, supports.
-    position, velocity : ndarray, shape (k, n N + D)
-        The states, with the motion of prescribed bodies in them; contiguous.
-    forces
-        One row for each state.
-    shown : ndarray of bool, shape (k,)
-        For which of them energies and tensions of the belt are wanted too.
-
-    Returns
-    -------
-    Observations
-        Derived quantities.
-    """
+    """Observe contiguous states whose body forces are known; energies and belt tensions only of those shown."""
     result = new_observations(system, forces, int(np.count_nonzero(shown)))
     fill_observations(system, position, velocity, shown, new_samples(system), result)
     return result

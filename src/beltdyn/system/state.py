@@ -12,13 +12,7 @@ from beltdyn.system.discretization import nodal_coordinates, point_coordinates
 
 @dataclass(frozen=True, eq=False)
 class State:
-    """Where a system is and how it moves.
-
-    Parameters
-    ----------
-    position, velocity, acceleration : ndarray, shape (n N + D,)
-        Nodal coordinates (m and 1), then coordinates of bodies (rad and m), and their rates.
-    """
+    """Position, velocity and acceleration of a system: nodal coordinates (m and 1), then bodies (rad and m)."""
 
     position: FloatArray
     velocity: FloatArray
@@ -34,20 +28,7 @@ class State:
 
 
 def at_rest(system: System, coordinates: FloatArray) -> State:
-    """A state without motion.
-
-    Parameters
-    ----------
-    system
-        The system.
-    coordinates : ndarray, shape (N, n)
-        Nodal coordinates.
-
-    Returns
-    -------
-    State
-        With bodies at coordinate zero.
-    """
+    """A state at nodal coordinates of shape (N, n), without motion, bodies at zero."""
     count = coordinates.size + system.bodies.size
     position = np.zeros(count)
     position[: coordinates.size] = coordinates.ravel()
@@ -55,24 +36,10 @@ def at_rest(system: System, coordinates: FloatArray) -> State:
 
 
 def laid(system: System, path: Path, tensioners: FloatArray | None = None) -> State:
-    """The belt laid on its path at uniform stretch, at rest.
+    """A closed belt laid on its path at uniform stretch, at rest, out of balance.
 
     Node 0 stands where the belt leaves the first pulley; r_x is the stretch times the unit tangent, r_y the unit
-    normal.
-
-    Parameters
-    ----------
-    system
-        A closed belt.
-    path
-        The path around the pulleys.
-    tensioners : ndarray, shape (K,), optional
-        Coordinates of the tensioners, m or rad; by default zero.
-
-    Returns
-    -------
-    State
-        Out of balance: the belt is bent and stretched, and does not yet press on the pulleys.
+    normal. Tensioner coordinates (m or rad) are zero by default.
     """
     stretch = path.length / float(np.sum(system.length))
     along = stretch * point_coordinates(system)

@@ -48,22 +48,7 @@ class BodyForcesScratch(NamedTuple):
 
 
 def body_forces_at(system: System, time: FloatArray, position: FloatArray, velocity: FloatArray) -> BodyForces:
-    """Find the body forces at a number of states.
-
-    Parameters
-    ----------
-    system
-        Belt, bodies, supports.
-    time : ndarray, shape (k,)
-        s.
-    position, velocity : ndarray, shape (k, n N + D)
-        The states; the motion of prescribed bodies is written into them.
-
-    Returns
-    -------
-    BodyForces
-        One row for each state.
-    """
+    """Body forces at k states, into which the motion of prescribed bodies is written."""
     history = body_forces_history(system, time.size)
     acceleration = np.zeros(system.first_body + system.bodies.size)
     scratch = BodyForcesScratch(acceleration, element_workspace(system), np.zeros((0, 0)), new_body_forces(system))

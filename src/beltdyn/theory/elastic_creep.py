@@ -53,19 +53,6 @@ def entry_strain(
     What does not depend on the place along a belt, T g - psi and the energy of bending, takes (1/2 - e) EI kappa^2 from
     the strain's EA, with e EI kappa^2 / EA the strain of a bent belt without tension; hysteresis takes pi/8 eta EI
     kappa^2, half of what bending forth and back loses.  The rim sees cos(alpha) of the belt's speed.
-
-    Parameters
-    ----------
-    tension : ndarray, shape (..., pulleys)
-        T of the spans that reach the pulleys, N.
-    radii : ndarray, shape (pulleys,)
-        R, m.
-    bending_stiffness, axial_stiffness, contact_stiffness
-        EI (N m^2), EA (N), k (N/m^2).
-    bent_strain
-        e, -3/2 of the paper's element (Eq. 14).
-    loss_factor
-        eta of bending.
     """
     pull = np.maximum(tension, 1e-9 * axial_stiffness)
     root = np.sqrt(bending_stiffness * contact_stiffness) / pull

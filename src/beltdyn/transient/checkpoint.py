@@ -61,13 +61,7 @@ _PLAIN = (type(None), bool, int, float, str)
 
 
 class Packing:
-    """Packs objects of some classes.
-
-    Parameters
-    ----------
-    classes
-        Classes of records: named tuples, dataclasses, and others whose objects are their attributes.
-    """
+    """Packs objects of some classes: named tuples, dataclasses, and others whose objects are their attributes."""
 
     def __init__(self, classes: Iterable[type]) -> None:
         self.classes = {cls.__name__: cls for cls in classes}
@@ -271,20 +265,9 @@ class Checkpoint:
 
 
 class Keeper:
-    """Writes checkpoints of a run now and then.
+    """Writes checkpoints of a run, at intervals of computing time (s); none of a run in memory.
 
-    Parameters
-    ----------
-    path
-        The result file; None for a run in memory, which has no checkpoints.
-    every
-        Computing time between two of them, s.
-    drive
-        As it was given.
-    compare_steady
-        As for `simulate`.
-    resumes
-        Whether a checkpoint that is there is of this run, and not of an earlier one.
+    `resumes` if a checkpoint that is there is of this run, and not of an earlier one.
     """
 
     def __init__(

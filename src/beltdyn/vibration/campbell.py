@@ -67,21 +67,7 @@ VARIABLES = {
 
 
 class CampbellDiagram:
-    """Collects modes from speed to speed.
-
-    Parameters
-    ----------
-    drive
-        With constant speeds, torques and schedules.
-    speeds : ndarray, shape (n,)
-        rad/s, ascending.
-    excitations
-        What excites it.
-    count
-        How many modes to follow at each speed.
-    stuck
-        Whether dry friction holds tensioners.
-    """
+    """Collects modes from speed to speed; dry friction may hold tensioners (`stuck`)."""
 
     def __init__(
         self, drive: Drive, speeds: FloatArray, excitations: Sequence[Excitation], count: int, stuck: bool

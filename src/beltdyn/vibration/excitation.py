@@ -136,22 +136,7 @@ def given_excitations(orders: Numbers, drive: Drive, number: int) -> list[Excita
 
 
 def one_line_each(excitations: Sequence[Excitation], frequencies: FloatArray) -> tuple[list[str], FloatArray]:
-    """Names and frequencies of excitations, those of the same frequency together.
-
-    Parameters
-    ----------
-    excitations
-        k of them.
-    frequencies : ndarray, shape (n, k)
-        At n speeds, Hz; NaN where they are not known.
-
-    Returns
-    -------
-    names : list of str
-        Of j lines.
-    frequencies : ndarray, shape (n, j)
-        Of the first one of each line.
-    """
+    """Names and frequencies of excitations, merged where frequencies are equal, shape (n speeds, lines), Hz."""
     names, kept = list[list[str]](), list[int]()
     for number, one in enumerate(excitations):
         own = frequencies[:, number]

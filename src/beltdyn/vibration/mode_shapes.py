@@ -123,17 +123,7 @@ def _points_at(motions: SmallMotions, along: FloatArray, length: FloatArray) -> 
 
 
 def shapes_of(motions: SmallMotions, points: Points, coordinates: ComplexArray) -> Shapes:
-    """How parts move in modes.
-
-    Parameters
-    ----------
-    motions
-        The drive about a state.
-    points
-        Where to look at the belt.
-    coordinates : ndarray, shape (n, k)
-        Unknowns of the eigenvectors.
-    """
+    """How parts move in modes."""
     return Shapes(*map(np.array, zip(*(_shape(motions, points, vector) for vector in coordinates.T), strict=True)))
 
 
@@ -152,25 +142,8 @@ def _shape(motions: SmallMotions, points: Points, vector: ComplexArray) -> tuple
 def speeds_of(motions: SmallMotions, points: Points, value: complex, vector: ComplexArray) -> tuple[ComplexArray, ...]:
     """Amplitudes of speeds in a mode, each times the root of its mass: their squares are twice the kinetic energy.
 
-    Parameters
-    ----------
-    motions
-        The drive about a state.
-    points
-        Of the belt.
-    value
-        Eigenvalue, 1/s.
-    vector : ndarray, shape (n,)
-        Unknowns of the eigenvector.
-
-    Returns
-    -------
-    across, along : ndarray, shape (q,)
-        Of the belt's points.
-    shafts : ndarray, shape (D - K,)
-        Of rims and hub bodies, and the passage of the belt, which has no inertia of its own.
-    arms : ndarray, shape (K,)
-        Of tensioners.
+    Across and along the belt at its points, of shafts (rims, hub bodies and the passage of the belt, which has no
+    inertia of its own), and of tensioner arms.
     """
     system = motions.system
     shafts, arms = _ways_of_bodies(motions, vector)

@@ -29,22 +29,7 @@ class Crossing(NamedTuple):
 
 
 def crossings(speed: FloatArray, frequency: FloatArray, damping_ratio: FloatArray, lines: FloatArray) -> list[Crossing]:
-    """Find where modes and excitations meet, by straight lines between neighboring speeds.
-
-    Parameters
-    ----------
-    speed : ndarray, shape (n,)
-        Ascending.
-    frequency, damping_ratio : ndarray, shape (n, k)
-        Of modes; NaN where they are not known.
-    lines : ndarray, shape (n, j)
-        Frequencies of excitations; NaN where they are not known.
-
-    Returns
-    -------
-    list of Crossing
-        By ascending speed.
-    """
+    """Intersections of modes and excitations by ascending speed, linear between neighboring speeds."""
     found = list[Crossing]()
     for line in range(lines.shape[1]):
         apart = frequency - lines[:, [line]]
@@ -101,12 +86,8 @@ def assurance(speeds: ComplexArray, others: ComplexArray) -> FloatArray:
 class Tracks:
     """Modes over states that follow each other: a row of a table for each state, a column for each mode.
 
-    A mode with which none of a state agrees pauses there, and one that agrees with none begins a column.
-
-    Parameters
-    ----------
-    lowest
-        Columns are those of modes that are among so many of the lowest of a state.
+    A mode with which none of a state agrees pauses there, and one that agrees with none begins a column, if it is among
+    the `lowest` of its state.
     """
 
     def __init__(self, lowest: int) -> None:

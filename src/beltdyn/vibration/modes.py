@@ -92,28 +92,9 @@ def modes_about(motions: SmallMotions, count: int) -> Result:
 def eigenmodes(
     motions: SmallMotions, count: int, *, counted: Callable[[ComplexArray], BoolArray] = swings
 ) -> tuple[ComplexArray, ComplexArray]:
-    """Modes of a drive about a state, from the lowest frequency on.
+    """Eigenvalues (1/s) and coordinates, shape (n, k), of a drive about a state, from the lowest frequency on.
 
-    Parameters
-    ----------
-    motions
-        The drive about the state.
-    count
-        How many of those that are counted, at most.
-    counted
-        As for `swinging`.
-
-    Returns
-    -------
-    values : ndarray, shape (k,)
-        Growth rate and angular frequency, 1/s.
-    coordinates : ndarray, shape (n, k)
-        Unknowns of the eigenvectors.
-
-    Raises
-    ------
-    ConvergenceError
-        If nothing swings.
+    At most `count` of those `counted`, see `swinging`; ConvergenceError if nothing oscillates.
     """
     given = pencil(motions.stiffness, motions.damping, motions.mass, motions.free)
     values, vectors = swinging(given, count, counted=counted)

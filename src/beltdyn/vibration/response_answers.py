@@ -46,14 +46,9 @@ class Excited(NamedTuple):
 
 
 class ForcedMotion:
-    """A drive in steady running, which small motions of shafts and small torques on them excite.
+    """A drive in steady running, excited by small motions of shafts and small torques on them.
 
-    Parameters
-    ----------
-    run
-        From `steady_state`.
-    stuck
-        Whether dry friction holds tensioners; else it is left out.
+    Dry friction of tensioners holds them (`stuck`), or is left out.
     """
 
     def __init__(self, run: Run, stuck: bool) -> None:
@@ -195,23 +190,9 @@ _ABOUT = ("speed", "excitation")
 
 
 class Answers:
-    """Collects responses from speed to speed.
+    """Collects responses at speeds (rad/s, ascending) of the pulley whose speed is prescribed.
 
-    Parameters
-    ----------
-    drive
-        With the harmonics that excite it, and constant speeds, torques and schedules.
-    number
-        Number of the pulley whose speed is prescribed.
-    speeds : ndarray, shape (n,)
-        Its speeds, rad/s.
-    stuck
-        Whether dry friction holds tensioners; else it is left out.
-
-    Raises
-    ------
-    ModelError
-        If nothing excites it.
+    Dry friction of tensioners holds them (`stuck`), or is left out. ModelError if nothing excites the drive.
     """
 
     def __init__(self, drive: Drive, number: int, speeds: FloatArray, *, stuck: bool = False) -> None:

@@ -79,22 +79,9 @@ def range_of(
     positions: ComplexArray,
     rubbed: FloatArray,
 ) -> Range:
-    """How far vibrations are from what a linear response holds for.
+    """How far vibrations of span tensions (N) and tensioners (m or rad) are from the range of a linear response.
 
-    Parameters
-    ----------
-    prepared
-        The drive.
-    still
-        Steady running.
-    frequencies
-        Angular frequencies of k vibrations, rad/s.
-    tensions : ndarray, shape (k, spans)
-        Amplitudes of exp(i w t) of the span tensions, N.
-    positions : ndarray, shape (k, tensioners)
-        Those of the tensioners, m or rad.
-    rubbed : ndarray, shape (spans,)
-        Sums of amplitudes of the span tensions with dry friction of tensioners, N.
+    Amplitudes of exp(i w t) have a row for each frequency w (rad/s); `rubbed` are sums of them with dry friction, N.
     """
     times = instants(frequencies)
     waves = np.exp(1j * np.outer(times, frequencies))
@@ -122,15 +109,7 @@ def range_of(
 
 
 def friction_dashpots(friction: FloatArray, creep_speed: FloatArray, velocity: FloatArray) -> FloatArray:
-    """Dashpots that take the work of dry friction in a period: 4 f / (pi V), and f / v_c of tensioners at rest.
-
-    Parameters
-    ----------
-    friction, creep_speed : ndarray, shape (K,)
-        N and m/s, or N m and rad/s.
-    velocity : ndarray, shape (K,)
-        Amplitudes.
-    """
+    """Dashpots that take the work of dry friction in a period: 4 f / (pi V), and f / v_c of tensioners at rest."""
     with np.errstate(divide="ignore", invalid="ignore"):
         held = np.where(friction > 0.0, friction / creep_speed, 0.0)
         slides = np.where(friction > 0.0, 4.0 * friction / (np.pi * velocity), 0.0)

@@ -20,22 +20,10 @@ _LINEAR = np.array([[2.0, 1.0], [1.0, 2.0]])
 
 
 def element_mass(section: Section, length: FloatArray | float) -> FloatArray:
-    """Mass matrix, the integral of rho S^T S over the volume.
+    """Mass matrices of elements of lengths L, shape (..., 12, 12): the integral of rho S^T S; kg, kg m and kg m^2.
 
-    The centerline carries rho A with cubic Hermite functions, the section vectors r_y carry rho I with linear ones;
-    on a symmetric section the two do not couple.
-
-    Parameters
-    ----------
-    section
-        Inertia of the section.
-    length
-        Reference lengths L of the elements, shape (...), m.
-
-    Returns
-    -------
-    ndarray, shape (..., 12, 12)
-        In the order r, r_x, r_y of node i, then of node j; kg, kg m and kg m^2.
+    The centerline carries rho A with cubic Hermite functions, the section vectors r_y carry rho I with linear ones; on
+    a symmetric section the two do not couple. Order: r, r_x, r_y of node i, then of node j.
     """
     each = np.asarray(length)[..., None, None]
     scale = each[..., 0] ** np.array([0.0, 1.0, 0.0, 1.0])

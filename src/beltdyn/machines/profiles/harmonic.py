@@ -37,20 +37,7 @@ class Harmonic(Part):
 
 
 def harmonic_rows(groups: Sequence[Sequence[Harmonic]]) -> tuple[IntArray, Records]:
-    """Harmonics, concatenated.
-
-    Parameters
-    ----------
-    groups
-        Harmonics of each of n speeds or torques.
-
-    Returns
-    -------
-    first : ndarray, shape (n + 1,)
-        The first of each group, and their number.
-    harmonics : recarray
-        Rows of `HARMONIC`.
-    """
+    """Harmonics of n speeds or torques, concatenated: the first row of each, shape (n + 1,), and rows of `HARMONIC`."""
     found = [item for group in groups for item in group]
     table = records(
         HARMONIC,

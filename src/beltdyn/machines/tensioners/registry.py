@@ -34,22 +34,7 @@ tensioner_force = choice("tensioner_force", TENSIONERS.functions("force_at", _mo
 
 
 def tensioner_row(tensioner: MovingTensioner, pulley: int, center: FloatArray, gradient: FloatArray) -> np.record:
-    """Row of a tensioner, without weight.
-
-    Parameters
-    ----------
-    tensioner
-        The tensioner.
-    pulley
-        Number of the pulley that it carries.
-    center, gradient : ndarray, shape (2,)
-        As for `MovingTensioner.leverage`.
-
-    Raises
-    ------
-    ValueError
-        If it cannot tension the belt.
-    """
+    """Row of a tensioner without weight; ValueError if it cannot tension the belt."""
     made = row(TENSIONER_ROWS.row_type([type(tensioner)]), pulley=pulley)
     TENSIONER_ROWS.fill(made, type(tensioner), tensioner.values(center, gradient))
     return made

@@ -35,25 +35,10 @@ class Wrap:
 
 
 def unwrap(belt_coordinate: FloatArray, touching: BoolArray, length: float, speed: float) -> Wrap:
-    """Find the contiguous part of a closed belt that lies on a pulley.
+    """Find the points of a closed belt on a pulley, and their distances from its entry, m.
 
-    The part is what is left of the belt when its longest free stretch is taken away.
-
-    Parameters
-    ----------
-    belt_coordinate : ndarray, shape (points,)
-        Belt coordinates of all contact points, ascending, m.
-    touching : ndarray of bool, shape (points,)
-        Which of them touch the pulley.
-    length : float
-        Unstretched length of the belt, m.
-    speed : float
-        Speed of the pulley; with a negative one the belt enters at the other end.
-
-    Returns
-    -------
-    Wrap
-        The points and their distances from where the belt enters; empty when nothing touches.
+    The part on the pulley is what is left without the longest free stretch; at a negative speed the belt enters at the
+    other end.
     """
     (on,) = np.nonzero(touching)
     if on.size == 0:

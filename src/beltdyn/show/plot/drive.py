@@ -36,17 +36,7 @@ _POINTS = 20
 
 
 class TensionerPicture:
-    """A tensioner that moves with its pulley, drawn with its stops.
-
-    Parameters
-    ----------
-    ax : Axes
-        Where to draw.
-    drive : Drive
-        The drive.
-    carrier : Carrier
-        The tensioner with its pulley.
-    """
+    """A tensioner that moves with its pulley, drawn with its stops."""
 
     def __init__(self, ax: Axes, drive: Drive, carrier: Carrier) -> None:
         self._pulley, self._pivot = carrier.pulley, carrier.tensioner.anchor
@@ -107,17 +97,7 @@ _POINTS_AN_INCH, _TICK = 72.0, 50.0
 
 
 class DrivePicture:
-    """Belt with its tension in color, pulleys with names and marks that turn, and tensioners that move.
-
-    Parameters
-    ----------
-    run : Run or StaticResult
-        The run, or the drive at rest.
-    ax : Axes
-        Where to draw.
-    norm : Normalize
-        Tensions, N, at the ends of the color scale.
-    """
+    """Belt with its tension in color (N, scaled by `norm`), turning pulleys with names, and moving tensioners."""
 
     def __init__(self, run: Run | StaticResult, ax: Axes, norm: Normalize) -> None:
         self._kind = recorded_kind(run.dataset, run.prepared)
@@ -152,19 +132,7 @@ class DrivePicture:
 
 
 def draw_rotation(ax: Axes, center: ArrayLike, radius: float, speed: float) -> None:
-    """Draw the direction of rotation as an arrow inside the pulley; nothing when it stands still.
-
-    Parameters
-    ----------
-    ax : Axes
-        Where to draw.
-    center : array_like, shape (2,), m
-        Center of the pulley.
-    radius : float
-        Its radius, m.
-    speed : float
-        Its speed, rad/s, counter-clockwise positive.
-    """
+    """Draw the direction of rotation as an arrow inside the pulley; nothing at speed zero."""
     if speed == 0.0:
         return
     turn = np.copysign(_ARROW_ANGLE, speed)
@@ -202,15 +170,7 @@ def extent_of(drive: Drive, path: Path) -> FloatArray:
 
 
 def make_room(ax: Axes, extent: FloatArray) -> None:
-    """Set limits and equal scales such that a rectangle and all that is written fit.
-
-    Parameters
-    ----------
-    ax : Axes
-        Axes with their labels, title and texts.
-    extent : ndarray, shape (2, 2), m
-        Lower left and upper right corner of what is drawn.
-    """
+    """Set limits and equal scales such that a rectangle, lower left to upper right (m), and all texts fit."""
     ax.set_aspect("equal")
     held = extent
     for _ in range(_ROUNDS):  # letters keep their size, so that they cover more meters when the limits grow

@@ -29,22 +29,11 @@ _LEVEL = 1e-12
 
 
 def indices_of(values: FloatArray, dimensions: int) -> tuple[FloatArray, FloatArray, FloatArray, FloatArray]:
-    """First-order and total Sobol indices of results at the points of Saltelli's design (Saltelli et al. 2010).
+    """First-order and total Sobol indices at the points of Saltelli's design (Saltelli et al. 2010), and their errors.
 
-    Parameters
-    ----------
-    values
-        Results, shape (n (d + 2), results); where one is not known, as of a failed point, the n-th points of all parts
-        of the design are left out.
-    dimensions
-        Number of coordinates d.
-
-    Returns
-    -------
-    first, total : ndarray
-        Indices, shape (results, d); NaN where a result is known in fewer than two places, or does not vary.
-    first_error, total_error : ndarray
-        Half of the 95 % confidence intervals, by bootstrap over the points.
+    Results have shape (n (d + 2), results); unknown ones leave out the n-th points of all parts of the design. Indices
+    have shape (results, d), NaN where a result is known in fewer than two places or does not vary; errors are half of
+    the 95 % confidence intervals, by bootstrap over the points.
     """
     parts = values.reshape(dimensions + 2, -1, values.shape[1])
     found = np.full((4, values.shape[1], dimensions), np.nan)

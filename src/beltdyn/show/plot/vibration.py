@@ -91,17 +91,7 @@ def tint_of(result: Result, mode: int) -> str:
 
 
 class ModePicture:
-    """A mode of a drive, which can be moved to another phase.
-
-    Parameters
-    ----------
-    result : Result
-        Of `modes`.
-    mode : int
-        Which one, from 1 on.
-    ax : Axes
-        Where to draw.
-    """
+    """A mode of a drive (counted from 1), which can be moved to another phase."""
 
     def __init__(self, result: Result, mode: int, ax: Axes) -> None:
         drive, self._swing = result.drive, swing(result, mode)

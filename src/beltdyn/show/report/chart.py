@@ -171,21 +171,7 @@ def dashes(line: Line2D) -> Any:
 def thinned(x: NDArray[Any], values: NDArray[Any], bins: int = _BINS) -> tuple[NDArray[Any], NDArray[Any]]:
     """Keep the least and the largest value of each part of lines, in their order, so that no peak is lost.
 
-    Parameters
-    ----------
-    x : ndarray, shape (n,)
-        Abscissae, which lines share.
-    values : ndarray, shape (n, lines)
-        NaN where there is none.
-    bins : int
-        Number of parts.
-
-    Returns
-    -------
-    x : ndarray, shape (m,)
-        At most twice the number of parts.
-    values : ndarray, shape (m, lines)
-        Each line has its two values of a part at the same two abscissae as the others.
+    In a part, each line has its two values at the same two abscissae as the others.
     """
     if len(x) <= 2 * bins:
         return x, values

@@ -16,17 +16,7 @@ _HIGHEST = 900
 
 
 class InteractiveFigures:
-    """Interactive figures of results in a notebook.
-
-    Parameters
-    ----------
-    page : str
-        A self-contained HTML page.
-    names : tuple of str
-        Names of the figures, in words.
-    height : int
-        Height of the frame, pixels; what is higher is scrolled.
-    """
+    """Interactive figures of results in a notebook: a self-contained page in a frame of a height in pixels."""
 
     def __init__(self, page: str, names: tuple[str, ...], height: int) -> None:
         self.page, self.names, self.height = page, names, height

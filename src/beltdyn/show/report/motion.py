@@ -24,23 +24,11 @@ _SMOOTH = 8
 
 
 def motion(run: Run, runs: int = 1) -> dict[str, Any]:
-    """Give the belt at instants of a run, at points that stay in place while the belt passes them.
+    """The belt at instants of a run, at points that stay in place while the belt passes them, ready for JSON.
 
     Between two instants the belt may travel far; its shape and its tension at a place change little, so that the page
-    can draw any instant between them. Marks on the belt tell its travel.
-
-    Parameters
-    ----------
-    run : Run
-        The run, with at least one output.
-    runs : int
-        How many runs share the page; each has fewer pictures where they are many.
-
-    Returns
-    -------
-    dict
-        Ready for JSON. Arrays of shape (instants, points) are whole numbers over their range, in base64: ``place``
-        (with two coordinates), ``tension`` and ``pressure``; ``range`` has the range of each.
+    can draw any instant between them. Marks on the belt show its travel. Arrays of shape (instants, points) are whole
+    numbers over their ``range``, in base64. More `runs` on a page have fewer pictures each.
     """
     times = run.dataset["field_time"].values
     count = min(len(times), max(_FRAMES // runs, _FEWEST))
@@ -72,23 +60,9 @@ def motion(run: Run, runs: int = 1) -> dict[str, Any]:
 
 
 def along_belt(run: Run, instant: xr.Dataset) -> tuple[FloatArray, FloatArray, FloatArray]:
-    """Points evenly along the belt at one instant, from one fixed place on.
+    """Places (m), tensions (N) and normal forces (N/m) evenly along the belt at one instant, from a fixed place on.
 
-    Parameters
-    ----------
-    run : Run
-        The run.
-    instant : xarray.Dataset
-        What `Run.fields_at` gives.
-
-    Returns
-    -------
-    places : ndarray, shape (points, 2)
-        m; of a belt with ends the last one is its end, of a closed belt the first one is not repeated.
-    tension : ndarray, shape (points,)
-        N.
-    pressure : ndarray, shape (points,)
-        Normal force, N/m.
+    The last point of an open belt is its end; of a closed belt the first one is not repeated.
     """
     drive = run.drive
     lengths = element_lengths(run.dataset, drive.belt_length)
