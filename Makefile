@@ -10,12 +10,13 @@ BY_FILE := --numprocesses auto --dist loadfile
 help: ## list the targets
 	@grep -hE '^[a-z]+:.*##' $(MAKEFILE_LIST) | sed -E 's/:.*## /\t/' | expand -t 12
 
-install: $(STAMP) ## make .venv with the locked versions and beltdyn itself
+install: $(STAMP) ## make .venv with the locked versions and beltdyn itself, and compile the usual kernels
 
 $(STAMP): requirements.lock pyproject.toml
 	$(PYTHON) -m venv .venv
 	$(BIN)/pip install --quiet --requirement requirements.lock
 	$(BIN)/pip install --quiet --no-deps --no-build-isolation --editable .
+	$(BIN)/beltdyn compile
 	@touch $@
 
 demo: install ## start a fan through V-belts, with a summary and figures

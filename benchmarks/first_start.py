@@ -1,71 +1,73 @@
-"""The first start: what compiling the kernels takes on one core, how much of it is LLVM, and the command on all cores.
+"""The first commands of a newcomer, with an empty kernel cache, and with what `beltdyn compile` has compiled.
 
-Each start has a new folder for machine code. Where LLVM took no time at all, the rest would still be spread over the
-cores at best: that is the least that the first start of a process for each core can take.
+Processor time includes that of the second process that compiles; without it the time on one core would be the same.
 """
 
 import argparse
 import os
+import resource
 import subprocess
 import sys
 import time
-from importlib.resources import files
 from pathlib import Path
 from tempfile import TemporaryDirectory
 
 from rich.console import Console
 from rich.table import Table
 
-from beltdyn import load
-
-COMMAND = "from beltdyn.cli import main; main()"
-ONE_CORE = """
-import os, sys, time
-begun = time.process_time()
-if hasattr(os, "sched_setaffinity"):
-    os.sched_setaffinity(0, {min(os.sched_getaffinity(0))})
-from llvmlite.binding import ffi
-spent, call = [0.0], ffi._lib_fn_wrapper.__call__
-def timed(self, *arguments):
-    start = time.process_time()
-    try:
-        return call(self, *arguments)
-    finally:
-        spent[0] += time.process_time() - start
-ffi._lib_fn_wrapper.__call__ = timed
-import beltdyn
-beltdyn.simulate(beltdyn.load(sys.argv[1]))
-print(time.process_time() - begun, spent[0])
-"""
-"""Processor time of a short run with a cold start, and of all calls of LLVM in it, s."""
+MAIN = "from beltdyn.cli import main; main()"
+COMMANDS = {
+    "help": ["--help"],
+    "check": ["check", "drive.toml", "--no-equilibrium"],
+    "steady-state": ["steady-state", "drive.toml"],
+    "simulate": ["simulate", "drive.toml"],
+    "modes": ["modes", "drive.toml"],
+    "demo": ["demo"],
+}
 
 
 def main() -> None:
-    """Print a row for each drive."""
+    """Print a row for each command."""
     parser = argparse.ArgumentParser(description=(__doc__ or "").split("\n", maxsplit=1)[0])
-    parser.add_argument("examples", nargs="*", default=["two_pulley", "alternator_drive"])
-    cores = os.cpu_count() or 1
-    table = Table(
-        "example", "one core s", "of it LLVM s", "the rest s", f"command on {cores} cores s", title="First start"
-    )
-    for name in parser.parse_args().examples:
-        drive = load(str(files("beltdyn") / "examples" / f"{name}.toml"))
-        short = drive.replace(simulation=drive.simulation.replace(duration=0.01))
-        with TemporaryDirectory() as folder:
-            file = Path(folder) / "drive.toml"
-            file.write_text(short.text, encoding="utf-8")
-            total, llvm = map(float, _started([sys.executable, "-c", ONE_CORE, str(file)], folder, "one").split())
-            begun = time.perf_counter()
-            _started([sys.executable, "-c", COMMAND, "simulate", str(file)], folder, "all")
-            wall = time.perf_counter() - begun
-        table.add_row(name, *(f"{value:.1f}" for value in (total, llvm, total - llvm, wall)))
+    parser.add_argument("commands", nargs="*", default=list(COMMANDS), help=", ".join(COMMANDS))
+    parser.add_argument("--example", default="alternator_drive")
+    given = parser.parse_args()
+    table = Table("command", "empty cache s", "processor s", "kernels", "compiled s", title="First start")
+    with TemporaryDirectory() as kept:
+        wall, processor = _started(["compile"], Path(kept))
+        table.add_row("compile", f"{wall:.1f}", f"{processor:.1f}", str(_kernels(Path(kept))), "")
+        for name in given.commands:
+            with TemporaryDirectory() as empty:
+                wall, processor = _started(COMMANDS[name], Path(empty), given.example)
+                count = _kernels(Path(empty))
+            again, _ = _started(COMMANDS[name], Path(kept), given.example)
+            table.add_row(name, f"{wall:.1f}", f"{processor:.1f}", str(count), f"{again:.1f}")
     Console().print(table)
 
 
-def _started(words: list[str], folder: str, kernels: str) -> str:
-    """What a process prints that finds no machine code in a folder of its own."""
-    environment = {**os.environ, "BELTDYN_CACHE_DIR": str(Path(folder) / kernels)}
-    return subprocess.run(words, env=environment, capture_output=True, text=True, check=True).stdout
+def _started(words: list[str], kernels: Path, example: str = "") -> tuple[float, float]:
+    """Elapsed and processor time of a command in a new folder, s."""
+    environment = {**os.environ, "BELTDYN_CACHE_DIR": str(kernels)}
+    with TemporaryDirectory() as folder:
+        if example:
+            new = [sys.executable, "-c", MAIN, "new", "drive.toml", "--example", example]
+            subprocess.run(new, cwd=folder, capture_output=True, check=True)
+        begun, before = time.perf_counter(), _processor()
+        subprocess.run(
+            [sys.executable, "-c", MAIN, *words], cwd=folder, env=environment, capture_output=True, check=True
+        )
+        return time.perf_counter() - begun, _processor() - before
+
+
+def _processor() -> float:
+    """Processor time of the processes started so far, s."""
+    used = resource.getrusage(resource.RUSAGE_CHILDREN)
+    return used.ru_utime + used.ru_stime
+
+
+def _kernels(folder: Path) -> int:
+    """Number of kernels that Python calls, each compiled with all that it calls."""
+    return len(list(folder.rglob("*.kernel")))
 
 
 if __name__ == "__main__":

@@ -13,6 +13,7 @@ from beltdyn.analyses import ANALYSES, Analysis
 from beltdyn.cli.analysis import analysis_command
 from beltdyn.cli.catalogue import catalogue
 from beltdyn.cli.check import check
+from beltdyn.cli.compile import compile_
 from beltdyn.cli.console import show_error, take_any_terminal
 from beltdyn.cli.fmu import fmu
 from beltdyn.cli.new import new, schema
@@ -36,7 +37,7 @@ app = App(
 _COMMANDS: tuple[Callable[..., object] | Analysis, ...] = (
     *(new, select, check),
     *ANALYSES.values(),
-    *(study, plot, report, export, fmu, page, demo, catalogue, schema),
+    *(study, plot, report, export, fmu, page, demo, catalogue, schema, compile_),
 )
 for position, one in enumerate(_COMMANDS):
     if isinstance(one, Analysis):

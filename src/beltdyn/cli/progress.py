@@ -127,6 +127,14 @@ class _Remaining(TimeRemainingColumn):
 
 
 @contextmanager
+def compilation_bar() -> Iterator[None]:
+    """Show the progress of compilation on standard error."""
+    with _bar() as bar:
+        bar.add_task("loading kernels", total=None, state="")
+        yield
+
+
+@contextmanager
 def _bar() -> Iterator[Progress]:
     """A bar with a description, a state in words and the remaining time; one more while kernels are compiled."""
     from beltdyn.kernel import watch_compilation
@@ -138,7 +146,7 @@ def _bar() -> Iterator[Progress]:
         _Remaining(elapsed_when_finished=True),
     )
     with Progress(*columns, console=Console(stderr=True)) as bar:
-        line = bar.add_task("compiling kernels, once on this machine", total=None, state="", visible=False)
+        line = bar.add_task(_COMPILING, total=None, state="", visible=False)
 
         def show(done: int, total: int) -> None:
             bar.update(line, completed=done, total=total, state=f"{done} of {total}", visible=done < total)

@@ -8,7 +8,7 @@ import os
 import pickle
 import subprocess
 import sys
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from tempfile import TemporaryFile
 from threading import Thread
@@ -33,7 +33,7 @@ from beltdyn.system.motion import new_equations, no_multipliers
 from beltdyn.system.observe import observe
 from beltdyn.system.state import State
 
-_SECOND = f"import sys; from {__name__} import compile_for_another; compile_for_another(sys.stdin.buffer)"
+_SECOND = f"import sys; from {__name__} import run_for_another; run_for_another(sys.stdin.buffer)"
 
 
 def usable_cores() -> int:
@@ -83,15 +83,16 @@ def compile_solving(system: System, state: State) -> None:
     accelerate(system, motion, no_multipliers(system), new_equations(system))
 
 
-def compile_for_another(arguments: BinaryIO) -> None:
-    """Compile that for pickled arguments in a process of its own, which prints its progress."""
+def run_for_another(arguments: BinaryIO) -> None:
+    """Call a pickled function with its arguments in a process of its own, which prints its progress of compilation."""
 
     def report(done: int, total: int) -> None:
         sys.stdout.write(f"{done} {total}\n")
         sys.stdout.flush()
 
     with watch_compilation(report):
-        compile_solving(*pickle.load(arguments))
+        function, *values = pickle.load(arguments)
+        function(*values)
 
 
 def _report(process: "subprocess.Popen[str]") -> None:
@@ -107,25 +108,37 @@ def _report(process: "subprocess.Popen[str]") -> None:
 
 @contextmanager
 def _second_process(system: System, state: State) -> Iterator[None]:
-    """Compile that part in another process meanwhile, if that is of use; if it fails, this one does it later.
+    """Compile what solves the equations in another process meanwhile, if that is of use.
 
     Kernels depend on the classes of elements, laws and surfaces, so that the other process needs the system.
     """
-    folder = kernel_cache()
-    if holds_kernels(folder) or usable_cores() < 2 or not sys.executable:
+    if holds_kernels(kernel_cache()):
         yield
         return
-    with TemporaryFile() as arguments:
-        pickle.dump((system, state), arguments)
-        arguments.seek(0)
+    with beside(compile_solving, system, state):
+        yield
+
+
+@contextmanager
+def beside(function: Callable[..., object], *arguments: object) -> Iterator[None]:
+    """Call a function that compiles kernels in another process meanwhile, where there is a second core.
+
+    If it fails, this process compiles them later. Arguments must be picklable.
+    """
+    if usable_cores() < 2 or not sys.executable:
+        yield
+        return
+    with TemporaryFile() as call:
+        pickle.dump((function, *arguments), call)
+        call.seek(0)
         process = subprocess.Popen(
             [sys.executable, "-c", _SECOND],
             env={
                 **os.environ,
-                CACHE_VARIABLE: str(folder.parent),
+                CACHE_VARIABLE: str(kernel_cache().parent),
                 "PYTHONPATH": os.pathsep.join(filter(None, sys.path)),
             },
-            stdin=arguments,
+            stdin=call,
             stdout=subprocess.PIPE,
             stderr=subprocess.DEVNULL,
             text=True,
