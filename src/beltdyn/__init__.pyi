@@ -2,6 +2,7 @@ from . import extend, model, results, theory
 from .cosimulation import fmu
 from .designs.batch import simulate_all
 from .designs.calibrate import calibrate
+from .designs.drive_sheet import sheet
 from .designs.optimize import optimize
 from .designs.selection import select
 from .designs.sensitivity import sensitivity
@@ -102,6 +103,7 @@ __all__ = [
     "results",
     "select",
     "sensitivity",
+    "sheet",
     "simulate",
     "simulate_all",
     "steady_comparison",

@@ -119,7 +119,7 @@ def tensioner_sheet(
     held = rest.replace(contact=rest.contact)
     sheet = _Sheet(held, number)
     nominal = held.belt_length
-    spread, worn = _length("tolerance", tolerance, nominal), _length("wear", wear, nominal)
+    spread, worn = length_of("tolerance", tolerance, nominal), length_of("wear", wear, nominal)
     lengths = dict(zip(_BELTS, (nominal + spread + worn, nominal + spread, nominal, nominal - spread), strict=True))
     sheet.add_free()
     sheet.add_stop("upper stop")
@@ -300,8 +300,8 @@ def _number_of(drive: Drive, pulley: str | None) -> int:
     return names.index(pulley) if pulley is not None else 0
 
 
-def _length(name: str, text: Number, nominal: float) -> float:
-    """A length, m, given as one or as a part of the nominal length."""
+def length_of(name: str, text: Number, nominal: float) -> float:
+    """Read a length, m, given as one or as a part of the nominal length."""
     whole = str(text).strip()
     try:
         if isinstance(text, str):

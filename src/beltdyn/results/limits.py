@@ -1,7 +1,8 @@
 """Key numbers of a drive, each at its worst place, against the limits of the drive file."""
 
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
+from types import MappingProxyType
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -108,10 +109,12 @@ _OF_TABLES = {
 """Key -> variable of operating points, the dimension of its names, and the unit."""
 
 
-def _of_table(result: Result) -> Iterator[Found]:
+def _of_table(
+    result: Result, variables: Mapping[str, tuple[str, str, str]] = MappingProxyType(_OF_TABLES)
+) -> Iterator[Found]:
     dataset = result.dataset
     places = _places(dataset)
-    for key, (name, of, unit) in _OF_TABLES.items():
+    for key, (name, of, unit) in variables.items():
         if name in dataset:
             variable = dataset[name].transpose(..., of)
             values = variable.values.reshape(len(places), -1)
@@ -127,6 +130,18 @@ def _of_life(result: Result) -> Iterator[Found]:
             share = dataset[f"{what}_share"]
             most = str(share["pulley"].values[int(share.values.argmax())]) if share.notnull().any() else ""
             yield f"least_{what}_life", float(dataset[f"{what}_life"]), "h", f"{most}, largest share" if most else ""
+
+
+_OF_SHEETS = _OF_TABLES | {
+    "largest_hub_load": ("peak_hub_load", "pulley", "N"),
+    "largest_tension": ("peak_tension", "span", "N"),
+    "least_slip_safety": ("least_slip_safety", "pulley", "1"),
+}
+"""Of sheets, whose operating points have peaks."""
+
+
+def _of_sheet(result: Result) -> Iterator[Found]:
+    yield from _of_table(result, _OF_SHEETS)
 
 
 def _places(dataset: "xr.Dataset") -> list[str]:
@@ -152,5 +167,6 @@ _FINDERS: dict[str, Callable[[Result], Iterator[Found]]] = {
     RUN: _of_run,
     **dict.fromkeys((EQUILIBRIUM, "operating_map", "duty"), _of_table),
     "life": _of_life,
+    "sheet": _of_sheet,
 }
 """Kind of result -> what finds its key numbers."""

@@ -14,6 +14,7 @@ where s = 1. A belt that resists bending touches on less than theta, but it turn
 its arc by what is missing there.
 """
 
+from collections.abc import Callable
 from typing import NamedTuple
 
 import numpy as np
@@ -23,7 +24,7 @@ from beltdyn.arrays import FloatArray, IntArray
 from beltdyn.model import Prepared
 from beltdyn.model.path import span_directions, wrap_angles
 from beltdyn.results.mechanics import across
-from beltdyn.results.tension_balance import TensionBalance
+from beltdyn.results.tension_balance import TensionBalance, newton_step
 
 STATE = ("span_tension", "belt_speed", "pulley_center")
 """What a slip safety follows from, by the names of recorded variables."""
@@ -32,22 +33,32 @@ _GROWTH, _STEPS = 1.5, 12
 _REFINEMENTS = 30
 _ACCURACY = 1e-6
 """Of the slip safety."""
+_FARTHEST = 10.0
+_SLACK = 1e-3
+"""Tension that presses, over the mean one, at which a span counts as slack."""
+_MOST_STEPS, _WHOLE_STEPS, _WIDEST_STEP = 40, 12, 0.5
+"""Steps of Newton's method, how many before halved ones, as at the kink of a stop, and the longest one, over scales."""
 
 
 def slip_safety_of_states(
-    tension: FloatArray, belt_speed: FloatArray, centers: FloatArray, prepared: Prepared
+    tension: FloatArray,
+    belt_speed: FloatArray,
+    centers: FloatArray,
+    prepared: Prepared,
+    frictions: FloatArray | None = None,
 ) -> FloatArray:
     """Slip safety of each pulley: the factor on all loads at its gross slip, if the others hold.
 
     1 on the edge of gross slip. NaN without a load, where the difference of tensions at a pulley, over their sum, is
     below `UNLOADED`, and where the belt does not touch. Arguments have shapes (..., spans), N and m/s, and (...,
-    pulleys, 2), m.
+    pulleys, 2), m; frictions replace the coefficients of the drive, with the wedge effect.
     """
     pulleys = len(prepared.pulleys)
     shape = tension.shape[:-1]
     flat = (tension.reshape(-1, tension.shape[-1]), belt_speed.reshape(-1, tension.shape[-1]))
     with np.errstate(invalid="ignore", divide="ignore", over="ignore"):
-        balance = TensionBalance(prepared, *flat, centers.reshape(-1, pulleys, 2))
+        rough = None if frictions is None else frictions.reshape(-1, pulleys)
+        balance = TensionBalance(prepared, *flat, centers.reshape(-1, pulleys, 2), rough)
         return _safeties(balance).reshape(*shape, pulleys)
 
 
@@ -64,18 +75,25 @@ def friction_used(tension: FloatArray, belt_speed: FloatArray, centers: FloatArr
 
 
 def _safeties(balance: TensionBalance) -> FloatArray:
-    """Factors at which s = 1, shape (n, pulleys): between two powers of `_GROWTH`, by secants of 1 / s over 1 / f.
+    """Factors at which s = 1, shape (n, pulleys), by Newton's method, or between two powers of `_GROWTH` by secants.
 
-    1 / s is straight over 1 / f where the sum of both tensions, or one of them, is held.
+    1 / s is straight over 1 / f where the sum of both tensions, or one of them, is held: so are pulleys estimated that
+    hold `_FARTHEST` times as much as the first one that slips, beyond which there is often no balance.
     """
     every = np.arange(balance.mean.size)
     present = balance.use(every, np.ones(every.size), balance.start)
     loaded = balance.loaded() & ~np.isnan(present)
     found = np.where(loaded, np.where(np.isinf(present), 0.0, 1.0 / present), np.nan)
+    least = np.fmin.reduce(found, axis=1, keepdims=True)
+    near = loaded & np.isfinite(present) & (found <= _FARTHEST * least)
+    open_rows, open_pulleys = np.nonzero(near)
+    direct = _directly(balance, open_rows, open_pulleys)
+    found[near] = np.where(np.isnan(direct), found[near], direct)
+    near[open_rows, open_pulleys] = np.isnan(direct)
     between = list[tuple[IntArray, IntArray, _Point, _Point]]()
     for growth, open_ in (
-        (_GROWTH, loaded & (present < 1.0)),
-        (1.0 / _GROWTH, loaded & (present >= 1.0) & np.isfinite(present)),
+        (_GROWTH, near & (present < 1.0)),
+        (1.0 / _GROWTH, near & (present >= 1.0)),
     ):
         left, last = open_.copy(), _Point(np.ones(every.size), balance.start, 1.0 / present)
         for step in range(1, _STEPS + 1):
@@ -99,6 +117,51 @@ def _safeties(balance: TensionBalance) -> FloatArray:
         )
         found[rows, pulley] = _between(balance, rows, pulley, low, high)
     return found
+
+
+def _directly(balance: TensionBalance, rows: IntArray, pulley: IntArray) -> FloatArray:
+    """Factors at which s = 1 of one pulley each, or a span gets slack before; NaN where neither is found."""
+    every = np.unique(rows)
+    slackest = np.argmin(balance.differences[every], axis=1)
+
+    def spare(own: IntArray, values: FloatArray, factor: FloatArray) -> FloatArray:
+        return np.asarray(1.0 / balance.use(rows[own], factor, values)[np.arange(own.size), pulley[own]] - 1.0)
+
+    def pressing(own: IntArray, values: FloatArray, factor: FloatArray) -> FloatArray:
+        left = balance.pressing(every[own], factor, values)[np.arange(own.size), slackest[own]]
+        return np.asarray(left / balance.mean[every[own]] - _SLACK)
+
+    slips, slack = _newton(balance, rows, spare), _newton(balance, every, pressing)
+    return np.fmin(slips, slack[np.searchsorted(every, rows)])
+
+
+def _newton(
+    balance: TensionBalance, rows: IntArray, condition: Callable[[IntArray, FloatArray, FloatArray], FloatArray]
+) -> FloatArray:
+    """Factors at which a condition holds, by Newton's method for them and the unknowns of the balance together.
+
+    It begins at the present state; NaN where it does not converge. The condition takes numbers of entries of rows, the
+    unknowns of the balance and the factors there.
+    """
+    scales = np.append(balance.scales, 1.0)
+    found = np.column_stack([balance.start[rows], np.zeros(rows.size)])
+    done, open_ = np.zeros(rows.size, dtype=bool), np.arange(rows.size)
+
+    def off(values: FloatArray) -> FloatArray:
+        factor = np.exp(values[:, -1])
+        missing = balance.residual(rows[open_], factor, values[:, :-1])
+        return np.column_stack([missing, condition(open_, values[:, :-1], factor)])
+
+    for number in range(_MOST_STEPS if rows.size else 0):
+        step = -newton_step(off, found[open_], scales) * (1.0 if number < _WHOLE_STEPS else 0.5)
+        step *= np.minimum(1.0, _WIDEST_STEP / np.maximum(np.abs(step / scales).max(axis=1), 1e-12))[:, None]
+        found[open_] += step
+        settled = np.all(np.abs(step) <= _ACCURACY * scales, axis=1)
+        done[open_[settled]] = True
+        open_ = open_[~settled & np.isfinite(step).all(axis=1)]
+        if not open_.size:
+            break
+    return np.where(done, np.exp(found[:, -1]), np.nan)
 
 
 class _Point(NamedTuple):

@@ -6,7 +6,9 @@ belt; an end of an open belt that is pulled keeps its tension. All are taken as 
 else holds a tensioner there, as weight and dry friction, goes on holding it.
 """
 
+from collections.abc import Callable
 from copy import copy
+from functools import partial
 from typing import NamedTuple, Self
 
 import numpy as np
@@ -17,7 +19,7 @@ from beltdyn.model import Prepared
 from beltdyn.model.path import span_directions, span_points, wrap_angles
 from beltdyn.results.mechanics import UNLOADED, across
 
-_MOST_ITERATIONS = 40
+_MOST_ITERATIONS = 25
 _CONVERGED = 1e-9
 """Step of Newton's method, over the scale of each unknown."""
 _DIFFERENCE = 1e-6
@@ -59,11 +61,20 @@ class _Geometry(NamedTuple):
 class TensionBalance:
     """The balance that determines the tension of a belt, as a change of n known states.
 
-    Unknowns are the mean tension and the displacements of tensioners. Span tensions and speeds have shape (n, spans).
+    Unknowns are the mean tension and the displacements of tensioners. Span tensions and speeds have shape (n, spans);
+    frictions, shape (n, pulleys), replace those of the drive.
     """
 
-    def __init__(self, prepared: Prepared, tension: FloatArray, speed: FloatArray, centers: FloatArray) -> None:
+    def __init__(
+        self,
+        prepared: Prepared,
+        tension: FloatArray,
+        speed: FloatArray,
+        centers: FloatArray,
+        frictions: FloatArray | None = None,
+    ) -> None:
         self._prepared, self._centers = prepared, centers
+        self._frictions = np.tile(prepared.frictions, (len(tension), 1)) if frictions is None else frictions
         self.mean = tension.mean(axis=1)
         self.differences = tension - self.mean[:, None]
         self._lifted = prepared.belt.mass_per_length * speed**2
@@ -72,21 +83,22 @@ class TensionBalance:
         self._pulled = _pulled_span(prepared)
         smallest = float(np.min(prepared.radii))
         reaches = [float(np.linalg.norm(one.place(0.0)[1])) for one in self._carriers]
-        self._scales = np.array(
+        self.scales = np.array(
             [max(float(np.nanmax(np.abs(tension), initial=0.0)), 1e-9), *(smallest / one for one in reaches)]
         )
         self._places = _places(prepared, centers)
         self._along = [one.place(0.0) for one in self._carriers]
-        self._held = np.zeros((len(tension), self._scales.size))
+        self._held = np.zeros((len(tension), self.scales.size))
         rows, still = np.arange(len(tension)), self.start
-        self._held = self._residual(rows, np.ones(len(rows)), still)
+        self._held = self.residual(rows, np.ones(len(rows)), still)
 
-    def under(self, differences: FloatArray, speed: float | FloatArray) -> Self:
-        """The balance about its one known state, for other belt speeds and differences from the mean tension."""
+    def under(self, differences: FloatArray, speed: float | FloatArray, longer: float | FloatArray = 0.0) -> Self:
+        """The balance about its one known state, for other speeds, differences from the mean and a longer belt (m)."""
         other, count = copy(self), len(differences)
-        for name in ("mean", "_centers", "_places", "_held"):
+        for name in ("mean", "_centers", "_places", "_held", "_frictions"):
             setattr(other, name, np.repeat(getattr(self, name)[:1], count, axis=0))
         other.differences = differences
+        other._held[:, 0] += longer
         flowing = np.broadcast_to(np.asarray(speed, dtype=float), count)
         other._lifted = self._prepared.belt.mass_per_length * np.repeat(flowing[:, None] ** 2, differences.shape[1], 1)
         other._backward = flowing < 0.0
@@ -95,9 +107,43 @@ class TensionBalance:
     def states(self) -> "States":
         """The states that are in balance; NaN where there is none."""
         rows, factor = np.arange(self.mean.size), np.ones(self.mean.size)
-        unknowns = self.solve(rows, factor, self.start)
-        shape = self._geometry(rows, unknowns)
+        with np.errstate(invalid="ignore", divide="ignore", over="ignore"):
+            unknowns = self.solve(rows, factor, self.start)
+            shape = self._geometry(rows, unknowns)
         return States(self._tension(rows, factor, unknowns), self._places + unknowns[:, 1:], shape.centers, shape.wrap)
+
+    def path_at(self, positions: FloatArray) -> FloatArray:
+        """Unit vectors along spans, shape (spans, 2), with tensioners at positions, shape (K,); NaN without a path."""
+        unknowns = np.concatenate([self.mean[:1], positions - self._places[0]])[None]
+        with np.errstate(invalid="ignore"):  # a free arm may be where no belt can run
+            return np.asarray(self._geometry(np.zeros(1, dtype=int), unknowns).directions[0])
+
+    def held_at(self, number: int, position: float) -> tuple[float, float]:
+        """The belt at rest that holds a tensioner at a position, with the others where they are in the known state.
+
+        Parameters
+        ----------
+        number
+            The tensioner.
+        position
+            m or rad.
+
+        Returns
+        -------
+        longer, tension : float
+            Unstretched length less that of the known state, m, and tension, N.
+        """
+        still = self.under(np.zeros((1, self.differences.shape[1])), 0.0)
+        rows, factor, unknowns = np.zeros(1, dtype=int), np.ones(1), still.start
+        unknowns[:, 1 + number] = position - self._places[0, number]
+
+        def off(tension: float) -> FloatArray:
+            unknowns[:, 0] = tension
+            return np.asarray(still.residual(rows, factor, unknowns)[0])
+
+        none, some = off(0.0)[1 + number], off(self.scales[0])[1 + number]
+        tension = float(self.scales[0] * none / (none - some))
+        return float(off(tension)[0]), tension
 
     @property
     def start(self) -> FloatArray:
@@ -108,8 +154,12 @@ class TensionBalance:
         """What s is at each pulley, shape (n, pulleys); inf where the belt lifts off."""
         tension, wrap = self._tension(rows, factor, unknowns), self._geometry(rows, unknowns).wrap
         before, after = across(tension - self._lifted[rows], self._prepared)
-        held = (before + after) * np.tanh(0.5 * self._prepared.frictions * wrap)
+        held = (before + after) * np.tanh(0.5 * self._frictions[rows] * wrap)
         return np.where(held > 0.0, np.abs(before - after) / held, np.where(np.isnan(held), np.nan, np.inf))
+
+    def pressing(self, rows: IntArray, factor: FloatArray, unknowns: FloatArray) -> FloatArray:
+        """Tensions less m v^2, with which the belt presses, N, shape (n, spans)."""
+        return np.asarray(self._tension(rows, factor, unknowns) - self._lifted[rows])
 
     def loaded(self) -> BoolArray:
         """Whether a pulley has a load, shape (n, pulleys)."""
@@ -125,27 +175,21 @@ class TensionBalance:
         edge = np.max(self._lifted[rows] - factor[:, None] * self.differences[rows], axis=1)
         found[:, 0] = np.maximum(found[:, 0], edge + _PRESSED * np.abs(self.mean[rows]))
         for _ in range(_MOST_ITERATIONS):
-            off = self._residual(rows, factor, found)
-            slopes = np.empty((*off.shape, off.shape[1]))
-            for one, scale in enumerate(self._scales):
-                moved = found.copy()
-                moved[:, one] += _DIFFERENCE * scale
-                slopes[:, :, one] = (self._residual(rows, factor, moved) - off) / (_DIFFERENCE * scale)
-            step = -_solved(slopes, off)
-            step[:, 1:] = np.clip(step[:, 1:], -_LONGEST * self._scales[1:], _LONGEST * self._scales[1:])
+            step = -newton_step(partial(self.residual, rows, factor), found, self.scales)
+            step[:, 1:] = np.clip(step[:, 1:], -_LONGEST * self.scales[1:], _LONGEST * self.scales[1:])
             step[:, 0] = np.maximum(step[:, 0], (_PRESSED - 1.0) * (found[:, 0] - edge))
             found = found + step
-            if not np.nanmax(np.abs(step) / self._scales, initial=0.0) > _CONVERGED:
+            if not np.nanmax(np.abs(step) / self.scales, initial=0.0) > _CONVERGED:
                 break
-        lost = np.any(~(np.abs(step) <= 1e3 * _CONVERGED * self._scales), axis=1)
+        lost = np.any(~(np.abs(step) <= 1e3 * _CONVERGED * self.scales), axis=1)
         found[lost] = np.nan
         return found
 
     def _tension(self, rows: IntArray, factor: FloatArray, unknowns: FloatArray) -> FloatArray:
         return np.asarray(unknowns[:, :1] + factor[:, None] * self.differences[rows])
 
-    def _residual(self, rows: IntArray, factor: FloatArray, unknowns: FloatArray) -> FloatArray:
-        """What the balances miss: of the mean tension over its stiffness first, then of each tensioner."""
+    def residual(self, rows: IntArray, factor: FloatArray, unknowns: FloatArray) -> FloatArray:
+        """What the balances miss: unstretched length, m, or the tension of a pulled span, N, then each tensioner."""
         tension, shape = self._tension(rows, factor, unknowns), self._geometry(rows, unknowns)
         missing = [self._belt_on(rows, tension, shape) if self._pulled is None else tension[:, self._pulled]]
         pressing = tension - self._lifted[rows]
@@ -161,11 +205,11 @@ class TensionBalance:
     def _belt_on(self, rows: IntArray, tension: FloatArray, shape: _Geometry) -> FloatArray:
         """Unstretched length of the belt on its path, m."""
         prepared = self._prepared
-        law, radii, friction = prepared.belt.stretch_parameters, np.abs(prepared.path.radii), prepared.frictions
+        law, radii, friction = prepared.belt.stretch_parameters, np.abs(prepared.path.radii), self._frictions[rows]
         lifted = across(self._lifted[rows], prepared)[1]
         before, after = across(tension, prepared)
         reaching = np.where(self._backward[rows, None], after, before)
-        least = 1e-9 * self._scales[0]
+        least = 1e-9 * self.scales[0]
         tight, slack = (np.maximum(choice(before, after) - lifted, least) for choice in (np.maximum, np.minimum))
         ratio = np.log(tight / slack)
         slid = np.minimum(ratio / np.maximum(friction, 1e-12), shape.wrap)
@@ -224,6 +268,26 @@ def _spring(tensioner: MovingTensioner, place: FloatArray) -> FloatArray:
     row = tensioner.spring
     low, high = (np.maximum(depth, 0.0) for depth in (row["lower"] - place, place - row["upper"]))
     return np.asarray(row["preload"] - row["rate"] * place + row["stop_stiffness"] * (low - high))
+
+
+def newton_step(off: Callable[[FloatArray], FloatArray], unknowns: FloatArray, scales: FloatArray) -> FloatArray:
+    """What Newton's method takes off many sets of unknowns, with difference quotients.
+
+    Parameters
+    ----------
+    off
+        What equations miss, shape (n, k), of unknowns of this shape.
+    unknowns : ndarray, shape (n, k)
+    scales : ndarray, shape (k,)
+        Sizes of the unknowns.
+    """
+    here = off(unknowns)
+    slopes = np.empty((*here.shape, here.shape[1]))
+    for one, scale in enumerate(scales):
+        moved = unknowns.copy()
+        moved[:, one] += _DIFFERENCE * scale
+        slopes[:, :, one] = (off(moved) - here) / (_DIFFERENCE * scale)
+    return _solved(slopes, here)
 
 
 def _solved(slopes: FloatArray, off: FloatArray) -> FloatArray:

@@ -3,6 +3,7 @@
 import math
 import re
 from collections.abc import Iterable, Sequence
+from importlib import import_module
 from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
@@ -338,12 +339,20 @@ _AMONG_WARNINGS = frozenset({"failure"})
 """Variables of long texts, which warnings quote."""
 
 
+OF_KINDS = {"sheet": "beltdyn.show.drive_sheet:drive_sheet"}
+"""Kind of result -> "MODULE:FUNCTION" that gives its sheet, where it has tables of its own."""
+
+
 def sheet(result: Result) -> Sheet:
     """Give the sheet of a result: the summary of a run, or the values and tables of another analysis."""
     if isinstance(result, Run):
         return run_sheet(result)
     if result.kind == STUDY:
         return study_sheet(result)
+    if result.kind in OF_KINDS:
+        module, _, name = OF_KINDS[result.kind].partition(":")
+        found: Sheet = getattr(import_module(module), name)(result)
+        return found
     dataset = result.dataset
     variables = dataset.data_vars.values()
     numbers = [(str(one.attrs["long_name"]), _single(one)) for one in variables if not one.dims]

@@ -35,6 +35,7 @@ OPTIONS: dict[str, dict[str, Any]] = {
     "duty": {"table": "duty.csv"},
     "life": {"table": "duty.csv"},
     "tensioner_sheet": {"tolerance": "1 mm", "wear": "2 mm"},
+    "sheet": {"table": "duty.csv", "points": 2},
     "rating": {"service_factor": 1.2},
     "sensitivity": {"of": "efficiency", "numbers": "belt.length"},
     "modes": {"count": 2},

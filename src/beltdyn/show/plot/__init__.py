@@ -11,6 +11,8 @@ from beltdyn.show.plot.designs import optimization as optimization
 from beltdyn.show.plot.designs import sensitivity as sensitivity
 from beltdyn.show.plot.designs import tolerances as tolerances
 from beltdyn.show.plot.drive import configuration as configuration
+from beltdyn.show.plot.drive_sheet import sheet_slip_safety as sheet_slip_safety
+from beltdyn.show.plot.drive_sheet import sheet_tensions as sheet_tensions
 from beltdyn.show.plot.figures import save_all as save_all
 from beltdyn.show.plot.history import energy as energy
 from beltdyn.show.plot.history import mid_spans as mid_spans

@@ -62,6 +62,11 @@ MAKERS: Mapping[str, tuple[Callable[[bd.Drive], Result], tuple[str, ...], tuple[
         ("Share in the damage of the ribs", "no temperature of the belt"),
         ("belt_history-0",),
     ),
+    "sheet": (
+        lambda drive: bd.sheet(drive, points=3, acceleration="1000 rpm/s"),
+        ("Belts of standard length", "First modes", "shortest belt"),
+        ("sheet_slip_safety-0",),
+    ),
     "sensitivity": (
         lambda drive: bd.sensitivity(drive, about="rest", numbers="belt.installed_tension"),
         ("belt.installed_tension",),

@@ -1,0 +1,182 @@
+"""Steady running without a mesh: the balance of tensions about rest, under torques, accelerations and losses."""
+
+from collections.abc import Callable, Sequence
+from typing import NamedTuple
+
+import numpy as np
+from scipy.optimize import brentq
+
+from beltdyn.arrays import FloatArray
+from beltdyn.errors import ModelError
+from beltdyn.model import Drive, Installation, Prepared
+from beltdyn.model.hysteresis import compression_losses
+from beltdyn.model.path import span_directions
+from beltdyn.points.changed_drive import driver_of
+from beltdyn.results.slip_safety import slip_safety_of_states
+from beltdyn.results.tension_balance import TensionBalance
+from beltdyn.theory.hysteresis import bending_loss
+
+Torques = Callable[[float], FloatArray]
+"""Torques on the shafts of all pulleys, N m, counter-clockwise positive, at a belt speed, m/s; zero on the driver."""
+
+
+class Running(NamedTuple):
+    """Quasi-steady states, a row for each."""
+
+    speed: FloatArray
+    """Of the belt, m/s, negative against the order of the pulleys, shape (n,)."""
+    torque: FloatArray
+    """On the shafts, N m, that of the driver from the balance, shape (n, P)."""
+    tension: FloatArray
+    """Of spans, N, shape (n, spans); NaN where there is no balance."""
+    positions: FloatArray
+    """Of tensioners, m or rad, shape (n, K)."""
+    centers: FloatArray
+    """Of pulleys, m, shape (n, P, 2)."""
+    hub_force: FloatArray
+    """Of the belt on pulleys, N, shape (n, P, 2)."""
+
+
+class QuasiSteady:
+    """Steady running of a drive about its rest.
+
+    Parameters
+    ----------
+    prepared : Prepared
+        The drive, with a closed belt of known length, and with constant torques.
+    rest : Installation
+        It at rest.
+    """
+
+    def __init__(self, prepared: Prepared, rest: Installation) -> None:
+        self.prepared, self.rest, self.drive = prepared, rest, prepared.drive
+        self.driver = driver_of(self.drive)
+        still = np.zeros((1, prepared.path.spans))
+        self.balance = TensionBalance(prepared, rest.span_tensions[None], still, rest.path.centers[None])
+        belt, self._radii = prepared.belt, np.asarray(prepared.path.radii)
+        self._drag = compression_losses(prepared) + bending_loss(
+            belt.bending_stiffness, belt.bending_loss_factor, np.abs(self._radii)
+        )
+        self.inertia = np.array([one.inertia + sum(link.inertia for link in one.hub) for one in prepared.pulleys])
+
+    def belt_speed(self, drive: Drive, torques: Torques) -> float:
+        """Belt speed by the driver's prescribed speed, or where its motors balance the torques, m/s."""
+        pulley, radius = drive.pulleys[self.driver], float(self._radii[self.driver])
+        if pulley.speed is not None:
+            return float(pulley.speed.at([0.0])[0]) * radius
+        limit = max((load.driven_speed for load in pulley.load), key=abs)
+
+        def excess(speed: float) -> float:
+            belt = speed * radius
+            taken = float(np.sum(torques(belt) / self._radii)) - float(np.sum(self._drag)) * float(np.sign(limit))
+            return torque_of(drive, self.driver, speed) / radius + taken
+
+        try:
+            found = float(brentq(excess, 0.2 * limit, limit, xtol=1e-9))
+        except ValueError as error:
+            raise ModelError(
+                f"the motor of {pulley.name} does not carry the loads between a fifth of {limit:.4g} rad/s and "
+                "that speed. "
+                "Use a larger motor, or give the pulley a speed."
+            ) from error
+        return found * radius
+
+    def at(self, speed: FloatArray, torque: FloatArray, acceleration: FloatArray) -> Running:
+        """Find states.
+
+        Parameters
+        ----------
+        speed : ndarray, shape (n,)
+            Of the belt, m/s.
+        torque : ndarray, shape (n, P)
+            On the shafts, N m; that of the driver does not count.
+        acceleration : ndarray, shape (n,)
+            Of the belt, m/s^2, in the sense of its speed.
+        """
+        running = np.sign(speed)[:, None]
+        braked = torque - self.inertia * (running * acceleration[:, None]) / self._radii
+        pull = braked / self._radii - running * self._drag
+        pull[:, self.driver] = 0.0
+        pull[:, self.driver] = -pull.sum(axis=1)
+        differences = -np.cumsum(pull, axis=1)
+        differences -= differences.mean(axis=1, keepdims=True)
+        found = self.balance.under(differences, speed).states()
+        driven = (pull[:, self.driver] + running[:, 0] * self._drag[self.driver]) * self._radii[self.driver]
+        whole = torque.copy()
+        whole[:, self.driver] = (
+            driven + self.inertia[self.driver] * running[:, 0] * acceleration / self._radii[self.driver]
+        )
+        pressing = (found.tension - self.prepared.belt.mass_per_length * speed[:, None] ** 2)[:, :, None]
+        along = pressing * span_directions(found.centers, self._radii)
+        return Running(speed, whole, found.tension, found.positions, found.centers, along - np.roll(along, 1, axis=1))
+
+    def slip_safety(self, states: Running, factors: FloatArray) -> FloatArray:
+        """Slip safety of each pulley with factors on all coefficients of friction, shape (factors, n, P)."""
+        shape = (factors.size, *states.torque.shape)
+        found, known = np.full(shape, np.nan), np.isfinite(states.tension).all(axis=1)
+        tension, centers = (
+            np.tile(one[known], (factors.size, *[1] * (one.ndim - 1))) for one in (states.tension, states.centers)
+        )
+        speed = np.tile(np.repeat(states.speed[known, None], tension.shape[1], axis=1), (factors.size, 1))
+        frictions = np.repeat(factors[:, None] * self.prepared.frictions, known.sum(), axis=0)
+        safety = slip_safety_of_states(tension, speed, centers, self.prepared, frictions)
+        found[:, known] = safety.reshape(factors.size, -1, shape[2])
+        return found
+
+
+def torque_of(drive: Drive, number: int, speed: float) -> float:
+    """Torque of a shaft and its loads at its speed (rad/s), N m, with schedules as they are held."""
+    pulley = drive.pulleys[number]
+    found = 0.0 if pulley.torque is None else float(pulley.torque.at([0.0])[0])
+    for load in pulley.load:
+        factor = 1.0 if load.factor is None else float(load.factor.at([0.0])[0])
+        found += factor * float(load.torque_over(np.zeros(1), speed)[0])
+    return found
+
+
+def torques_of(drive: Drive, driver: int) -> Torques:
+    """Torques of all pulleys but the driver."""
+    radii = np.asarray(drive.path.radii)
+    others = [number for number in range(radii.size) if number != driver]
+    fixed = [drive.pulleys[number].name for number in others if drive.pulleys[number].prescribed]
+    if fixed:
+        raise ModelError(
+            f"the torque of {fixed[0]} is unknown, since its speed is prescribed beside that of "
+            f"{drive.pulleys[driver].name}. Give its torque or loads instead."
+        )
+
+    def torques(belt: float) -> FloatArray:
+        found = np.zeros(radii.size)
+        for number in others:
+            found[number] = torque_of(drive, number, belt / float(radii[number]))
+        return found
+
+    return torques
+
+
+def torques_between(rows: Sequence[tuple[float, FloatArray]], pulleys: Sequence[int], others: Torques) -> Torques:
+    """Torques over the belt speed: of some pulleys by straight lines between rows, the largest ones of equal speed.
+
+    Parameters
+    ----------
+    rows
+        Belt speed, m/s, and torques, N m, of operating points.
+    pulleys
+        Numbers of those whose torques these rows give.
+    others
+        Of the other pulleys.
+    """
+    largest: dict[float, FloatArray] = {}
+    for speed, torque in rows:
+        before = largest.get(speed, np.zeros(torque.size))
+        largest[speed] = np.where(np.abs(torque) > np.abs(before), torque, before)
+    speeds = np.array(sorted(largest, key=abs))
+    table = np.array([largest[one] for one in speeds.tolist()])
+
+    def torques(belt: float) -> FloatArray:
+        found = others(belt)
+        for number in pulleys:
+            found[number] = np.interp(abs(belt), np.abs(speeds), table[:, number])
+        return found
+
+    return torques

@@ -1,0 +1,215 @@
+"""The tables of a drive sheet."""
+
+from collections.abc import Iterable, Sequence
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from beltdyn.arrays import FloatArray
+from beltdyn.parts.messages import aligned
+from beltdyn.parts.quantity import RPM
+from beltdyn.results import Result
+from beltdyn.show.sheet import Facts, Sheet, Table
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+_DEGREES = 180.0 / np.pi
+_LARGEST_SAFETY = 100.0
+_STATES = {
+    "free": "free arm",
+    "replace": "replace (worn)",
+    "max": "longest belt",
+    "mean": "nominal belt",
+    "min": "shortest belt",
+    "load": "load stop",
+}
+
+
+def drive_sheet(result: Result) -> Sheet:
+    """Give the sheet of a drive."""
+    dataset = result.dataset
+    parts: list[Table | Facts] = [Facts(tuple(_facts(dataset))), _pulleys(dataset), _spans(dataset)]
+    if "state" in dataset.dims:
+        parts.append(_states(dataset))
+    parts += [_points(dataset), _by_name(dataset, "pulley"), _by_name(dataset, "span")]
+    if "mode" in dataset.dims:
+        parts.append(_modes(dataset))
+    if "standard" in dataset.dims:
+        parts.append(_belts(dataset))
+    return Sheet(str(dataset.attrs["title"]), tuple(parts))
+
+
+def _facts(dataset: "xr.Dataset") -> Iterable[tuple[str, str]]:
+    """Belt, tension and conditions in a few words."""
+    nominal, length = float(dataset["nominal_length"]), float(dataset["belt_length"])
+    yield "belt length", f"{length:.5g} m unstretched, {1e3 * nominal:.5g} mm nominal"
+    yield "tension at rest", f"{float(dataset['tension_at_rest']):.4g} N"
+    if "state_take_up" in dataset:
+        at = dataset["state_take_up"].sel(state="mean")
+        rate = 1e3 * float(at) / _DEGREES if at.attrs["units"] == "m/rad" else float(at)
+        yield (
+            "take-up",
+            f"{rate:.3g} mm of path per {'degree' if at.attrs['units'] == 'm/rad' else 'mm'} at the nominal belt",
+        )
+    if "take_up_rate" in dataset:
+        yield "take-up", f"{float(dataset['take_up_rate']):.3g} mm of path per mm"
+    yield "cases", ", ".join(map(str, dataset["case"].values))
+    factors = ", ".join(f"{one:.3g}" for one in dataset["friction"].values)
+    yield "friction", f"{factors} times the coefficients below; the least slip safety is over all cases and these"
+    safety = dataset["least_slip_safety_over_speed"]
+    if bool(safety.notnull().any()):
+        speed, pulley = np.unravel_index(int(np.nanargmin(safety.values)), safety.shape)
+        at_speed = RPM * float(dataset["speed"].values[speed])
+        yield (
+            "least slip safety",
+            f"{float(np.nanmin(safety)):.3g} of {dataset['pulley'].values[pulley]} over the speeds, at "
+            f"{at_speed:.4g} rpm",
+        )
+
+
+def _pulleys(dataset: "xr.Dataset") -> Table:
+    centers = 1e3 * dataset["center"].values
+    columns = (
+        map(str, dataset["pulley"].values),
+        aligned(centers[:, 0].tolist(), 5),
+        aligned(centers[:, 1].tolist(), 5),
+        aligned((1e3 * dataset["pitch_diameter"].values).tolist(), 5),
+        (f"{_DEGREES * one:.1f}°" for one in dataset["wrap_angle"].values),
+        (f"{one:.4f}" for one in dataset["speed_ratio"].values),
+        (f"{one:.3g}" for one in dataset["friction_coefficient"].values),
+    )
+    headings = ("", "x\nmm", "y\nmm", "pitch diameter\nmm", "wrap", "speed\nratio", "friction,\nwith wedge")
+    return Table("Pulleys", headings, tuple(zip(*columns, strict=True)))
+
+
+def _spans(dataset: "xr.Dataset") -> Table:
+    columns = (
+        map(str, dataset["span"].values),
+        aligned((1e3 * dataset["span_length"].values).tolist(), 4),
+        aligned(dataset["span_frequency"].values.tolist(), 3),
+    )
+    return Table("Spans at rest", ("", "length\nmm", "frequency\nHz"), tuple(zip(*columns, strict=True)))
+
+
+def _states(dataset: "xr.Dataset") -> Table:
+    """Positions of the tensioner."""
+    names = [str(one) for one in dataset["state"].values]
+    turns = "state_arm_angle" in dataset
+    place, unit = ("state_arm_angle", "arm angle\n°") if turns else ("state_position", "position\nmm")
+    columns: list[Sequence[str]] = [[_STATES[name] for name in names]]
+    columns += [
+        aligned((1e3 * dataset["state_belt_length"].values).tolist(), 5),
+        aligned(((_DEGREES if turns else 1e3) * dataset[place].values).tolist(), 4),
+        aligned(dataset["state_spring"].values.tolist()),
+        aligned(dataset["state_tension"].values.tolist()),
+        aligned(dataset["state_hub_load"].values.tolist()),
+        [_angle(one) for one in dataset["state_hub_direction"].values],
+        _or_dash((1e3 / _DEGREES if turns else 1.0) * dataset["state_take_up"].values, 3),
+    ]
+    spring = f"spring\n{'N m' if turns else 'N'}"
+    rate = f"take-up\nmm/{'deg' if turns else 'mm'}"
+    headings = ("", "belt length\nmm", unit, spring, "tension\nN", "hub load\nN", "direction", rate)
+    return Table(f"Tensioner of {dataset['tensioner'].values[0]}", headings, tuple(zip(*columns, strict=True)))
+
+
+def _points(dataset: "xr.Dataset") -> Table:
+    """A line for each operating point, with the worst of pulleys and spans."""
+    whole = float(dataset["duration"].sum())
+    driver = int(np.argmin(np.abs(dataset["speed_ratio"].values - 1.0)))
+    safety, least = (dataset[name].values for name in ("slip_safety", "least_slip_safety"))
+    columns: list[Sequence[str]] = [
+        [str(one) for one in dataset["row"].values],
+        [f"{one / whole:.3g}" if whole == 0.0 else f"{one / whole:.1%}" for one in dataset["duration"].values],
+        aligned((RPM * np.abs(dataset["pulley_speed"].values[:, driver])).tolist(), 4),
+        aligned((1e-3 * dataset["power"].values[:, driver]).tolist(), 3),
+        aligned(dataset["belt_speed"].values.tolist(), 3),
+        aligned(dataset["span_tension"].min("span").values.tolist(), 4),
+        aligned(dataset["span_tension"].max("span").values.tolist(), 4),
+        aligned(dataset["peak_tension"].max("span").values.tolist(), 4),
+        aligned(dataset["peak_hub_load"].max("pulley").values.tolist(), 4),
+        _safeties(np.fmin.reduce(safety, axis=1)),
+        _safeties(np.fmin.reduce(least, axis=1)),
+    ]
+    headings: tuple[str, ...] = (
+        *("", "time", "speed\nrpm", "power\nkW", "belt\nm/s", "tension\nmin N", "max N", "peak N"),
+        *("peak hub\nload N", "slip\nsafety", "least, all\ncases"),
+    )
+    if "tensioner_position" in dataset:
+        one = dataset["tensioner_position"]
+        turns = one.attrs["units"] == "rad"
+        columns.append(aligned(((_DEGREES if turns else 1e3) * one.values[:, 0]).tolist(), 3))
+        headings = (*headings, f"tensioner\n{'°' if turns else 'mm'}")
+    if "utilization" in dataset:
+        columns.append([f"{100.0 * one:.0f}%" for one in np.fmax.reduce(dataset["utilization"].values, axis=1)])
+        headings = (*headings, "rating\nused")
+    return Table("Operating points", headings, tuple(zip(*columns, strict=True)))
+
+
+def _by_name(dataset: "xr.Dataset", dim: str) -> Table:
+    """Each pulley or span in each operating point: hub load with direction and slip safety, or tension and peak."""
+    rows = []
+    for number, point in enumerate(dataset["row"].values):
+        at = dataset.isel(row=number)
+        if dim == "pulley":
+            loads, peaks, angles = (at[one].values for one in ("hub_load", "peak_hub_load", "hub_direction"))
+            safeties = _safeties(at["slip_safety"].values)
+            cells = [
+                f"{load:.0f} ({peak:.0f}) {_DEGREES * angle:z.0f}° {safety}"
+                for load, peak, angle, safety in zip(loads, peaks, angles, safeties, strict=True)
+            ]
+        else:
+            tensions, peaks = at["span_tension"].values, at["peak_tension"].values
+            cells = [f"{tension:.0f} ({peak:.0f})" for tension, peak in zip(tensions, peaks, strict=True)]
+        rows.append((str(point), *cells))
+    title = (
+        "Hub load N (peak), direction, slip safety"
+        if dim == "pulley"
+        else "Tension N (peak, with acceleration and vibration)"
+    )
+    return Table(title, ("", *map(str, dataset[dim].values)), tuple(rows))
+
+
+def _modes(dataset: "xr.Dataset") -> Table:
+    columns = (
+        map(str, dataset["mode"].values),
+        aligned(dataset["mode_frequency"].values.tolist(), 3),
+        (f"{one:.1%}" for one in dataset["mode_damping"].values),
+        map(str, dataset["mode_parts"].values),
+    )
+    title = "First modes, at the largest power, with sliding tensioners"
+    return Table(title, ("", "frequency\nHz", "damping\nratio", "moving"), tuple(zip(*columns, strict=True)))
+
+
+def _belts(dataset: "xr.Dataset") -> Table:
+    """Belts of standard length."""
+    columns: list[Sequence[str]] = [
+        [f"{1e3 * one:.5g}" for one in dataset["standard"].values],
+        aligned((1e3 * dataset["standard_longer"].values).tolist(), 3),
+        _or_dash(dataset["standard_tension"].values),
+    ]
+    headings: tuple[str, ...] = ("nominal length\nmm", "longer by\nmm", "tension\nN")
+    if "standard_position" in dataset:
+        turns = dataset["standard_position"].attrs["units"] == "rad"
+        columns.append(_or_dash((_DEGREES if turns else 1e3) * dataset["standard_position"].values, 3))
+        headings = (*headings, f"tensioner\n{'°' if turns else 'mm'}")
+    if "standard_take_up" in dataset:
+        columns.append(_or_dash(1e3 * dataset["standard_take_up"].values, 3))
+        headings = (*headings, "take-up for the\nsame tension mm")
+    return Table("Belts of standard length", headings, tuple(zip(*columns, strict=True)))
+
+
+def _safeties(values: FloatArray) -> list[str]:
+    """Slip safeties; a dash without load."""
+    return [
+        "–" if np.isnan(one) else f"{one:.2f}" if one < _LARGEST_SAFETY else f"> {_LARGEST_SAFETY:.0f}"
+        for one in values
+    ]
+
+
+def _angle(radians: float) -> str:
+    return "–" if np.isnan(radians) else f"{_DEGREES * radians:z.0f}°"
+
+
+def _or_dash(values: FloatArray, digits: int = 4) -> list[str]:
+    return ["–" if np.isnan(one) else f"{one:z.{digits}g}" for one in values]

@@ -1,0 +1,88 @@
+"""The drive sheet: what it holds, and how its parts agree."""
+
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+import beltdyn as bd
+from beltdyn.errors import ModelError
+from beltdyn.model import example
+
+ROWS = [
+    {"name": "idle", "share": 0.7, "speed": "900 rpm", "power": {"alternator": "0.5 kW"}},
+    {"name": "fast", "share": 0.3, "speed": "3000 rpm", "power": {"alternator": "1 kW"}},
+]
+
+
+@pytest.fixture(scope="module")
+def found() -> bd.Result:
+    drive = example("alternator_drive").replace(
+        duty=ROWS, limits={"least_slip_safety": 1.5, "largest_hub_load": "2 kN"}
+    )
+    return bd.sheet(drive, acceleration="2000 rpm/s", points=5)
+
+
+def test_rows_and_curves_meet(found: bd.Result) -> None:
+    dataset = found.dataset
+    assert dataset.row.values.tolist() == ["idle", "fast"]
+    np.testing.assert_allclose(dataset.speed.values[[0, -1]] * 30.0 / np.pi, [900.0, 3000.0])
+    for name in ("span_tension", "hub_load", "slip_safety", "peak_tension"):
+        np.testing.assert_allclose(dataset[f"{name}_over_speed"].values[[0, -1]], dataset[name].values, rtol=1e-6)
+    np.testing.assert_allclose(dataset.power.sel(pulley="alternator"), [-500.0, -1000.0], rtol=1e-6)
+    assert (dataset.least_slip_safety <= dataset.slip_safety + 1e-9).where(dataset.slip_safety.notnull(), True).all()
+    assert (dataset.peak_tension >= dataset.span_tension).all()
+    assert dataset.case.size == 6
+
+
+def test_positions_of_the_tensioner_are_those_of_the_tensioner_sheet(found: bd.Result) -> None:
+    """Within 1 %: the sheet changes the equilibrium of finite elements, which the other finds anew."""
+    dataset, other = found.dataset, bd.tensioner_sheet(example("alternator_drive")).dataset
+    names = {"replace": "worn belt", "max": "longest belt", "mean": "nominal belt", "min": "shortest belt"}
+    for state, name in names.items():
+        one, there = dataset.sel(state=state), other.sel(state=name)
+        assert float(one.state_tension) == pytest.approx(float(there.tension), rel=0.01)
+        assert float(one.state_position) == pytest.approx(float(there.position), abs=3e-3)
+        assert float(one.state_take_up) == pytest.approx(float(there.leverage), rel=0.01)
+
+
+def test_belts_of_standard_length_stand_around_the_nominal_one(found: bd.Result) -> None:
+    dataset = found.dataset
+    assert dataset.standard.values[0] < float(dataset.nominal_length) < dataset.standard.values[-1]
+    known = dataset.standard_tension.values[np.isfinite(dataset.standard_tension.values)]
+    assert (np.diff(known) < 0.0).all()
+
+
+def test_limits_judge_peaks_and_the_least_slip_safety(found: bd.Result) -> None:
+    numbers = {one.key: one for one in bd.results.key_numbers(found)}
+    assert numbers["largest_hub_load"].value == pytest.approx(float(found.dataset.peak_hub_load.max()))
+    assert numbers["least_slip_safety"].value == pytest.approx(float(found.dataset.least_slip_safety.min()))
+    assert numbers["least_slip_safety"].limit == 1.5
+
+
+def test_it_is_kept_in_a_file(found: bd.Result, tmp_path: Path) -> None:
+    kept = bd.open_result(found.save(tmp_path / "sheet.nc"))
+    assert kept.kind == "sheet"
+    np.testing.assert_array_equal(kept.dataset.mode_frequency, found.dataset.mode_frequency)
+
+
+def test_a_slipping_pulley_is_told_with_its_case() -> None:
+    drive = example("alternator_drive")
+    with_less = bd.sheet(drive.replace(contact=drive.contact.replace(friction=0.05)), points=2)
+    assert any("slips: its slip safety is" in one for one in with_less.warnings)
+
+
+@pytest.mark.parametrize(
+    ("options", "said"),
+    [
+        ({"light_load": 1.5}, "light_load = 1.5 must be from 0 to 1"),
+        ({"speed": "-100, 100 rpm"}, "must be positive"),
+        ({"tolerance": "-1 mm"}, "tolerance = '-1 mm' must be non-negative"),
+    ],
+)
+def test_options_are_checked(options: dict[str, Any], said: str) -> None:
+    with pytest.raises(ModelError, match=said):
+        bd.sheet(example("alternator_drive"), **options)
+    with pytest.raises(ModelError, match="a drive sheet needs a closed belt"):
+        bd.sheet(example("band_brake"))

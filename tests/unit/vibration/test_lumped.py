@@ -1,0 +1,73 @@
+"""The lumped drive against closed forms."""
+
+import numpy as np
+import pytest
+
+from beltdyn.model import Drive, prepare
+from beltdyn.vibration.lumped import LumpedDrive, lumped_drive
+
+TENSION = 400.0
+STIFF = {"width": 0.02, "thickness": 1e-3, "axial_stiffness": 1e5, "bending_stiffness": 1e-6, "mass_per_length": 1e-6}
+
+
+def lumps(speed: float = 0.0, belt: dict[str, float] | None = None, **driven: object) -> LumpedDrive:
+    """A crank and a rotor of equal radii, with equal tensions."""
+    pulleys = [
+        {"name": "crank", "center": [0.0, 0.0], "radius": 0.05, "speed": 1.0},
+        {"name": "rotor", "center": [0.4, 0.0], "radius": 0.05, "inertia": 0.002} | driven,
+    ]
+    given = STIFF | {"installed_tension": TENSION} | (belt or {})
+    prepared = prepare(Drive(belt=given, pulley=pulleys, contact={"friction": 0.8}, simulation={"duration": 1.0}))
+    rest = prepared.installation
+    return lumped_drive(prepared, rest.span_tensions, rest.path.centers, np.zeros(0), speed)
+
+
+def rate(lumped: LumpedDrive) -> float:
+    """Stiffness of both spans at the rotor, N m/rad."""
+    return 0.05**2 * float(lumped.spans.sum())
+
+
+def test_a_rotor_on_two_spans() -> None:
+    lumped = lumps()
+    (mode,) = lumped.modes(3)
+    assert lumped.spans[0] == pytest.approx((1e5 + TENSION) / 0.4, rel=1e-3)
+    assert mode.frequency == pytest.approx(np.sqrt(rate(lumped) / 0.002) / (2.0 * np.pi), rel=1e-3)
+    assert abs(mode.damping_ratio) < 1e-6
+    assert mode.shares[1] == pytest.approx(1.0)
+
+
+def test_a_hub_chain_has_two_modes() -> None:
+    link = {"kind": "isolator", "stiffness": 300.0, "inertia": 0.004}
+    lumped = lumps(hub=[link])
+    stiffness = np.array([[rate(lumped) + 300.0, -300.0], [-300.0, 300.0]])
+    expected = np.sqrt(np.sort(np.linalg.eigvals(stiffness / np.array([[0.002], [0.004]])).real)) / (2.0 * np.pi)
+    np.testing.assert_allclose([one.frequency for one in lumped.modes(4)], expected, rtol=1e-3)
+
+
+def test_strain_that_flows_with_the_belt_damps_rotation() -> None:
+    """T' = k e' - v / l (T - T_before) of two equal spans: their difference decays with 2 v / l."""
+    lumped, speed = lumps(20.0), 20.0
+    decay = 2.0 * speed * lumped.spans[0] / (1e5 + TENSION)
+    k = rate(lumped) / 0.002
+    roots = np.roots([1.0, decay, k, 0.0])
+    swing = roots[roots.imag > 0.0][0]
+    (mode,) = lumped.modes(3)
+    assert mode.frequency == pytest.approx(swing.imag / (2.0 * np.pi), rel=2e-3)
+    assert mode.damping_ratio == pytest.approx(-swing.real / abs(swing), rel=5e-3)
+
+
+def test_the_answer_to_a_crank_is_that_of_one_degree_of_freedom() -> None:
+    lumped = lumps()
+    k, frequency = rate(lumped), 0.6 * np.sqrt(rate(lumped) / 0.002)
+    tension, moved = lumped.answer(frequency, {0: 0.01}, {})
+    rotor = k * 0.01 / (k - frequency**2 * 0.002)
+    assert moved[1] == pytest.approx(rotor, rel=1e-3)
+    assert tension[0] == pytest.approx(lumped.spans[0] * 0.05 * (rotor - 0.01), rel=2e-3)
+    torque = lumped.answer(frequency, {}, {1: 1.0})[1]
+    assert torque[1] == pytest.approx(1.0 / (k - frequency**2 * 0.002), rel=1e-3)
+
+
+def test_bending_lifts_the_belt_off_the_ends_of_arcs() -> None:
+    lumped = lumps(belt={"bending_stiffness": 0.04})
+    reach = np.sqrt(0.04 / TENSION)
+    assert lumped.spans[0] == pytest.approx((1e5 + TENSION) / (0.4 + 2.0 * reach), rel=1e-3)
