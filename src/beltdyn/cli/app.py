@@ -6,7 +6,7 @@ import warnings
 from collections.abc import Callable, Sequence
 from typing import Final
 
-from cyclopts import App, CycloptsError, UnusedCliTokensError
+from cyclopts import App, CycloptsError, UnknownCommandError, UnusedCliTokensError
 
 from beltdyn import __version__
 from beltdyn.analyses import ANALYSES, Analysis
@@ -102,4 +102,8 @@ def _usage(error: CycloptsError) -> str:
     if isinstance(error, UnusedCliTokensError):
         words = ", ".join(f'"{word}"' for word in error.unused_tokens or ())
         return f"{command} takes no argument {words}. See {command} --help."
+    if isinstance(error, UnknownCommandError) and error.unused_tokens:
+        begun = [name for name in app.resolved_commands() if name.startswith(error.unused_tokens[0])]
+        if len(begun) == 1:
+            return f'Unknown command "{error.unused_tokens[0]}". Did you mean "{begun[0]}"? See beltdyn --help.'
     return str(error)

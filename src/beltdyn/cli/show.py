@@ -26,6 +26,7 @@ def export(
     vtk: Annotated[bool, Parameter(negative="")] = False,
     csv: Annotated[bool, Parameter(negative="")] = False,
     mat: Annotated[bool, Parameter(negative="")] = False,
+    xlsx: Annotated[bool, Parameter(negative="")] = False,
     parquet: Annotated[bool, Parameter(negative="")] = False,
     output: Annotated[Path | None, Parameter(alias="-o")] = None,
     force: Annotated[bool, Parameter(negative="")] = False,
@@ -42,6 +43,8 @@ def export(
         Plain tables, in the folder FILE-tables.
     mat
         The same tables for MATLAB and Octave, FILE.mat.
+    xlsx
+        The same tables as a workbook for spreadsheets, FILE.xlsx; needs the extra beltdyn[xlsx].
     parquet
         The same tables as Parquet for data frames, in the folder FILE-tables; needs the extra beltdyn[parquet].
     output
@@ -53,7 +56,7 @@ def export(
     from beltdyn.results import open_result
     from beltdyn.results.atomic import make_folder
 
-    wanted = {"vtk": vtk, "csv": csv, "mat": mat, "parquet": parquet}
+    wanted = {"vtk": vtk, "csv": csv, "mat": mat, "xlsx": xlsx, "parquet": parquet}
     formats = [name for name, asked in wanted.items() if asked]
     if not formats:
         raise ModelError(f"export needs a format: one or more of {', '.join(f'--{name}' for name in wanted)}.")

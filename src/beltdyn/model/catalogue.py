@@ -1,5 +1,6 @@
 """The catalogue of belts as sold, by profile."""
 
+import re
 from collections.abc import Mapping
 from difflib import get_close_matches
 from functools import cache
@@ -161,11 +162,41 @@ def find_entry(catalogue: Mapping[str, Entry], profile: str) -> Entry:
     """Look up a profile."""
     entry = catalogue.get(profile)
     if entry is None:
+        if other := _OTHER_DRIVES.get(_section(profile)):
+            raise LookupError(f'profile = "{shorten(profile)}" is not in the catalogue. {other}')
         like = get_close_matches(profile.lower(), [name.lower() for name in catalogue], n=4, cutoff=0.5)
         near = [name for name in catalogue if name.lower() in like]
         known = f"Similar names: {', '.join(near)}" if near else f"Choose one of {', '.join(catalogue)}"
         raise LookupError(f'profile = "{shorten(profile)}" is not in the catalogue. {known}')
     return entry
+
+
+_TOOTHED = (
+    "Toothed belts are not in it: it has V-ribbed belts, V-belts, flat and round belts. As a flat belt, with "
+    "axial_stiffness, bending_stiffness and mass_per_length of its cords, a toothed belt has tensions, hub loads and "
+    "span frequencies; tooth forces and pitch errors are not modeled"
+)
+_CHAIN = (
+    'Chains are not in it. Mass, stretch and links of a chain are those of a belt with discretization = "truss"; the '
+    "meshing of rollers and teeth is not modeled"
+)
+_ROPE = (
+    "Ropes are not in it. A rope on pulleys is a belt with the axial_stiffness, bending_stiffness and mass_per_length "
+    "that its maker states; friction between wires is not modeled"
+)
+_OTHER_DRIVES = {
+    **dict.fromkeys(("htd", "gt", "std", "at", "t", "mxl", "xl", "l", "h", "xh", "xxh"), _TOOTHED),
+    **dict.fromkeys(("timing", "toothed", "synchronous", "zahnriemen", "rpp", "polychain"), _TOOTHED),
+    **dict.fromkeys(("chain", "roller", "kette"), _CHAIN),
+    **dict.fromkeys(("rope", "wire", "cable", "seil"), _ROPE),
+}
+"""What is and is not there for belts and other drives that are not in the catalogue, by the words of their names."""
+
+
+def _section(profile: str) -> str:
+    """A name without sizes, such as that of "HTD 5M-15" or "8MGT"."""
+    words = re.sub(r"[\d.]+m?", " ", profile.lower().replace("_", " ").replace("-", " ")).split()
+    return words[0] if words else ""
 
 
 @cache

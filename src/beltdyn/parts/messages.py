@@ -192,15 +192,31 @@ def apart(first: float, second: float, digits: int = 5) -> tuple[str, str]:
     return repr(first), repr(second)
 
 
+_FEW = 3
+"""Most names that are suggested."""
+
+
 def suggest(given: str, known: list[str]) -> str:
     """Suggest the nearest known name, or list all."""
     near = _nearest(given, known)
-    return f'Did you mean "{near}"?' if near else f"Choose one of {', '.join(known)}"
+    names = [near] if near else _with_word(given, known)
+    if names:
+        quoted = [f'"{name}"' for name in names]
+        return f"Did you mean {' or '.join(quoted)}?"
+    return f"Choose one of {', '.join(known)}"
 
 
 def _nearest(given: str, known: list[str]) -> str:
     near = difflib.get_close_matches(given.lower(), known, n=1, cutoff=0.6)
     return near[0] if near else ""
+
+
+def _with_word(given: str, known: list[str]) -> list[str]:
+    """The few names that have a word like a given one."""
+    words = {word for name in known for word in name.split("_")}
+    like = difflib.get_close_matches(given.lower(), words, n=1, cutoff=0.8)
+    names = [name for name in known if like and like[0] in name.split("_")]
+    return names if len(names) <= _FEW else []
 
 
 def _remedy(schema: dict[str, Any]) -> str:

@@ -3,11 +3,14 @@
 import re
 from collections.abc import Callable, Sequence
 from contextlib import suppress
+from math import isfinite
 from pathlib import Path
 from types import MappingProxyType
 from typing import Any, NamedTuple
+from zipfile import ZipFile
 
 import numpy as np
+from numpy.typing import NDArray
 
 from beltdyn.errors import ModelError
 from beltdyn.results.atomic import MARK, atomic_path, is_marked, make_folder, require_replaceable
@@ -16,7 +19,7 @@ from beltdyn.results.run import Run
 from beltdyn.results.tables import NAMES, Table, require_tables, tables_folder, tables_of, write_csv
 from beltdyn.results.vtkhdf import require_vtkhdf, write_vtkhdf
 
-# Tables of a result as MAT and Parquet files
+# Tables of a result as MAT and Parquet files, and workbooks
 
 _LONGEST_NAME = 63
 """Letters of a name in MATLAB."""
@@ -30,6 +33,9 @@ _HEADER = f"MATLAB 5.0 MAT-file, created by {MARK}".encode()
 _HEADER_BYTES = 116
 
 _MAKER = b"creator"
+
+_MOST_ROWS, _COLUMN_WIDTH = 1_048_575, 14
+"""Of a sheet below its headings, and in letters."""
 
 
 def write_mat(result: Result, path: Path | str, overwrite: bool = False) -> Path:
@@ -107,6 +113,55 @@ def _is_parquet(path: Path) -> bool:
     return False
 
 
+def write_xlsx(result: Result, path: Path | str, overwrite: bool = False) -> Path:
+    """Write the tables of a result as a workbook for spreadsheets: a sheet for each table of `write_csv`."""
+    path = Path(path)
+    require_xlsx(path, overwrite)
+    from xlsxwriter import Workbook
+
+    tables = tables_of(result)
+    longest = max((len(column) for table in tables.values() for _, column in table), default=0)
+    if longest > _MOST_ROWS:
+        raise ModelError(f"{path} would have {longest} rows, and a sheet has {_MOST_ROWS}. Write CSV or Parquet.")
+    with atomic_path(path, is_marked, overwrite) as temporary:
+        with Workbook(temporary) as book:
+            bold = book.add_format({"bold": True, "text_wrap": True, "valign": "top"})
+            for name, table in tables.items():
+                sheet = book.add_worksheet(name)
+                sheet.freeze_panes(1, 0)
+                sheet.set_column(0, max(len(table) - 1, 0), _COLUMN_WIDTH)
+                for column, (heading, values) in enumerate(table):
+                    sheet.write_string(0, column, heading, bold)
+                    sheet.write_column(1, column, _cells(values))
+        with ZipFile(temporary, "a") as archive:
+            archive.comment = MARK.encode()
+    return path
+
+
+def _cells(values: NDArray[Any]) -> list[Any]:
+    """Values of a column; a cell is empty where there is no number."""
+    if values.dtype.kind != "f":
+        return list(values.tolist())
+    return [value if isfinite(value) else None for value in values.tolist()]
+
+
+def xlsx_file(path: Path) -> Path:
+    """Where the workbook of a result file is written."""
+    return path.with_name(f"{path.stem}.xlsx")
+
+
+def require_xlsx(path: Path, overwrite: bool = False) -> None:
+    """Check that a workbook can be written, and replaces at most one of beltdyn."""
+    try:
+        import xlsxwriter  # noqa: F401
+    except ImportError:
+        raise ModelError(
+            f"{path} cannot be written because XlsxWriter is not installed. Install beltdyn with its extra "
+            "beltdyn[xlsx], or write CSV, which spreadsheets open too."
+        ) from None
+    require_replaceable(path, is_marked, overwrite)
+
+
 def _structure(table: Table) -> dict[str, Any]:
     """A table as a structure of MATLAB."""
     found: dict[str, Any] = {}
@@ -142,6 +197,7 @@ FORMATS = MappingProxyType(
         "vtk": _Format(Path, require_vtkhdf, write_vtkhdf),
         "csv": _Format(tables_folder, require_tables, write_csv),
         "mat": _Format(mat_file, require_mat, write_mat),
+        "xlsx": _Format(xlsx_file, require_xlsx, write_xlsx),
         "parquet": _Format(tables_folder, require_parquet, write_parquet),
     }
 )
@@ -158,8 +214,8 @@ def export(
     result : Result
         A run, or for tables another result.
     formats : str or sequence of str
-        "vtk": belt and pulleys over time for ParaView, ``NAME-belt.vtkhdf`` and ``NAME-pulleys.vtkhdf``; "csv", "mat"
-        and "parquet": tables, in the folder ``NAME-tables`` or ``NAME.mat``.
+        "vtk": belt and pulleys over time for ParaView, ``NAME-belt.vtkhdf`` and ``NAME-pulleys.vtkhdf``; "csv", "mat",
+        "xlsx" and "parquet": tables, in the folder ``NAME-tables``, ``NAME.mat`` or ``NAME.xlsx``.
     path : Path or str, optional
         A result file that gives the folder and the base name; by default that of the result.
     overwrite : bool
@@ -212,5 +268,5 @@ def _require(result: Result, names: Sequence[str]) -> None:
     if "vtk" in names and not isinstance(result, Run):
         raise ModelError(
             f"vtk needs results over time, such as those of `beltdyn simulate`; these are of {result.kind}. "
-            "Choose tables: csv, mat or parquet."
+            "Choose tables: csv, mat, xlsx or parquet."
         )

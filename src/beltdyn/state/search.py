@@ -9,8 +9,9 @@ from collections.abc import Callable, Iterable, Mapping, Sequence
 import numpy as np
 
 from beltdyn.arrays import FloatArray
-from beltdyn.errors import ConvergenceError
+from beltdyn.errors import ConvergenceError, ModelError
 from beltdyn.model import Drive, Prepared
+from beltdyn.parts.messages import listing
 from beltdyn.state.newton import FOUND, SteadyWork, find_steady, make_step, steady_work
 from beltdyn.state.slip_limit import GROSS, Passed, Setting, gross_slip, slip_limit
 from beltdyn.state.staying import TOLERANCE, Standing, anchor_at, transfer
@@ -158,7 +159,10 @@ class SteadySearch:
 
     def run(self, rest: Standing) -> None:
         """Find steady running under the required loads."""
-        speed, driver = operating_point(self.constant, self.prepared.path.radii, self._prescribed)
+        try:
+            speed, driver = operating_point(self.constant, self.prepared.path.radii, self._prescribed)
+        except ModelError as error:
+            raise _without_machine(self.prepared.drive) or error from None
         if driver is not None:
             self._held_speed = speed / float(self.prepared.path.radii[driver])
             self._hold(driver)
@@ -403,3 +407,14 @@ def _between(begin: Setting, end: Setting, part: float) -> Setting:
         for name in ("smoothing", "stretch_length")
     }
     return even._replace(**smooth)
+
+
+def _without_machine(drive: Drive) -> ModelError | None:
+    """That nothing drives a belt; None where something is meant to."""
+    if drive.driver is not None:
+        return None
+    names = listing([f'"{one.name}"' for one in drive.pulleys])
+    return ModelError(
+        f"no machine drives the belt: {names} have neither a speed nor a motor, and their torques and loads balance at "
+        'no speed. Give the pulley of the machine speed = "1500 rpm", or a motor as its load.'
+    )

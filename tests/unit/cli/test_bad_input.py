@@ -403,6 +403,7 @@ def test_message(case: Case, drive_text: str, folder: Path, refuse: Refuse) -> N
         (["simulate", "--nosuch", "a.toml"], "--nosuch"),
         (["check"], "FILE requires an argument"),
         (["simulat"], 'Unknown command "simulat"'),
+        (["steady", "drive.toml"], 'Unknown command "steady". Did you mean "steady-state"?'),
     ],
 )
 def test_words_that_do_not_fit_the_command(words: list[str], said: str, refuse: Refuse) -> None:

@@ -32,7 +32,7 @@ def test_what_is_written_is_named(run_main: RunMain, result_file: Path) -> None:
 @pytest.mark.parametrize(
     ("words", "sentence"),
     [
-        (["drive.nc"], "export needs a format: one or more of --vtk, --csv, --mat, --parquet."),
+        (["drive.nc"], "export needs a format: one or more of --vtk, --csv, --mat, --xlsx, --parquet."),
         (["missing.nc", "--vtk"], "missing.nc"),
         (["mine.vtkhdf", "--vtk"], "mine.vtkhdf"),
         (

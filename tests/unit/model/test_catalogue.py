@@ -236,3 +236,16 @@ def test_a_measured_curve_takes_the_place_of_the_stiffness(tmp_path: Path) -> No
     file.write_text(CURVE + "axial_stiffness = 1e3\n")
     with pytest.raises(ValueError, match="axial_stiffness and stretch_curve exclude each other"):
         read_catalogue(file)
+
+
+@pytest.mark.parametrize(
+    ("name", "answer"),
+    [
+        *((name, "Toothed belts") for name in ("HTD", "htd 8M-20", "8MGT", "T10", "AT_5")),
+        *((name, "Chains") for name in ("chain", "roller-chain")),
+        ("wire rope", "Ropes"),
+    ],
+)
+def test_other_drives_are_answered_by_what_is_there(name: str, answer: str) -> None:
+    with pytest.raises(LookupError, match=rf"is not in the catalogue\. {answer} are not in it"):
+        find_entry(read_catalogue(None), name)

@@ -7,7 +7,7 @@ from pydantic import Field, ValidationError, model_validator
 
 from beltdyn.errors import ModelError
 from beltdyn.model import Drive
-from beltdyn.parts.messages import apart, reason, show, told_apart
+from beltdyn.parts.messages import apart, reason, show, suggest, told_apart
 from beltdyn.parts.part import Part
 
 
@@ -114,3 +114,15 @@ def test_each_error_is_told_with_its_place_in_the_data(drive: Drive) -> None:
     told = {one.location: one.sentence for one in told_apart(caught.value, Drive, data)}
     assert set(told) == {("pulley", 1, "radius"), ("pulley", 0, "speed", "value")}
     assert told["pulley", 1, "radius"].startswith("pulley[driven].radius = -1.0 must be greater than 0.")
+
+
+@pytest.mark.parametrize(
+    ("given", "words"),
+    [
+        ("pully_slip", 'Did you mean "pulley_slip"?'),
+        ("slipp", 'Did you mean "pulley_slip" or "slip_safety"?'),
+        ("heat", "Choose one of pulley_slip, slip_safety, hub_load"),
+    ],
+)
+def test_names_are_suggested_by_their_likeness_or_that_of_a_word(given: str, words: str) -> None:
+    assert suggest(given, ["pulley_slip", "slip_safety", "hub_load"]) == words

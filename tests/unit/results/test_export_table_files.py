@@ -1,9 +1,11 @@
-"""MAT and Parquet files hold what the CSV tables hold."""
+"""MAT and Parquet files and workbooks hold what the CSV tables hold."""
 
 import csv
 import sys
 from collections.abc import Callable
 from pathlib import Path
+from xml.etree import ElementTree
+from zipfile import ZipFile
 
 import numpy as np
 import pytest
@@ -13,7 +15,9 @@ from scipy.io import loadmat, savemat
 from beltdyn.errors import ModelError
 from beltdyn.results import Run, summarize, write_csv
 from beltdyn.results.derived import slips
-from beltdyn.results.export import write_mat, write_parquet
+from beltdyn.results.export import write_mat, write_parquet, write_xlsx
+
+SHEETS = "http://schemas.openxmlformats.org/spreadsheetml/2006/main"
 
 
 def test_mat_has_a_structure_for_each_table(run: Run, tmp_path: Path) -> None:
@@ -94,3 +98,27 @@ def test_without_pyarrow_the_message_tells_what_to_install(
     with pytest.raises(ModelError, match=r"pyarrow is not installed\. Install .* its extra beltdyn\[parquet\]"):
         write_parquet(run, tmp_path / "tables")
     assert list(tmp_path.iterdir()) == []
+
+
+def test_a_workbook_has_a_sheet_for_each_table(run: Run, tmp_path: Path) -> None:
+    path = write_xlsx(run, tmp_path / "drive.xlsx")
+    tables = {file.stem: file for file in write_csv(run, tmp_path / "tables")}
+    with ZipFile(path) as archive:
+        book = ElementTree.fromstring(archive.read("xl/workbook.xml"))
+        assert [sheet.get("name") for sheet in book.iter(f"{{{SHEETS}}}sheet")] == list(tables)
+        first = ElementTree.fromstring(archive.read("xl/worksheets/sheet1.xml"))
+    rows = list(first.iter(f"{{{SHEETS}}}row"))
+    with tables["pulleys"].open(newline="", encoding="utf-8") as file:
+        headings, *lines = csv.reader(file)
+    assert len(rows) == 1 + len(lines)
+    assert len(rows[0]) == len(headings)
+    last = [float(cell.find(f"{{{SHEETS}}}v").text) for cell in rows[-1]]  # type: ignore[union-attr, arg-type]
+    np.testing.assert_allclose(last, [float(value) for value in lines[-1] if value not in {"", "nan"}], rtol=1e-9)
+
+
+def test_a_workbook_replaces_its_own_kind_alone(run: Run, tmp_path: Path) -> None:
+    path = write_xlsx(run, tmp_path / "drive.xlsx")
+    assert write_xlsx(run, path) == path
+    path.write_text("mine", encoding="utf-8")
+    with pytest.raises(ModelError, match=r"drive.xlsx already exists"):
+        write_xlsx(run, path)

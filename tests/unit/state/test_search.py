@@ -4,7 +4,10 @@ import numpy as np
 import pytest
 
 from beltdyn.arrays import FloatArray
+from beltdyn.errors import ModelError
+from beltdyn.model import Drive
 from beltdyn.state.search import extrapolated, go_on
+from beltdyn.state.steady import steady_state
 
 
 def test_a_parabola_is_met_at_once() -> None:
@@ -65,3 +68,13 @@ def test_a_way_that_ends_before() -> None:
 
 def test_one_solution_is_its_own_continuation() -> None:
     assert extrapolated([(0.3, np.array([4.0]))], 1.0) == pytest.approx([4.0])
+
+
+def test_a_drive_without_a_machine_is_told_which_pulleys_could_have_one() -> None:
+    belt = {"profile": "PK", "ribs": 6, "installed_tension": 300.0}
+    pulleys = [
+        {"name": name, "center": [x, 0.0], "radius": 0.05, "inertia": 0.01} for name, x in (("a", 0.0), ("b", 0.3))
+    ]
+    idle = Drive(belt=belt, pulley=pulleys, contact={"friction": 0.4}, simulation={"duration": 1.0})
+    with pytest.raises(ModelError, match='no machine drives the belt: "a" and "b" have neither a speed nor a motor'):
+        steady_state(idle)
