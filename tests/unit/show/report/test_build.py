@@ -361,13 +361,14 @@ def test_a_report_has_what_matters(kind: str, reported: Reported) -> None:
         "modes": [["modes"]],
         **{key: [["time"]] for key in ("run", "steady", "sweep")},
     }.get(kind, [])
-    kept = {"static": "0 of 1", **dict.fromkeys(("run", "sweep", "steady", "map", "duty"), "1 of 2")}
+    kept = {"static": "0 of 1", **dict.fromkeys(("run", "sweep", "steady", "map", "duty", "sheet"), "1 of 2")}
     limited = kept.get(kind)
     assert ("limits are met" in text) == (limited is not None)
     assert limited is None or f"{limited} limits are met" in text
     assert ('id="numbers"' in text) == (limited is not None or kind == "open")
     if 'id="numbers"' in text:
-        loads = result.dataset["hub_load"].values if "hub_load" in result.dataset else _hub_loads(result)
+        name = "peak_hub_load" if kind == "sheet" else "hub_load"
+        loads = result.dataset[name].values if name in result.dataset else _hub_loads(result)
         (row,) = re.findall(r"<tr><th[^>]*>Largest hub load</th>(.*?)</tr>", text, re.DOTALL)
         assert f"<b>{np.nanmax(loads):.4g} N</b>" in row
         assert ("✗ fail" in row) == (limited is not None)
