@@ -87,8 +87,10 @@ def sheet(
         Factor on all loads for light load, such as 0.1.
     friction
         Factors on all coefficients of friction: the lowest, and others up to the highest.
-    tolerance, wear
-        As for `tensioner_sheet`.
+    tolerance
+        Tolerance of the belt length, as for `tensioner_sheet`.
+    wear
+        Elongation of the belt over its life, as for `tensioner_sheet`.
     full
         Also compute the duty with finite elements, as `duty`, and put its tensions and hub loads beside.
     at

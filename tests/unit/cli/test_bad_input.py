@@ -38,7 +38,7 @@ CASES = (
         "stop = 0.6, value = 12.0",
         ("pulley[driver].speed.end is missing", "the end of the rise"),
     ),
-    Case("missing length", BELT, "", ("belt: length is missing", "unstretched length", "installed_tension")),
+    Case("missing length", BELT, "", ("belt.length is missing", "unstretched length", "installed_tension")),
     Case(
         "stiffness twice",
         "stiffness = 1e7",
