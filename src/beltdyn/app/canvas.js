@@ -56,6 +56,7 @@ export default {
         <circle v-if="one.outside" class="bd-inner" :cx="one.x" :cy="one.y" :r="0.82 * one.r" />
         <circle v-if="one.drives" class="bd-drives" :cx="one.x" :cy="one.y" :r="Math.min(0.3 * one.r, 9 * px)" />
         <path v-else class="bd-hub" :d="cross(one)" />
+        <path v-if="one.sense && one.r > 38 * px" class="bd-turns" :d="turning(one)" />
         <text :x="one.x" :y="one.y - Math.min(0.35 * one.r, 12 * px)" :font-size="13 * px" text-anchor="middle">{{ one.name }}</text>
         <text class="bd-small" :x="one.x" :y="one.y + Math.min(0.35 * one.r, 12 * px) + 9 * px" :font-size="11 * px"
               text-anchor="middle">{{ one.wrap }}</text>
@@ -69,6 +70,10 @@ export default {
               :r="6 * px" @pointerdown.stop="down($event, { kind: 'size', number: chosen.number, from: null })">
         <title>drag to size</title>
       </circle>
+      <g class="bd-scale" aria-hidden="true">
+        <path :d="scale.line" />
+        <text :x="scale.x" :y="scale.y - 5 * px" :font-size="11 * px" text-anchor="middle">{{ scale.label }}</text>
+      </g>
       <text v-if="pulleys.length === 0" class="bd-hint" :x="view.x + view.w / 2" :y="view.y + view.h / 2" :font-size="16 * px"
             text-anchor="middle">Double-click to place a pulley</text>
     </svg>
@@ -118,6 +123,13 @@ export default {
       for (let y = Math.ceil(this.view.y / step) * step; y < this.view.y + this.view.h; y += step)
         lines.push(`M${this.view.x} ${y}h${this.view.w}`);
       return lines.join("");
+    },
+    scale() { // a cell of the grid, in the lower left corner
+      const step = niceStep(50 * this.px);
+      const [left, y] = [this.view.x + 14 * this.px, this.view.y + this.view.h - 12 * this.px];
+      const label = step < 1000 ? `${Number(step.toPrecision(3))} mm` : `${Number((step / 1000).toPrecision(3))} m`;
+      const end = 4 * this.px;
+      return { line: `M${left} ${y - end}v${2 * end}M${left} ${y}h${step}m0 ${-end}v${2 * end}`, x: left + step / 2, y, label };
     },
     axes() {
       return `M0 ${this.view.y}v${this.view.h}M${this.view.x} 0h${this.view.w}`;
@@ -173,6 +185,15 @@ export default {
     },
     snapped(point) {
       return point.map((one) => Math.round(one / this.snap) * this.snap);
+    },
+    turning(one) { // an arc with an arrowhead along the top of the rim; y is down
+      const r = 0.86 * one.r, open = 0.5, head = Math.min(6 * this.px, 0.2 * one.r);
+      const at = (angle) => [one.x + r * Math.sin(angle), one.y - r * Math.cos(angle)];
+      const [from, to] = [at(one.sense * open), at(-one.sense * open)];
+      const along = [-one.sense * Math.cos(open), Math.sin(open)];
+      const barb = (side) => [to[0] - head * (along[0] + side * along[1]), to[1] - head * (along[1] - side * along[0])];
+      const arc = `M${from.join(" ")}A${r} ${r} 0 0 ${one.sense > 0 ? 0 : 1} ${to.join(" ")}`;
+      return `${arc}M${barb(0.6).join(" ")}L${to.join(" ")}L${barb(-0.6).join(" ")}`;
     },
     at(kind, one) {
       const dragged = this.drag && this.drag.kind === kind && this.drag.number === one.number && this.drag.to;

@@ -181,7 +181,8 @@ class FormView:
     def _build_field(self, row: Row) -> None:
         field = row.field
         assert field is not None
-        label = f"{field.key} [{field.unit}]" if field.unit else field.key
+        name = field.key.replace("_", " ")
+        label = f"{name} [{field.unit}]" if field.unit else name
         if field.form == "flag":
             widget: Any = ui.checkbox(label, on_change=lambda event: self._enter(field, event.value))
         elif field.form == "choice":

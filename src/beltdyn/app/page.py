@@ -14,7 +14,7 @@ from beltdyn.app.form_view import FormView
 from beltdyn.app.numbers_view import NumbersView
 from beltdyn.app.scene import groups, scene
 from beltdyn.app.session import Session
-from beltdyn.app.workspace import EMPTY, Example, Workspace, examples
+from beltdyn.app.workspace import EMPTY, STARTS, Example, Workspace, examples
 from beltdyn.errors import BeltdynError
 from beltdyn.parts.toml_edits import Edit
 
@@ -277,12 +277,30 @@ class Page:
     def _update_messages(self) -> None:
         self._messages.clear()
         with self._messages:
+            if not groups(self.session.document.data, "pulley"):
+                self._invite()
+                return
             for one in self.session.draft.told:
                 label = ui.label(one.sentence).classes("bd-message cursor-pointer")
                 label.on("click", lambda one=one: self._go_to(one.location))
         if self.session.document.lost_comments:
             self.session.document.lost_comments = False
             ui.notify("The file was rewritten without its comments. Undo restores them.", type="warning")
+
+    def _invite(self) -> None:
+        """Say how to begin on an empty canvas."""
+        ui.label("Start with a drive like yours, or place the first pulley.").classes("text-subtitle1 q-mt-sm")
+        with ui.row().classes("w-full gap-2 q-mb-sm"):
+            for one in examples():
+                if one.name in STARTS:
+                    button = ui.button(STARTS[one.name], on_click=lambda one=one: self._start(one))
+                    button.props("outline no-caps").tooltip(one.about).mark(f"start:{one.name}")
+            ui.button("Open a file …", on_click=self._files.show_files).props("flat no-caps")
+
+    def _start(self, one: Example) -> None:
+        self.session.start(one.text)
+        self.update()
+        self._canvas.fit()
 
     def _go_to(self, location: tuple[int | str, ...]) -> None:
         """Open the form of an error."""

@@ -102,6 +102,15 @@ output_interval = "1 ms"
 """
 """The empty drive file: a belt without pulleys."""
 _USUAL = "alternator_drive"
+STARTS = {
+    "unequal_radii": "Two pulleys",
+    "alternator_drive": "Alternator with a tensioner",
+    "accessory_drive": "Accessory drive",
+    "fan_direct_start": "Fan with V-belts",
+    "conveyor": "Conveyor",
+    "washing_machine": "Washing machine",
+}
+"""Examples that the empty canvas offers, by what users call them."""
 
 
 class Example(NamedTuple):

@@ -89,6 +89,18 @@ def test_the_file_is_shown_with_its_numbers(workspace: Workspace) -> None:
     go(workspace, journey)
 
 
+def test_an_empty_canvas_offers_drives_to_start_with(workspace: Workspace) -> None:
+    async def journey(user: User) -> None:
+        await user.should_see("Start with a drive like yours")
+        await user.should_not_see("pulley is missing")
+        user.find(marker="start:accessory_drive").click()
+        await user.should_see("Pulleys at rest")
+        assert [one["sense"] for one in canvas(user)["scene"]["pulleys"]] == [1, -1, 1, -1, 1, -1, 1]
+        await user.should_not_see("Start with a drive like yours")
+
+    go(Workspace(workspace.folder), journey)
+
+
 def test_a_drag_is_followed_and_becomes_one_step_of_undo(workspace: Workspace, monkeypatch: pytest.MonkeyPatch) -> None:
     followed: list[str] = []
     monkeypatch.setattr(Canvas, "follow", lambda _, scene: followed.append(scene["belt"]))
