@@ -463,10 +463,8 @@ class _DriveSheet:
             row, case, factor, pulley = np.unravel_index(int(np.nanargmin(safety)), safety.shape)
             yield (
                 f"{names[pulley]} slips: its slip safety is {float(np.nanmin(safety)):.3g} at operating point "
-                f"{rows[row]}, "
-                f"{cases[case]}, with {float(self._options.factors[factor]):.3g} times the friction. Raise the "
-                "tension or the "
-                "wrap angle, or use more ribs."
+                f"{rows[row]}, {cases[case]}, with {float(self._options.factors[factor]):.3g} times the friction. "
+                "Raise the tension or the wrap angle, or use more ribs."
             )
         lost = [rows[row] for row, one in enumerate(self.variables["span_tension"][1]) if not np.isfinite(one).all()]
         if lost:
@@ -475,9 +473,8 @@ class _DriveSheet:
         if np.isfinite(slack).any() and np.nanmin(slack) < 0.0:
             row, span = np.unravel_index(int(np.nanargmin(slack)), slack.shape)
             yield (
-                f"the span {self.coordinates[_SPAN][1][span]} gets slack in vibration at operating point "
-                f"{rows[row]}, where "
-                "amplitudes of the linear response are no longer right. Raise the tension, or damp the drive."
+                f"the span {self.coordinates[_SPAN][1][span]} gets slack in vibration at operating point {rows[row]}, "
+                "where amplitudes of the linear response are no longer right. Raise the tension, or damp the drive."
             )
         most, peak = self._drive.belt.largest_tension, float(np.nanmax(self.variables["peak_tension"][1]))
         if most is not None and peak > most:

@@ -58,8 +58,7 @@ def _with_radius(pulley: Any, belt: Any, info: ValidationInfo) -> Any:
     if not radius > 0.0:
         raise ValueError(
             f'the {kind} diameter of "{pulley.get("name")}", {1e3 * diameter:.4g} mm, leaves no radius for its '
-            "surface. "
-            "Increase it"
+            "surface. Increase it"
         )
     return {key: value for key, value in pulley.items() if key != "diameter"} | {"radius": radius}
 
@@ -127,8 +126,8 @@ def _nominal_angle(arm: _Arm, center: tuple[float, float] | None) -> float:
         if missing:
             raise ValueError(
                 f'the nominal position of the tensioner of "{arm.pulley}" is open: {listing(missing)} missing. '
-                "Give the "
-                "center of its pulley, or arm_length with arm_angle, or with free_angle, preload, rate and sense"
+                "Give the center of its pulley, or arm_length with arm_angle, or with free_angle, preload, rate and "
+                "sense"
             )
         assert arm.free_angle is not None
         assert arm.preload is not None
@@ -159,9 +158,8 @@ def _spring(arm: _Arm, nominal: float, given: Mapping[str, Any]) -> Iterator[tup
     if turns is not None and arm.sense is not None and arm.sense != turns:
         raise ValueError(
             f'sense = "{arm.sense}" of the tensioner of "{arm.pulley}" contradicts its angles: from '
-            f"{degrees(nominal):.4g}° "
-            f"the spring turns the arm {turns} to free_angle = {degrees(arm.free_angle or 0.0):.4g}°. Correct one "
-            "of them"
+            f"{degrees(nominal):.4g}° the spring turns the arm {turns} to free_angle = "
+            f"{degrees(arm.free_angle or 0.0):.4g}°. Correct one of them"
         )
     sense = arm.sense or turns
     if sense is not None:
@@ -176,9 +174,8 @@ def _spring(arm: _Arm, nominal: float, given: Mapping[str, Any]) -> Iterator[tup
         if preload is not None and abs(torque - preload) > _SAME_TORQUE * preload:
             raise ValueError(
                 f'preload = {preload:.4g} N m of the tensioner of "{arm.pulley}" contradicts its angles: '
-                f"{degrees(abs(wound)):.4g}° "
-                f"from the nominal to the free arm give {torque:.4g} N m at its rate. preload is the torque at the "
-                "nominal position; correct it, or omit it"
+                f"{degrees(abs(wound)):.4g}° from the nominal to the free arm give {torque:.4g} N m at its rate. "
+                "preload is the torque at the nominal position; correct it, or omit it"
             )
         preload = torque if preload is None else preload
         yield "preload", preload
@@ -187,15 +184,13 @@ def _spring(arm: _Arm, nominal: float, given: Mapping[str, Any]) -> Iterator[tup
     if sense is None:
         raise ValueError(
             f'sense of the tensioner of "{arm.pulley}" is missing: with load_stop_angle alone it is unknown to '
-            "which side "
-            "its spring turns the arm. Give sense or free_angle"
+            "which side its spring turns the arm. Give sense or free_angle"
         )
     way = remainder(arm.load_stop_angle - nominal, 2.0 * pi) * _SENSES[sense]
     if not way < 0.0:
         raise ValueError(
             f'load_stop_angle = {degrees(arm.load_stop_angle):.4g}° of the tensioner of "{arm.pulley}" lies on the '
-            "side "
-            f"to which its spring turns the arm, {sense} from {degrees(nominal):.4g}°. The load stop is at the "
+            f"side to which its spring turns the arm, {sense} from {degrees(nominal):.4g}°. The load stop is at the "
             "other end"
         )
     if "stops" in given:

@@ -255,9 +255,9 @@ def check_length(length: float, path: float, tensioned: bool = False) -> None:
     if length >= path:
         given, room = apart(length, path)
         raise ValueError(
-            f"belt.length = {given} m is {'as long as' if length == path else 'longer than'} {where} ({room} m): "
-            "the belt would hang slack. "
-            f"Shorten it, or {'increase the preload' if tensioned else 'move the pulleys apart'}."
+            f"belt.length = {given} m is {'as long as' if length == path else 'longer than'} {where} ({room} m): the "
+            "belt would hang slack. Shorten it, or "
+            f"{'increase the preload' if tensioned else 'move the pulleys apart'}."
         )
     if path / length - 1 > LARGEST_STRAIN:
         raise ValueError(

@@ -195,9 +195,8 @@ def _off_nominal(drive: Drive, installation: Installation) -> Iterator[Finding]:
         unit = "N m" if one.turns else "N"
         leverage = abs(float(drive.path.gradient(carrier.pulley) @ carrier.place(0.0)[1]))
         yield Finding(
-            f"the tensioner of {one.pulley} rests {one.written(position)} from the given center of its pulley, "
-            "where its "
-            f"spring gives {there:.4g} {unit}, not preload = {one.preload:.4g} {unit}.",
+            f"the tensioner of {one.pulley} rests {one.written(position)} from the given center of its pulley, where "
+            f"its spring gives {there:.4g} {unit}, not preload = {one.preload:.4g} {unit}.",
             f"If the center is the nominal position, its tension is {one.preload / leverage:.4g} N, not "
             f"{installation.tension:.4g} N at rest. preload is the force at the given center, not that of the free "
             "arm.",
@@ -220,9 +219,8 @@ def _massless(drive: Drive) -> Iterator[Finding]:
         yield Finding(
             f"the pulley of the tensioner {one.pulley} has no mass, but its moment of inertia needs at least "
             f"{least:.3g} kg at a radius of {1e3 * pulley.radius:.4g} mm.",
-            f"The tensioner moves {own:.3g} {unit} instead of {whole:.3g} {unit} or more, so its natural "
-            "frequencies are "
-            f"up to {math.sqrt(whole / own) - 1.0:.0%} too high.",
+            f"The tensioner moves {own:.3g} {unit} instead of {whole:.3g} {unit} or more, so its natural frequencies "
+            f"are up to {math.sqrt(whole / own) - 1.0:.0%} too high.",
             f"Give pulley[{one.pulley}].mass.",
         )
 

@@ -74,8 +74,7 @@ def with_power(drive: Drive, number: int, power: float) -> Drive:
     if turning == 0.0:
         raise ModelError(
             f"the power of {drive.pulleys[number].name} needs the speed of {drive.pulleys[driver].name}. Give the "
-            "speed, "
-            "or a torque in place of the power."
+            "speed, or a torque in place of the power."
         )
     return with_torque(drive, number, -power / (turning / float(drive.path.radii[number])))
 

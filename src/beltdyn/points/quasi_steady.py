@@ -75,9 +75,8 @@ class QuasiSteady:
             found = float(brentq(excess, 0.2 * limit, limit, xtol=1e-9))
         except ValueError as error:
             raise ModelError(
-                f"the motor of {pulley.name} does not carry the loads between a fifth of {limit:.4g} rad/s and "
-                "that speed. "
-                "Use a larger motor, or give the pulley a speed."
+                f"the motor of {pulley.name} does not carry the loads between a fifth of {limit:.4g} rad/s and that "
+                "speed. Use a larger motor, or give the pulley a speed."
             ) from error
         return found * radius
 

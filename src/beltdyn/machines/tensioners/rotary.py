@@ -160,10 +160,8 @@ class RotaryTensioner(MovingTensioner):
             other = "clockwise" if found < 0.0 else "counter-clockwise"
             raise ValueError(
                 f'sense = "{self.sense}" of the tensioner of "{self.pulley}": its spring would slacken the belt, '
-                "whose path "
-                f"lengthens by {abs(found) * self.reach(center):.3g} m per rad as the arm turns {other}. Correct "
-                "the sense, "
-                "or the side of the belt that touches the pulley"
+                f"whose path lengthens by {abs(found) * self.reach(center):.3g} m per rad as the arm turns {other}. "
+                "Correct the sense, or the side of the belt that touches the pulley"
             )
         return found
 
