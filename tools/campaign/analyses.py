@@ -68,6 +68,7 @@ WORKS: dict[str, Work] = {
     "duty": _duty,
     "life": _lives,
     "rating": lambda drive, _: bd.rating(drive),
+    "sheet": lambda drive, folder: bd.sheet(drive, table=_table(folder), points=3),
     "tensioner-sheet": lambda drive, _: bd.tensioner_sheet(drive),
     "sensitivity": lambda drive, _: bd.sensitivity(
         drive, numbers=f"belt.width, pulley[{drive.pulleys[0].name}].radius"

@@ -33,7 +33,6 @@ _GROWTH, _STEPS = 1.5, 12
 _REFINEMENTS = 30
 _ACCURACY = 1e-6
 """Of the slip safety."""
-_FARTHEST = 10.0
 _SLACK = 1e-3
 """Tension that presses, over the mean one, at which a span counts as slack."""
 _MOST_STEPS, _WHOLE_STEPS, _WIDEST_STEP = 40, 12, 0.5
@@ -77,23 +76,20 @@ def friction_used(tension: FloatArray, belt_speed: FloatArray, centers: FloatArr
 def _safeties(balance: TensionBalance) -> FloatArray:
     """Factors at which s = 1, shape (n, pulleys), by Newton's method, or between two powers of `_GROWTH` by secants.
 
-    1 / s is straight over 1 / f where the sum of both tensions, or one of them, is held: so are pulleys estimated that
-    hold `_FARTHEST` times as much as the first one that slips, beyond which there is often no balance.
+    1 / s is straight over 1 / f where the sum of both tensions, or one of them, is held.
     """
     every = np.arange(balance.mean.size)
     present = balance.use(every, np.ones(every.size), balance.start)
     loaded = balance.loaded() & ~np.isnan(present)
     found = np.where(loaded, np.where(np.isinf(present), 0.0, 1.0 / present), np.nan)
-    least = np.fmin.reduce(found, axis=1, keepdims=True)
-    near = loaded & np.isfinite(present) & (found <= _FARTHEST * least)
-    open_rows, open_pulleys = np.nonzero(near)
-    direct = _directly(balance, open_rows, open_pulleys)
-    found[near] = np.where(np.isnan(direct), found[near], direct)
-    near[open_rows, open_pulleys] = np.isnan(direct)
+    sought = loaded & np.isfinite(present)
+    direct = _directly(balance, *np.nonzero(sought))
+    found[sought] = np.where(np.isnan(direct), found[sought], direct)
+    sought[sought] = np.isnan(direct)
     between = list[tuple[IntArray, IntArray, _Point, _Point]]()
     for growth, open_ in (
-        (_GROWTH, near & (present < 1.0)),
-        (1.0 / _GROWTH, near & (present >= 1.0)),
+        (_GROWTH, sought & (present < 1.0)),
+        (1.0 / _GROWTH, sought & (present >= 1.0)),
     ):
         left, last = open_.copy(), _Point(np.ones(every.size), balance.start, 1.0 / present)
         for step in range(1, _STEPS + 1):

@@ -35,8 +35,10 @@ def test_tensions_hub_loads_and_positions_are_those_of_finite_elements(alternato
     np.testing.assert_allclose(found.torque[0], run.shaft_torque, atol=0.05)
     safety = alternator.slip_safety(found, np.array([1.0, 0.5]))
     expected = [one.slip_safety for one in bd.summarize(bd.steady_state(alternator.drive)).pulleys]
-    np.testing.assert_allclose(safety[0, 0, [0, 2]], [expected[0], expected[2]], rtol=0.02)
-    assert np.nanmax(safety[1] / safety[0]) < 0.8
+    np.testing.assert_allclose(safety[0, 0], expected, rtol=0.02)
+    lower = safety[1, 0] / safety[0, 0]
+    assert np.all(lower < 1.0)
+    assert np.all(lower[[0, 2]] < 0.8)  # the tensioner is limited by a span that gets slack
 
 
 def test_acceleration_adds_the_torque_of_all_inertias(alternator: QuasiSteady) -> None:
