@@ -6,12 +6,13 @@ with the belt.  What bending lifts off and what slides behind an arc stretches w
 
 from collections.abc import Callable
 from functools import cache
+from typing import NamedTuple
 
 import numpy as np
 import pytest
 
 import beltdyn as bd
-from beltdyn.arrays import FloatArray
+from beltdyn.arrays import ComplexArray, FloatArray
 from beltdyn.model import Drive, loads, prepare
 from beltdyn.points.changed_drive import at_instant
 from beltdyn.points.duty import at_row, duty_of
@@ -155,7 +156,7 @@ inertia = 0.6
 load = [{ kind = "power", speeds = ["485 rpm"], powers = ["6 kW"] }]
 [[pulley]]
 name = "idler"
-center = ["300 mm", "230 mm"]
+center = ["300 mm", "190 mm"]
 diameter = "160 mm"
 diameter_kind = "flat"
 inertia = 0.02
@@ -251,7 +252,7 @@ def route_of(balance: LumpedBalance, positions: FloatArray) -> Route:
 
 
 def modes_of(drive: Drive, balance: LumpedBalance, state: Balanced) -> FloatArray:
-    """Frequencies, Hz, of rims and tensioners on spans, from first-order equations of ways, speeds and tensions."""
+    """Frequencies, Hz, of rims and tensioners on spans between arcs on which strain flows and creeps."""
     count, springs, radii = balance.radii.size, balance.springs, balance.radii
     pressing, ways = state.tensions - balance.lifted, np.eye(count + len(springs))
     stretch = np.array([radii[(i + 1) % count] * ways[(i + 1) % count] - radii[i] * ways[i] for i in range(count)])
@@ -271,16 +272,6 @@ def modes_of(drive: Drive, balance: LumpedBalance, state: Balanced) -> FloatArra
         bend = pressing @ (ahead - 2.0 * here + behind) / step**2
         stiffness[count + number, count + number] = one.rate + bend
         inertia.append(one.moved_inertia(np.array(drive.centers[spring.pulley]), drive.pulleys[spring.pulley].mass))
-    entry, leaving = (np.roll(pressing, 1), pressing) if balance.sense > 0.0 else (pressing, np.roll(pressing, 1))
-    law = prepare(drive).friction_parameters
-    creep = law.saturation(leaving / np.abs(radii), balance.friction, balance.speed) / balance.speed
-    slid = np.abs(radii) * (np.abs(entry - leaving) + balance.axial * creep) / (balance.friction * leaving)
-    slid = np.minimum(slid, np.abs(radii) * route.wraps)
-    lifted = np.sqrt(balance.bending / pressing)
-    arcs = 0.5 * np.abs(radii) * route.wraps
-    lifts = np.minimum(lifted, arcs) + np.minimum(lifted, np.roll(arcs, -1))
-    lengths = route.spans + lifts + (slid if balance.sense > 0.0 else np.roll(slid, -1))
-    spans = balance.axial * (1.0 + state.tensions / balance.axial) / lengths
     mass = np.diag(np.array(inertia))
     for i in range(count):
         j, rod = (i + 1) % count, balance.mass * route.spans[i] / 6.0
@@ -288,20 +279,85 @@ def modes_of(drive: Drive, balance: LumpedBalance, state: Balanced) -> FloatArra
         mass[j, j] += 2.0 * rod * radii[j] ** 2
         mass[[i, j], [j, i]] += rod * radii[i] * radii[j]
     free = [number for number in range(ways.shape[0]) if number != balance.driver]
-    inverse, size = np.linalg.inv(mass[np.ix_(free, free)]), len(free)
     dashpots = np.diag([0.0] * count + [one.spring["damping"] for one in drive.moving_tensioners])[np.ix_(free, free)]
-    system = np.zeros((2 * size + count, 2 * size + count))
-    system[:size, size : 2 * size] = np.eye(size)
-    system[size : 2 * size, :size] = -inverse @ stiffness[np.ix_(free, free)]
-    system[size : 2 * size, size : 2 * size] = -inverse @ dashpots
-    system[size : 2 * size, 2 * size :] = -inverse @ stretch[:, free].T
-    system[2 * size :, size : 2 * size] = spans[:, None] * stretch[:, free]
-    for i in range(count):
-        before = (i - 1) % count if balance.sense > 0.0 else (i + 1) % count
-        system[2 * size + i, 2 * size + i] -= balance.speed / lengths[i]
-        system[2 * size + i, 2 * size + before] += balance.speed / lengths[i]
-    values = np.linalg.eigvals(system)
-    return np.sort(values.imag[values.imag > 1.0]) / (2.0 * np.pi)
+    mass, stiffness, stretch = mass[np.ix_(free, free)], stiffness[np.ix_(free, free)], stretch[:, free]
+    flow = Flow.along(drive, balance, state, route)
+    elastic = balance.axial + state.tensions
+
+    def dynamic(rate: complex, part: float) -> ComplexArray:
+        """M s^2 + C s + K with a part of what flows."""
+        tension = np.linalg.solve(flow.at(rate, part), np.diag(elastic * rate) @ stretch)
+        return np.asarray(mass * rate**2 + dashpots * rate + stiffness + stretch.T @ tension)
+
+    inverse, size = np.linalg.inv(mass), len(free)
+    still = stiffness + stretch.T @ np.diag(elastic / flow.lengths) @ stretch
+    values = np.linalg.eigvals(
+        np.block([[np.zeros((size, size)), np.eye(size)], [-inverse @ still, -inverse @ dashpots]])
+    )
+    found = [followed(dynamic, complex(one)) for one in values[values.imag > 1.0]]
+    return np.sort([one.imag for one in found if -one.real < 0.5 * abs(one)]) / (2.0 * np.pi)
+
+
+def followed(dynamic: Callable[[complex, float], ComplexArray], root: complex) -> complex:
+    """A root of det A(s) as the belt starts to flow, by Newton's method: ds = -1 / tr(A^-1 A')."""
+    for part in np.linspace(0.05, 1.0, 20).tolist():
+        for _ in range(50):
+            step = 1e-6 * abs(root)
+            slope = (dynamic(root + step, part) - dynamic(root - step, part)) / (2.0 * step)
+            away = 1.0 / np.trace(np.linalg.solve(dynamic(root, part), slope))
+            root -= complex(away)
+            if abs(away) < 1e-9 * abs(root):
+                break
+    return root
+
+
+class Flow(NamedTuple):
+    """A belt that carries strain through spans, shape (spans,), and over the arcs before them.
+
+    On an arc the slip velocity w = |v| b T' / EA, with the law of creep, moves strain: T. + |v| T' = |v| b T''.
+    """
+
+    speed: float
+    sense: float
+    lengths: FloatArray
+    """That stretch with spans, m, where nothing flows: with what lifts off and slides."""
+    arcs: FloatArray
+    """Where the belt creeps, m."""
+    layers: FloatArray
+    """b, m."""
+
+    @classmethod
+    def along(cls, drive: Drive, balance: LumpedBalance, state: Balanced, route: Route) -> "Flow":
+        radii, pressing = np.abs(balance.radii), state.tensions - balance.lifted
+        entry, leaving = (np.roll(pressing, 1), pressing) if balance.sense > 0.0 else (pressing, np.roll(pressing, 1))
+        held = balance.friction * leaving
+        creep = prepare(drive).friction_parameters.saturation(leaving / radii, balance.friction, balance.speed)
+        layers = radii * balance.axial * creep / (balance.speed * held)
+        slid = radii * np.abs(np.log(entry / leaving)) / balance.friction
+        stored = radii * np.abs(entry - leaving) / held
+        lifted, arcs = np.sqrt(balance.bending / pressing), radii * route.wraps
+        lifts = np.minimum(lifted, 0.5 * arcs), np.minimum(np.roll(lifted, 1), 0.5 * arcs)
+        adhering = np.maximum(arcs - lifts[0] - lifts[1] - slid, 1e-9)
+        before = (one if balance.sense > 0.0 else np.roll(one, -1) for one in (stored, adhering, layers))
+        stored, adhering, layers = before
+        lengths = route.spans + lifts[0] + np.roll(lifts[1], -1) + stored
+        return cls(balance.speed, balance.sense, lengths, adhering, layers)
+
+    def at(self, rate: complex, part: float) -> ComplexArray:
+        """Of tensions of spans, in l T. = EA e. + w EA at the next arc - w EA behind the last one."""
+        count = self.lengths.size
+        found = np.diag(self.lengths * rate).astype(complex)
+        for span, (arc, layer) in enumerate(zip(self.arcs.tolist(), self.layers.tolist(), strict=True)):
+            before = (span - 1) % count if self.sense > 0.0 else (span + 1) % count
+            root = np.sqrt(1.0 + 4.0 * rate * layer / self.speed)
+            decay, growth = (1.0 - root) / (2.0 * layer), (1.0 + root) / (2.0 * layer)
+            ends = np.array([[1.0, np.exp(-growth * arc)], [np.exp(decay * arc), 1.0]])
+            slopes = np.array([[decay, growth * np.exp(-growth * arc)], [decay * np.exp(decay * arc), growth]])
+            slips = part * self.speed * layer * slopes @ np.linalg.inv(ends)
+            for neighbor, sign, slip in ((before, -1.0, slips[0]), (span, 1.0, slips[1])):
+                found[neighbor, before] += sign * slip[0]
+                found[neighbor, span] += sign * slip[1]
+        return found
 
 
 @pytest.mark.parametrize("name", FORMS)
@@ -316,24 +372,24 @@ def test_first_modes(name: str, measured: Callable[..., None]) -> None:
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("name", ["accessory", "washing", "spindle"])
+@pytest.mark.parametrize("name", FORMS)
 def test_finite_elements(name: str, measured: Callable[..., None]) -> None:
-    """Tensions and hub loads within 1 %; modes within 3 % in the median, and 12 % where creep damps them most."""
+    """Tensions and hub loads within 1 %; within 3 % each mode with a resonance below the wave of a span of belt."""
     drive = loads(FORMS[name])
     dataset = bd.sheet(drive, points=2, full=True).dataset
     error = np.abs(dataset.full_span_tension - dataset.span_tension).max() / dataset.full_span_tension.max()
     hub = np.abs(dataset.full_hub_load - dataset.hub_load).max() / dataset.full_hub_load.max()
+    measured(tension=float(error), hub=float(hub))
+    assert error < 0.01
+    assert hub < 0.01
     row = int(np.argmax(np.abs(dataset.power.values[:, 0])))
     columns = duty_of(drive, None)
     at = drive if columns is None else at_row(at_instant(drive, None), columns, row)
     modes = bd.modes(at, about=bd.steady_state(at)).dataset
-    turning = modes.frequency.values[(modes.kind != "span").values & (modes.damping_ratio < 0.4).values]
-    measured(tension=float(error), hub=float(hub))
-    assert error < 0.01
-    assert hub < 0.01
-    if turning.size:
-        found = dataset.mode_frequency.values[: turning.size][:4]
-        off = np.array([np.abs(turning / one - 1.0).min() for one in found])
-        measured(median=float(np.median(off)), worst=float(off.max()))
-        assert np.median(off) < 0.03
-        assert off.max() < 0.12
+    turning = modes.frequency.values[(modes.kind != "span").values & (modes.damping_ratio < 0.5).values]
+    found = dataset.mode_frequency.values
+    found = found[found < 1.03 * modes.frequency.values.max()]
+    assert found.size
+    for one in found:
+        measured(mode=one, off=float(np.abs(turning / one - 1.0).min()))
+        assert np.abs(turning / one - 1.0).min() < 0.03

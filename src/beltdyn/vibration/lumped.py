@@ -2,25 +2,35 @@ r"""A drive of lumped bodies on elastic spans: its first modes, and its response
 
 Unknowns x are the angles of rims and of the bodies of hub chains, and the places of tensioners. Span i stretches by
 e_i = (B x)_i: the ways of the rims at its ends along the belt, and that of a carried pulley along the span, as the belt
-rolls on and off the rims. A running belt takes its strain along: what passes a pulley is as long unstretched as where
-it reaches that pulley, and so, with the length l_i, the belt speed v and the span before in running direction,
+rolls on and off the rims. A running belt takes its strain along: what leaves a pulley is as long unstretched as where
+it reached that pulley, and so, with the length l_i, the belt speed v and the span before in running direction,
 
-    T_i' = k_i e_i' - |v| / l_i (T_i - T_before),        k_i = (dN/dg) g / l_i,
+    T_i' = k_i e_i' - |v| / l_i (T_i - T_before(t - t_i)),        k_i = (dN/dg) g / l_i,
 
-of which the second term is elastic creep: it damps rotations. The bodies obey
+of which the second term is elastic creep: it damps rotations. Where the belt adheres, over the length a of the arc, its
+strain is frozen, and arrives after the passage t_i = a / |v|. The bodies obey
 
     M x'' + C x' + K x + B^T T = f.
 
 l_i is longer than the span: bending lifts the belt off the ends of arcs over sqrt(EI / T'), T' = T - m v^2, and where
 the belt slides, before it leaves a loaded pulley, all tensions follow that of the span as exp(mu phi) (Euler and
-Eytelwein), as if it were R |T1 - T2| / (mu T') longer, and R EA v_c / (v mu T') by a friction law that saturates at
-v_c. M has the belt's mass, that of spans as of rods; K has the
-springs of hubs and tensioners, the pull T' / l across a span whose pulley moves sideways, and what turns an arm back.
-Transverse vibrations of spans are left out.
+Eytelwein), as if it were R |T1 - T2| / (mu T') longer. By a friction law that saturates at the slip velocity v_c, as
+much strain creeps as diffuses along the arc with D = |v| b,
+
+    b = R EA v_c / (|v| mu T'):
+
+the span is longer by b, and strain that passes is smeared. A chain of n = a / (2 b) cells, each filled by the one
+before, has that delay and that variance 2 D a / |v|^3 of it,
+
+    T_before(t - t_i)  ->  (1 + s t_i / n)^-n.
+
+M has the belt's mass, that of spans as of rods; K has the springs of hubs and tensioners, the pull T' / l across a span
+whose pulley moves sideways, and what turns an arm back. Transverse vibrations of spans are left out, and so are waves
+of strain that go round with the belt, whose damping ratio is above 1/2: they amplify nothing.
 """
 
 from collections.abc import Iterator, Mapping
-from typing import NamedTuple
+from typing import NamedTuple, TypeVar
 
 import numpy as np
 
@@ -30,12 +40,19 @@ from beltdyn.model import Prepared
 from beltdyn.model.path import span_directions, span_points, wrap_angles
 from beltdyn.records import blank, fill
 
+Given = TypeVar("Given")
 _STEP = 1e-4
 """Relative step of speed with which torques of loads are differenced."""
 _LEAST = 1e-3
 """Least friction, and least tension that presses over the largest one."""
 _STILL = 1e-6
 """Angular frequency over the largest one below which a motion is none."""
+_RESONANT = 0.5
+"""Damping ratio from which on a mode amplifies nothing at its resonance."""
+_CELLS = 40
+"""Cells of an arc at most."""
+_THIN = 1e-3
+"""Least length in which friction saturates, over that of the arc."""
 
 
 class Mode(NamedTuple):
@@ -59,8 +76,16 @@ class LumpedDrive(NamedTuple):
     """B, shape (spans, n)."""
     spans: FloatArray
     """k, N/m."""
-    transport: FloatArray
-    """Rate at which tensions follow those of the spans before, shape (spans, spans), 1/s."""
+    passing: FloatArray
+    """|v| / l, rate at which the belt of each span is replaced, shape (spans,), 1/s."""
+    before: IntArray
+    """Number of the span before each one in running direction, shape (spans,)."""
+    delay: FloatArray
+    """Time in which strain passes the arc between them, shape (spans,), s."""
+    cells: IntArray
+    """Of a chain that has this delay, shape (spans,)."""
+    creep: FloatArray
+    """Rate at which tensions of neighboring spans balance by creep over whole arcs, shape (spans, spans), 1/s."""
     loss_factor: float
     """Of stretch."""
     damping_time: float
@@ -73,24 +98,38 @@ class LumpedDrive(NamedTuple):
     """What each unknown belongs to: a pulley by its name, or the arm or slide of one."""
 
     def modes(self, count: int) -> list[Mode]:
-        """The first modes, by ascending frequency; tensioners slide without dry friction."""
+        """The first modes that resonate, by ascending frequency; tensioners slide without dry friction."""
         free, spans = self.free, self.spans.size
-        size = int(free.sum())
+        size, carried = int(free.sum()), spans + int(self.cells.sum())
         inverse = np.linalg.inv(self.mass[np.ix_(free, free)])
         stretches = self.stretches[:, free]
         strained = self.spans[:, None] * stretches
         damping = self.damping[np.ix_(free, free)] + self.damping_time * stretches.T @ strained
-        rates = np.block(
-            [
-                [np.zeros((size, size)), np.eye(size), np.zeros((size, spans))],
-                [-inverse @ self.stiffness[np.ix_(free, free)], -inverse @ damping, -inverse @ stretches.T],
-                [np.zeros((spans, size)), strained, -self.transport],
-            ]
-        )
+        rates = np.zeros((2 * size + carried, 2 * size + carried))
+        turning, tension = slice(size, 2 * size), slice(2 * size, 2 * size + spans)
+        rates[:size, turning] = np.eye(size)
+        rates[turning, :size] = -inverse @ self.stiffness[np.ix_(free, free)]
+        rates[turning, turning] = -inverse @ damping
+        rates[turning, tension] = -inverse @ stretches.T
+        rates[tension, turning] = strained
+        rates[2 * size :, 2 * size :] = self._carrying(carried)
         values, vectors = np.linalg.eig(rates)
-        swing = np.flatnonzero(values.imag > _STILL * np.abs(values).max())
+        resonant = -values.real < _RESONANT * np.abs(values)
+        swing = np.flatnonzero((values.imag > _STILL * np.abs(values).max()) & resonant)
         first = swing[np.argsort(values[swing].imag)][:count]
-        return [self._mode(complex(values[one]), vectors[size : 2 * size, one]) for one in first]
+        return [self._mode(complex(values[one]), vectors[turning, one]) for one in first]
+
+    def _carrying(self, size: int) -> FloatArray:
+        """Rates of the tensions of spans and cells as the belt carries strain through them, 1/s."""
+        found, cell = np.zeros((size, size)), self.spans.size
+        for span, (rate, before) in enumerate(zip(self.passing.tolist(), self.before.tolist(), strict=True)):
+            for _ in range(self.cells[span]):
+                filling = float(self.cells[span] / self.delay[span])
+                found[cell, [cell, before]] = -filling, filling
+                before, cell = cell, cell + 1
+            found[span, [span, before]] += -rate, rate
+        found[: self.spans.size, : self.spans.size] -= self.creep
+        return found
 
     def _mode(self, value: complex, velocity: ComplexArray) -> Mode:
         whole = np.zeros(self.free.size, complex)
@@ -118,7 +157,10 @@ class LumpedDrive(NamedTuple):
         """
         rate = 1j * frequency
         spans = self.spans * (1.0 + 1j * self.loss_factor + rate * self.damping_time)
-        followed = np.linalg.solve(rate * np.eye(spans.size) + self.transport, np.diag(rate * spans)) @ self.stretches
+        arriving = (1.0 + rate * self.delay / np.maximum(self.cells, 1)) ** -self.cells
+        carrying = np.diag(rate + self.passing) + self.creep
+        carrying[np.arange(spans.size), self.before] -= self.passing * arriving
+        followed = np.linalg.solve(carrying, np.diag(rate * spans)) @ self.stretches
         damping = self.damping.copy()
         if dashpots is not None and dashpots.size:
             places = np.arange(self.free.size - dashpots.size, self.free.size)
@@ -154,6 +196,19 @@ def lumped_drive(
     return _Lumping(prepared, tension, centers, positions, speed).made()
 
 
+class _AlongTheBelt(NamedTuple):
+    """Spans, with the arcs before them in running direction; each of shape (spans,)."""
+
+    yielding: FloatArray
+    """Lengths of belt that stretch with spans, m: with what is lifted off, and what slides behind them."""
+    delay: FloatArray
+    """Of strain on an arc, s."""
+    cells: IntArray
+    """Of a chain that has this delay."""
+    leak: FloatArray
+    """Change of strain at the entry of an arc over that along it, as its pulley drags the belt."""
+
+
 class _Lumping:
     """Collects the parts of a lumped drive."""
 
@@ -181,23 +236,26 @@ class _Lumping:
         """All parts together."""
         prepared, law = self._prepared, self._prepared.belt.stretch_parameters
         stretch = np.asarray(law.stretch(self._tension))
-        yielding = self._yielding_lengths()
-        spans = np.asarray(law.tangent_stiffness(stretch)) * stretch / yielding
+        along = self._along_the_belt()
+        passing = abs(self._speed) / along.yielding
+        spans = np.asarray(law.tangent_stiffness(stretch)) * stretch / along.yielding
         stretches = self._stretches()
         self._add_belt()
         self._add_chains()
         self._add_tensioners()
         free = np.ones(len(self._owners), dtype=bool)
         free[[self._shafts[number] for number, one in enumerate(prepared.pulleys) if one.prescribed]] = False
-        before = np.roll(np.eye(spans.size), 1 if self._speed < 0.0 else -1, axis=1)
-        transport = (abs(self._speed) / yielding)[:, None] * (np.eye(spans.size) - before)
         return LumpedDrive(
             mass=self._mass,
             damping=self._damping,
             stiffness=self._stiffness,
             stretches=stretches,
             spans=spans,
-            transport=transport,
+            passing=passing,
+            before=np.roll(np.arange(spans.size), self._behind(1, -1)),
+            delay=along.delay,
+            cells=along.cells,
+            creep=passing[:, None] * self._creep(along.leak),
             loss_factor=prepared.belt.stretch_loss_factor,
             damping_time=prepared.belt.stretch_damping_time,
             shafts=self._shafts,
@@ -205,20 +263,38 @@ class _Lumping:
             owners=tuple(self._owners),
         )
 
-    def _yielding_lengths(self) -> FloatArray:
-        """Lengths of belt that stretch with each span, m: with what is lifted off, and what slides behind it."""
-        prepared, arcs = self._prepared, np.abs(self._radii) * self._wraps
+    def _behind(self, forwards: Given, backwards: Given) -> Given:
+        """The one of two that holds in the sense of running."""
+        return forwards if self._speed >= 0.0 else backwards
+
+    def _along_the_belt(self) -> "_AlongTheBelt":
+        """What spans and the arcs that the belt passes before them do to strain."""
+        prepared, speed, radii = self._prepared, abs(self._speed), np.abs(self._radii)
+        arcs = radii * self._wraps
         pressing = np.maximum(self._pressing, _LEAST * float(np.max(np.abs(self._tension))))
         lifted = np.sqrt(prepared.belt.bending_stiffness / pressing)
-        longer = np.minimum(lifted, 0.5 * arcs) + np.minimum(lifted, 0.5 * np.roll(arcs, -1))
-        entry = np.roll(pressing, 1) if self._speed >= 0.0 else pressing
-        leaving = pressing if self._speed >= 0.0 else np.roll(pressing, 1)
+        ends = np.minimum(lifted, 0.5 * arcs), np.minimum(np.roll(lifted, 1), 0.5 * arcs)
+        entry = self._behind(np.roll(pressing, 1), pressing)
+        leaving = self._behind(pressing, np.roll(pressing, 1))
         grip = np.maximum(prepared.frictions, _LEAST)
-        held = grip * leaving
-        creep = prepared.friction_parameters.saturation(leaving / np.abs(self._radii), grip, abs(self._speed))
-        reach = prepared.belt.axial_stiffness * creep / abs(self._speed) if self._speed else np.zeros(arcs.size)
-        slid = np.minimum(np.abs(self._radii) * (np.abs(entry - leaving) + reach) / held, arcs)
-        return np.asarray(self._lengths + longer + (slid if self._speed >= 0.0 else np.roll(slid, -1)))
+        reach = radii / (grip * leaving)
+        creep = prepared.friction_parameters.saturation(leaving / radii, grip, speed)
+        layer = prepared.belt.axial_stiffness * creep * reach / speed if speed else np.zeros(arcs.size)
+        slid = np.minimum(reach * np.abs(entry - leaving) + layer, arcs)
+        adhering = np.maximum(arcs - ends[0] - ends[1] - radii * np.abs(np.log(entry / leaving)) / grip, 0.0)
+        cells = np.clip(np.rint(adhering / np.maximum(2.0 * layer, _THIN * arcs)), 1, _CELLS)
+        delay = adhering / speed if speed else np.zeros(arcs.size)
+        decay = np.exp(-arcs / np.maximum(layer, _THIN * arcs))
+        leak = decay / (1.0 - decay)
+        of_arcs = (slid, delay, np.where(delay > 0.0, cells, 0).astype(np.int64), leak)
+        slid, delay, cells, leak = (self._behind(one, np.roll(one, -1)) for one in of_arcs)
+        return _AlongTheBelt(self._lengths + ends[0] + np.roll(ends[1], -1) + slid, delay, cells, leak)
+
+    def _creep(self, leak: FloatArray) -> FloatArray:
+        """What the slip at entries of arcs takes from each span and gives to its neighbors, shape (spans, spans)."""
+        count = leak.size
+        across = leak[:, None] * (np.eye(count) - np.roll(np.eye(count), self._behind(-1, 1), axis=1))
+        return np.asarray(across - np.roll(across, self._behind(-1, 1), axis=0))
 
     def _stretches(self) -> FloatArray:
         """B: span i leads from pulley i to the next one."""
