@@ -19,14 +19,15 @@ much strain creeps as diffuses along the arc with D = |v| b,
 
     b = R EA v_c / (|v| mu T'):
 
-the span is longer by b, and strain that passes is smeared. A chain of n = a / (2 b) cells, each filled by the one
-before, has that delay and that variance 2 D a / |v|^3 of it,
+the span is longer by b, and of strain that grows as exp(s t)
 
-    T_before(t - t_i)  ->  (1 + s t_i / n)^-n.
+    exp(-2 s t_i / (1 + sqrt(1 + 4 s b / |v|)))
 
-M has the belt's mass, that of spans as of rods; K has the springs of hubs and tensioners, the pull T' / l across a span
-whose pulley moves sideways, and what turns an arm back. Transverse vibrations of spans are left out, and so are waves
-of strain that go round with the belt, whose damping ratio is above 1/2: they amplify nothing.
+arrives. M has the belt's mass, that of spans as of rods; K has the springs of hubs and tensioners, the pull T' / l
+across a span whose pulley moves sideways, and what turns an arm back. Transverse vibrations of spans are left out.
+
+Modes are those of the drive whose strain does not flow, followed as it begins to. So waves of strain that go round with
+the belt, strongly damped, are left out.
 """
 
 from collections.abc import Iterator, Mapping
@@ -47,10 +48,14 @@ _LEAST = 1e-3
 """Least friction, and least tension that presses over the largest one."""
 _STILL = 1e-6
 """Angular frequency over the largest one below which a motion is none."""
+_DIFFERENCE = 1e-6
+"""Relative step of a root."""
 _RESONANT = 0.5
 """Damping ratio from which on a mode amplifies nothing at its resonance."""
-_CELLS = 40
-"""Cells of an arc at most."""
+_PATHS = (16, 64, 256)
+"""Steps in which modes are followed; more if two have met."""
+_ROUNDS, _FOUND, _MET = 30, 1e-8, 1e-6
+"""Rounds of Newton's method at most, the relative change that ends them, and the one between modes that have met."""
 _THIN = 1e-3
 """Least length in which friction saturates, over that of the arc."""
 
@@ -82,8 +87,8 @@ class LumpedDrive(NamedTuple):
     """Number of the span before each one in running direction, shape (spans,)."""
     delay: FloatArray
     """Time in which strain passes the arc between them, shape (spans,), s."""
-    cells: IntArray
-    """Of a chain that has this delay, shape (spans,)."""
+    smearing: FloatArray
+    """b / |v| of this arc, shape (spans,), s."""
     creep: FloatArray
     """Rate at which tensions of neighboring spans balance by creep over whole arcs, shape (spans, spans), 1/s."""
     loss_factor: float
@@ -99,43 +104,66 @@ class LumpedDrive(NamedTuple):
 
     def modes(self, count: int) -> list[Mode]:
         """The first modes that resonate, by ascending frequency; tensioners slide without dry friction."""
-        free, spans = self.free, self.spans.size
-        size, carried = int(free.sum()), spans + int(self.cells.sum())
-        inverse = np.linalg.inv(self.mass[np.ix_(free, free)])
-        stretches = self.stretches[:, free]
-        strained = self.spans[:, None] * stretches
-        damping = self.damping[np.ix_(free, free)] + self.damping_time * stretches.T @ strained
-        rates = np.zeros((2 * size + carried, 2 * size + carried))
-        turning, tension = slice(size, 2 * size), slice(2 * size, 2 * size + spans)
-        rates[:size, turning] = np.eye(size)
-        rates[turning, :size] = -inverse @ self.stiffness[np.ix_(free, free)]
-        rates[turning, turning] = -inverse @ damping
-        rates[turning, tension] = -inverse @ stretches.T
-        rates[tension, turning] = strained
-        rates[2 * size :, 2 * size :] = self._carrying(carried)
-        values, vectors = np.linalg.eig(rates)
-        resonant = -values.real < _RESONANT * np.abs(values)
-        swing = np.flatnonzero((values.imag > _STILL * np.abs(values).max()) & resonant)
-        first = swing[np.argsort(values[swing].imag)][:count]
-        return [self._mode(complex(values[one]), vectors[turning, one]) for one in first]
+        free = self.free
+        size, inverse = int(free.sum()), np.linalg.inv(self.mass[np.ix_(free, free)])
+        stiffness, both = (self._elastic(rate) for rate in (0.0, 1.0))
+        first_order = np.zeros((2 * size, 2 * size))
+        first_order[:size, size:] = np.eye(size)
+        first_order[size:, :size] = -inverse @ stiffness[np.ix_(free, free)]
+        first_order[size:, size:] = -inverse @ (both - stiffness)[np.ix_(free, free)]
+        values = np.linalg.eigvals(first_order)
+        still = values[values.imag > _STILL * np.abs(values).max(initial=0.0)]
+        roots = still
+        for steps in _PATHS if still.size and self.passing.any() else ():
+            roots = self._followed(still, steps)
+            apart = np.abs(roots[:, None] - roots) + np.diag(np.full(roots.size, np.inf))
+            if np.all(apart > _MET * np.abs(roots)):
+                break
+        resonant = np.isfinite(roots) & (roots.imag > 0.0) & (-roots.real < _RESONANT * np.abs(roots))
+        first = roots[resonant][np.argsort(roots[resonant].imag)][:count]
+        return [self._mode(complex(one)) for one in first]
 
-    def _carrying(self, size: int) -> FloatArray:
-        """Rates of the tensions of spans and cells as the belt carries strain through them, 1/s."""
-        found, cell = np.zeros((size, size)), self.spans.size
-        for span, (rate, before) in enumerate(zip(self.passing.tolist(), self.before.tolist(), strict=True)):
-            for _ in range(self.cells[span]):
-                filling = float(self.cells[span] / self.delay[span])
-                found[cell, [cell, before]] = -filling, filling
-                before, cell = cell, cell + 1
-            found[span, [span, before]] += -rate, rate
-        found[: self.spans.size, : self.spans.size] -= self.creep
-        return found
+    def _elastic(self, rate: float) -> FloatArray:
+        """K + s C of a drive whose strain does not flow."""
+        spans = self.spans * (1.0 + rate * self.damping_time)
+        return np.asarray(self.stiffness + rate * self.damping + self.stretches.T @ (spans[:, None] * self.stretches))
 
-    def _mode(self, value: complex, velocity: ComplexArray) -> Mode:
+    def _followed(self, roots: ComplexArray, steps: int) -> ComplexArray:
+        """Roots of det A(s) as more and more strain flows, by secants between s (1 - d) and s (1 + d)."""
+        for part in np.linspace(0.0, 1.0, steps + 1)[1:].tolist():
+            for _ in range(_ROUNDS):
+                signs, logarithms = np.linalg.slogdet(
+                    self._dynamic(roots * np.array([[1.0 - _DIFFERENCE], [1.0 + _DIFFERENCE]]), part)
+                )
+                ratio = signs[1] / signs[0] * np.exp(logarithms[1] - logarithms[0])
+                away = _DIFFERENCE * roots * (ratio + 1.0) / (ratio - 1.0)
+                roots = roots - away
+                if np.all(np.abs(away) <= _FOUND * np.abs(roots)):
+                    break
+        return roots
+
+    def _dynamic(self, rates: ComplexArray, part: float = 1.0) -> ComplexArray:
+        """M s^2 + C s + K of what is free at each s, with a part of the strain that flows."""
+        free, rate = self.free, rates[..., None, None]
+        own = [one[np.ix_(free, free)] for one in (self.mass, self.damping, self.stiffness)]
+        spans = np.asarray(self.spans * (1.0 + rates[..., None] * self.damping_time), np.complex128)
+        followed = self._tensions(rates, spans, part)
+        found = own[0] * rate**2 + own[1] * rate + own[2] + self.stretches[:, free].T @ followed[..., free]
+        return np.asarray(found)
+
+    def _tensions(self, rates: ComplexArray, spans: ComplexArray, part: float = 1.0) -> ComplexArray:
+        """Tensions of spans over the unknowns at each s."""
+        rate, numbers = rates[..., None], np.arange(self.before.size)
+        arriving = np.exp(-2.0 * rate * self.delay / (1.0 + np.sqrt(1.0 + 4.0 * rate * self.smearing)))
+        flowing = (rate + part * self.passing)[..., None] * np.eye(numbers.size) + part * self.creep
+        flowing[..., numbers, self.before] -= part * self.passing * arriving
+        return np.asarray(np.linalg.solve(flowing, (rate * spans)[..., None] * self.stretches))
+
+    def _mode(self, root: complex) -> Mode:
         whole = np.zeros(self.free.size, complex)
-        whole[self.free] = velocity
+        whole[self.free] = np.linalg.svd(self._dynamic(np.array(root)))[2][-1].conj()
         energy = np.maximum((whole.conj() * (self.mass @ whole)).real, 0.0)
-        return Mode(value.imag / (2.0 * np.pi), -value.real / abs(value), energy / energy.sum())
+        return Mode(root.imag / (2.0 * np.pi), -root.real / abs(root), energy / energy.sum())
 
     def answer(
         self,
@@ -157,10 +185,7 @@ class LumpedDrive(NamedTuple):
         """
         rate = 1j * frequency
         spans = self.spans * (1.0 + 1j * self.loss_factor + rate * self.damping_time)
-        arriving = (1.0 + rate * self.delay / np.maximum(self.cells, 1)) ** -self.cells
-        carrying = np.diag(rate + self.passing) + self.creep
-        carrying[np.arange(spans.size), self.before] -= self.passing * arriving
-        followed = np.linalg.solve(carrying, np.diag(rate * spans)) @ self.stretches
+        followed = self._tensions(np.array(rate), spans)
         damping = self.damping.copy()
         if dashpots is not None and dashpots.size:
             places = np.arange(self.free.size - dashpots.size, self.free.size)
@@ -172,7 +197,7 @@ class LumpedDrive(NamedTuple):
                 target[self.shafts[pulley]] += amplitude
         free = self.free
         moved[free] = np.linalg.solve(matrix[np.ix_(free, free)], (force - matrix @ moved)[free])
-        return followed @ moved, moved
+        return np.asarray(followed @ moved), moved
 
 
 def lumped_drive(
@@ -203,8 +228,8 @@ class _AlongTheBelt(NamedTuple):
     """Lengths of belt that stretch with spans, m: with what is lifted off, and what slides behind them."""
     delay: FloatArray
     """Of strain on an arc, s."""
-    cells: IntArray
-    """Of a chain that has this delay."""
+    smearing: FloatArray
+    """Length on which strain diffuses there, over the belt speed, s."""
     leak: FloatArray
     """Change of strain at the entry of an arc over that along it, as its pulley drags the belt."""
 
@@ -254,7 +279,7 @@ class _Lumping:
             passing=passing,
             before=np.roll(np.arange(spans.size), self._behind(1, -1)),
             delay=along.delay,
-            cells=along.cells,
+            smearing=along.smearing,
             creep=passing[:, None] * self._creep(along.leak),
             loss_factor=prepared.belt.stretch_loss_factor,
             damping_time=prepared.belt.stretch_damping_time,
@@ -282,13 +307,12 @@ class _Lumping:
         layer = prepared.belt.axial_stiffness * creep * reach / speed if speed else np.zeros(arcs.size)
         slid = np.minimum(reach * np.abs(entry - leaving) + layer, arcs)
         adhering = np.maximum(arcs - ends[0] - ends[1] - radii * np.abs(np.log(entry / leaving)) / grip, 0.0)
-        cells = np.clip(np.rint(adhering / np.maximum(2.0 * layer, _THIN * arcs)), 1, _CELLS)
-        delay = adhering / speed if speed else np.zeros(arcs.size)
+        delay, smearing = (one / speed if speed else np.zeros(arcs.size) for one in (adhering, layer))
         decay = np.exp(-arcs / np.maximum(layer, _THIN * arcs))
-        leak = decay / (1.0 - decay)
-        of_arcs = (slid, delay, np.where(delay > 0.0, cells, 0).astype(np.int64), leak)
-        slid, delay, cells, leak = (self._behind(one, np.roll(one, -1)) for one in of_arcs)
-        return _AlongTheBelt(self._lengths + ends[0] + np.roll(ends[1], -1) + slid, delay, cells, leak)
+        slid, delay, smearing, leak = (
+            self._behind(one, np.roll(one, -1)) for one in (slid, delay, smearing, decay / (1.0 - decay))
+        )
+        return _AlongTheBelt(self._lengths + ends[0] + np.roll(ends[1], -1) + slid, delay, smearing, leak)
 
     def _creep(self, leak: FloatArray) -> FloatArray:
         """What the slip at entries of arcs takes from each span and gives to its neighbors, shape (spans, spans)."""

@@ -7,7 +7,7 @@ from beltdyn.model import Drive, prepare
 from beltdyn.vibration.lumped import LumpedDrive, lumped_drive
 
 TENSION = 400.0
-CREEP = 2e-4
+CREEP = 6e-4
 """Slip velocity of saturation over the speed of the rim."""
 STIFF = {"width": 0.02, "thickness": 1e-3, "axial_stiffness": 1e5, "bending_stiffness": 1e-6, "mass_per_length": 1e-6}
 
@@ -51,8 +51,7 @@ def test_a_hub_chain_has_two_modes() -> None:
 def test_strain_that_flows_with_the_belt_damps_rotation() -> None:
     """T' = k e' - v / l (T - T_before(t - a / v)) of two equal spans, whose changes are opposite: T_before = -T.
 
-    Creep on the arc smears what passes, as exp(r a) with T' + v T_x = v b T_xx.  The chain of cells
-    differs by 2/3 (a / b) q^3, q = b w / v = 0.13, which moves the root by v / (2 l w) = 3 % of that: 0.2 %.
+    Creep on the arc smears what passes, as exp(r a) with T' + v T_x = v b T_xx.
     """
     speed, arc = 20.0, np.pi * 0.05
     lumped = lumps(speed)
