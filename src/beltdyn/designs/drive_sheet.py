@@ -120,6 +120,7 @@ def sheet(
     """
     if drive.ends:
         raise ModelError("a drive sheet needs a closed belt. Use `beltdyn simulate` for a belt with ends.")
+    columns = duty_of(drive, table)
     tell = progress or (lambda _: None)
     tell(Progress(0.0, 1.0, 0.0, 0, "equilibrium"))
     given = at_instant(drive, at)
@@ -136,7 +137,6 @@ def sheet(
         ),
     )
     made = _DriveSheet(given, rest.prepared, looked_at(rest.prepared, rest.system, rest.state).installation, options)
-    columns = duty_of(drive, table)
     made.add_rows(columns)
     made.add_speeds(columns, speed, points)
     made.add_geometry()

@@ -146,7 +146,7 @@ class LumpedDrive(NamedTuple):
         """M s^2 + C s + K of what is free at each s, with a part of the strain that flows."""
         free, rate = self.free, rates[..., None, None]
         own = [one[np.ix_(free, free)] for one in (self.mass, self.damping, self.stiffness)]
-        spans = np.asarray(self.spans * (1.0 + rates[..., None] * self.damping_time), np.complex128)
+        spans = np.asarray(self.spans * (1.0 + rates[..., None] * self.damping_time))
         followed = self._tensions(rates, spans, part)
         found = own[0] * rate**2 + own[1] * rate + own[2] + self.stretches[:, free].T @ followed[..., free]
         return np.asarray(found)
@@ -184,7 +184,9 @@ class LumpedDrive(NamedTuple):
             Damping of tensioners in addition.
         """
         rate = 1j * frequency
-        spans = self.spans * (1.0 + 1j * self.loss_factor + rate * self.damping_time)
+        spans: ComplexArray = (self.spans * (1.0 + 1j * self.loss_factor + rate * self.damping_time)).astype(
+            np.complex128
+        )
         followed = self._tensions(np.array(rate), spans)
         damping = self.damping.copy()
         if dashpots is not None and dashpots.size:
