@@ -45,38 +45,36 @@ def is_motor(load: Load) -> bool:
 
 def at_speed(drive: Drive, number: int, speed: float) -> Drive:
     """Prescribe the speed of a pulley, in place of its motor, torque and loads."""
-    return with_pulley(drive, number, _at_speed(drive.pulleys[number], speed))
+    return with_pulley(drive, number, turned_at(drive.pulleys[number], speed))
 
 
 def at_speed_under(drive: Drive, number: int, speed: float, factor: float) -> Drive:
     """Multiply all torques and loads, as `with_load`, and prescribe the speed of a pulley, as `at_speed`."""
-    pulleys = _loaded(drive, factor)
-    pulleys[number] = _at_speed(pulleys[number], speed)
+    pulleys = under_load(drive, factor)
+    pulleys[number] = turned_at(pulleys[number], speed)
     return drive.replace(pulley=pulleys)
 
 
-def with_torque(drive: Drive, number: int, torque: float) -> Drive:
-    """Give the shaft of a pulley a torque (N m), in place of its torque and loads, but for motors."""
-    one = drive.pulleys[number]
-    if one.prescribed:
+def under_torque(pulley: Pulley, torque: float) -> Pulley:
+    """A pulley with a torque (N m) on its shaft, in place of its torque and loads, but for motors."""
+    if pulley.prescribed:
         raise ModelError(
-            f"{one.name} has a prescribed speed, so its torque cannot be given. Give the torque of another pulley."
+            f"{pulley.name} has a prescribed speed, so its torque cannot be given. Give the torque of another pulley."
         )
-    motors = tuple(load for load in one.load if is_motor(load))
-    return with_pulley(drive, number, one.replace(torque=Constant(value=torque), load=motors))
+    return pulley.replace(torque=Constant(value=torque), load=tuple(load for load in pulley.load if is_motor(load)))
 
 
-def with_power(drive: Drive, number: int, power: float) -> Drive:
-    """Let the shaft of a pulley take a power (W) at its speed without slip, in place of its torque and loads."""
+def under_power(drive: Drive, number: int, power: float, pulleys: list[Pulley]) -> Pulley:
+    """A pulley whose shaft takes a power (W) at its speed without slip; pulleys are those of the drive, changed."""
     driver = driver_of(drive)
-    speed = drive.pulleys[driver].speed
+    speed = pulleys[driver].speed
     turning = 0.0 if speed is None else float(speed.at([0.0])[0]) * float(drive.path.radii[driver])
     if turning == 0.0:
         raise ModelError(
-            f"the power of {drive.pulleys[number].name} needs the speed of {drive.pulleys[driver].name}. Give the "
-            "speed, or a torque in place of the power."
+            f"the power of {pulleys[number].name} needs the speed of {pulleys[driver].name}. Give the speed, or a "
+            "torque in place of the power."
         )
-    return with_torque(drive, number, -power / (turning / float(drive.path.radii[number])))
+    return under_torque(pulleys[number], -power / (turning / float(drive.path.radii[number])))
 
 
 def with_load(drive: Drive, factor: float) -> Drive:
@@ -86,7 +84,7 @@ def with_load(drive: Drive, factor: float) -> Drive:
     """
     if factor == 1.0:
         return drive
-    return drive.replace(pulley=_loaded(drive, factor))
+    return drive.replace(pulley=under_load(drive, factor))
 
 
 def with_pulley(drive: Drive, number: int, pulley: Pulley) -> Drive:
@@ -94,11 +92,12 @@ def with_pulley(drive: Drive, number: int, pulley: Pulley) -> Drive:
     return drive.replace(pulley=[*drive.pulleys[:number], pulley, *drive.pulleys[number + 1 :]])
 
 
-def _at_speed(pulley: Pulley, speed: float) -> Pulley:
+def turned_at(pulley: Pulley, speed: float) -> Pulley:
+    """A pulley with a prescribed speed, in place of its motor, torque and loads."""
     return pulley.replace(speed=Constant(value=speed), torque=None, load=(), harmonics=())
 
 
-def _loaded(drive: Drive, factor: float) -> list[Pulley]:
+def under_load(drive: Drive, factor: float) -> list[Pulley]:
     """The pulleys with all torques and loads multiplied."""
     if factor == 1.0:
         return list(drive.pulleys)

@@ -1,6 +1,6 @@
 """Duty cycle: operating points of a duty table, and means weighted by duration."""
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from functools import partial
 from pathlib import Path
 from typing import Any, NamedTuple
@@ -10,10 +10,18 @@ from numpy.typing import ArrayLike, NDArray
 
 from beltdyn.arrays import FloatArray
 from beltdyn.errors import ModelError
-from beltdyn.model import Drive
+from beltdyn.model import Drive, Pulley
 from beltdyn.model.duty import PASS, columns_of
 from beltdyn.parts.table_file import HeadedColumn, read_headed
-from beltdyn.points.changed_drive import at_speed, driver_of, held_at, sense_of, with_load, with_power, with_torque
+from beltdyn.points.changed_drive import (
+    driver_of,
+    held_at,
+    sense_of,
+    turned_at,
+    under_load,
+    under_power,
+    under_torque,
+)
 from beltdyn.points.operating_points import VARIABLES, Axes, OperatingPoints
 from beltdyn.results import Result, Variable
 from beltdyn.solvers.progress import Report
@@ -163,19 +171,24 @@ def at_row(held: Drive, columns: list[Column], row: int) -> Drive:
     load = next((value for one, value in given if one.what == "load"), 1.0)
     if load < 0.0:
         raise ModelError(f"row {row + 1}: load = {load:g} is negative, with which loads would drive.")
-    changed = with_load(held, load)
+    pulleys, belt = under_load(held, load), held.belt
     for one, value in sorted(given, key=lambda column: column[0].what != "speed"):
         if one.what == "speed" and not one.pulley:
             driver = driver_of(held)
-            changed = at_speed(changed, driver, sense_of(held, driver) * value)
-        elif one.what in _CHANGES:
-            changed = _CHANGES[one.what](changed, held.number_of(one.pulley), value)
+            pulleys[driver] = turned_at(pulleys[driver], sense_of(held, driver) * value)
+        elif one.what in _OF_PULLEYS:
+            number = held.number_of(one.pulley)
+            pulleys[number] = _CHANGES[one.what](held, number, value, pulleys)
         elif one.what == "temperature":
-            changed = changed.replace(belt=changed.belt.replace(temperature=value))
-    return changed
+            belt = belt.replace(temperature=value)
+    return held.replace(pulley=pulleys, belt=belt)
 
 
-_CHANGES = {"speed": at_speed, "torque": with_torque, "power": with_power}
+_CHANGES: dict[str, Callable[[Drive, int, float, list[Pulley]], Pulley]] = {
+    "speed": lambda drive, number, speed, pulleys: turned_at(pulleys[number], speed),
+    "torque": lambda drive, number, torque, pulleys: under_torque(pulleys[number], torque),
+    "power": under_power,
+}
 
 
 def _means(arrays: Mapping[str, NDArray[np.float64]], durations: NDArray[np.float64]) -> Axes:

@@ -20,11 +20,11 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from beltdyn.arrays import FloatArray, IntArray
+from beltdyn.arrays import BoolArray, FloatArray, IntArray
 from beltdyn.model import Prepared
 from beltdyn.model.path import span_directions, wrap_angles
 from beltdyn.results.mechanics import across
-from beltdyn.results.tension_balance import TensionBalance, newton_step
+from beltdyn.results.tension_balance import Condition, TensionBalance
 
 STATE = ("span_tension", "belt_speed", "pulley_center")
 """What a slip safety follows from, by the names of recorded variables."""
@@ -35,8 +35,10 @@ _ACCURACY = 1e-6
 """Of the slip safety."""
 _SLACK = 1e-3
 """Tension that presses, over the mean one, at which a span counts as slack."""
-_MOST_STEPS, _WHOLE_STEPS, _WIDEST_STEP = 40, 12, 0.5
-"""Steps of Newton's method, how many before halved ones, as at the kink of a stop, and the longest one, over scales."""
+_LEFT = 0.1
+"""Tension that presses after a step of Newton's method, over that before, at least."""
+_WHOLE_STEPS, _DAMPED_STEPS, _WIDEST_STEP = 10, 24, 0.5
+"""Steps of Newton's method, then halved ones, as at the kink of a stop, and the longest one, over scales."""
 
 
 def slip_safety_of_states(
@@ -74,7 +76,7 @@ def friction_used(tension: FloatArray, belt_speed: FloatArray, centers: FloatArr
 
 
 def _safeties(balance: TensionBalance) -> FloatArray:
-    """Factors at which s = 1, shape (n, pulleys), by Newton's method, or between two powers of `_GROWTH` by secants.
+    """Factors at which s = 1, shape (n, pulleys): between which powers of `_GROWTH`, and there by Newton's method.
 
     1 / s is straight over 1 / f where the sum of both tensions, or one of them, is held.
     """
@@ -83,28 +85,28 @@ def _safeties(balance: TensionBalance) -> FloatArray:
     loaded = balance.loaded() & ~np.isnan(present)
     found = np.where(loaded, np.where(np.isinf(present), 0.0, 1.0 / present), np.nan)
     sought = loaded & np.isfinite(present)
-    direct = _directly(balance, *np.nonzero(sought))
-    found[sought] = np.where(np.isnan(direct), found[sought], direct)
-    sought[sought] = np.isnan(direct)
     between = list[tuple[IntArray, IntArray, _Point, _Point]]()
     for growth, open_ in (
         (_GROWTH, sought & (present < 1.0)),
         (1.0 / _GROWTH, sought & (present >= 1.0)),
     ):
         left, last = open_.copy(), _Point(np.ones(every.size), balance.start, 1.0 / present)
+        earlier = last.unknowns.copy()
         for step in range(1, _STEPS + 1):
             rows = np.flatnonzero(left.any(axis=1))
             if not rows.size:
                 break
             before = last.of(rows)
             factor = np.full(rows.size, growth**step)
-            here = _at(balance, rows, factor, before.unknowns)
+            guess = before.unknowns + growth * (before.unknowns - earlier[rows])
+            here = _at(balance, rows, factor, guess, before.unknowns)
             crossed = left[rows] & ((here.spare <= 1.0) if growth > 1.0 else (here.spare >= 1.0))
             one, pulley = np.nonzero(crossed)
             between.append((rows[one], pulley, before.of(one), here.of(one)))
             left[rows] &= ~crossed
             beyond = left[rows] & np.isfinite(here.spare)
             found[rows] = np.where(beyond, factor[:, None] * here.spare, found[rows])
+            earlier[rows] = before.unknowns
             last.put(rows, here)
     if between:
         rows, pulley = (np.concatenate(parts) for parts in list(zip(*between, strict=True))[:2])
@@ -115,42 +117,73 @@ def _safeties(balance: TensionBalance) -> FloatArray:
     return found
 
 
-def _directly(balance: TensionBalance, rows: IntArray, pulley: IntArray) -> FloatArray:
-    """Factors at which s = 1 of one pulley each, or a span gets slack before; NaN where neither is found."""
-    every = np.unique(rows)
-    slackest = np.argmin(balance.differences[every], axis=1)
+def _between(balance: TensionBalance, rows: IntArray, pulley: IntArray, low: "_Point", high: "_Point") -> FloatArray:
+    """Factors at which s = 1 of one pulley each, or a span gets slack before, between two states."""
+    own, lost = np.arange(rows.size), ~high.spare.any(axis=1)
+    one, other = low.spare[own, pulley] - 1.0, high.spare[own, pulley] - 1.0
+    part = np.where(lost, 0.0, one / np.where(one == other, 1.0, one - other))
+    factor = 1.0 / ((1.0 - part) / low.factor + part / high.factor)
+    unknowns = low.unknowns + part[:, None] * (high.unknowns - low.unknowns)
 
-    def spare(own: IntArray, values: FloatArray, factor: FloatArray) -> FloatArray:
-        return np.asarray(1.0 / balance.use(rows[own], factor, values)[np.arange(own.size), pulley[own]] - 1.0)
+    def slips(some: IntArray) -> Condition:
+        return lambda pressing, use: 1.0 / use[np.arange(some.size), pulley[some]] - 1.0
 
-    def pressing(own: IntArray, values: FloatArray, factor: FloatArray) -> FloatArray:
-        left = balance.pressing(every[own], factor, values)[np.arange(own.size), slackest[own]]
-        return np.asarray(left / balance.mean[every[own]] - _SLACK)
+    found = _newton(balance, rows, factor, unknowns, slips)
+    found = np.where(_within(found, low, high), found, np.nan)
+    gone = np.flatnonzero(lost)
+    each, back = np.unique(rows[gone], return_inverse=True)
+    first = gone[np.unique(back, return_index=True)[1]]
+    slackest = np.argmin(balance.differences[each], axis=1)
 
-    slips, slack = _newton(balance, rows, spare), _newton(balance, every, pressing)
-    return np.fmin(slips, slack[np.searchsorted(every, rows)])
+    def gets_slack(some: IntArray) -> Condition:
+        mean = balance.mean[each[some]]
+        return lambda pressing, use: pressing[np.arange(some.size), slackest[some]] / mean - _SLACK
+
+    slack = _newton(balance, each, low.factor[first], low.unknowns[first], gets_slack, _DAMPED_STEPS)
+    below, above = low.of(first), high.of(first)
+    open_ = np.flatnonzero(~_within(slack, below, above))
+    if open_.size:
+        slack[open_] = _by_secants(
+            balance, each[open_], below.of(open_), above.of(open_), lambda some: gets_slack(open_[some])
+        )
+    found[gone] = np.fmin(found[gone], slack[back])
+    left = np.flatnonzero(np.isnan(found))
+    if left.size:
+        found[left] = _by_secants(balance, rows[left], low.of(left), high.of(left), lambda some: slips(left[some]))
+    return found
+
+
+def _within(factor: FloatArray, low: "_Point", high: "_Point") -> BoolArray:
+    """Whether factors are between those of two states."""
+    ends = np.sort([low.factor, high.factor], axis=0)
+    return np.asarray((factor >= (1.0 - _ACCURACY) * ends[0]) & (factor <= (1.0 + _ACCURACY) * ends[1]))
 
 
 def _newton(
-    balance: TensionBalance, rows: IntArray, condition: Callable[[IntArray, FloatArray, FloatArray], FloatArray]
+    balance: TensionBalance,
+    rows: IntArray,
+    factor: FloatArray,
+    unknowns: FloatArray,
+    condition: Callable[[IntArray], Condition],
+    more_steps: int = 0,
 ) -> FloatArray:
-    """Factors at which a condition holds, by Newton's method for them and the unknowns of the balance together.
+    """Factors at which conditions hold, by Newton's method for them and the unknowns of the balance together.
 
-    It begins at the present state; NaN where it does not converge. The condition takes numbers of entries of rows, the
-    unknowns of the balance and the factors there.
+    NaN where it does not converge. Conditions are those of some entries of rows.
     """
     scales = np.append(balance.scales, 1.0)
-    found = np.column_stack([balance.start[rows], np.zeros(rows.size)])
+    found = np.column_stack([unknowns, np.log(factor)])
     done, open_ = np.zeros(rows.size, dtype=bool), np.arange(rows.size)
-
-    def off(values: FloatArray) -> FloatArray:
-        factor = np.exp(values[:, -1])
-        missing = balance.residual(rows[open_], factor, values[:, :-1])
-        return np.column_stack([missing, condition(open_, values[:, :-1], factor)])
-
-    for number in range(_MOST_STEPS if rows.size else 0):
-        step = -newton_step(off, found[open_], scales) * (1.0 if number < _WHOLE_STEPS else 0.5)
+    for number in range(_WHOLE_STEPS + more_steps if rows.size else 0):
+        here = found[open_]
+        step = -balance.newton_step(rows[open_], np.exp(here[:, -1]), here[:, :-1], condition(open_))
+        step *= 1.0 if number < _WHOLE_STEPS else 0.5
         step *= np.minimum(1.0, _WIDEST_STEP / np.maximum(np.abs(step / scales).max(axis=1), 1e-12))[:, None]
+        before, after = (
+            balance.pressing(rows[open_], np.exp(one[:, -1]), one[:, :-1]) for one in (here, here + step)
+        )
+        held = np.where(after < _LEFT * before, (1.0 - _LEFT) * before / (before - after), 1.0)
+        step *= np.where(before > 0.0, held, 1.0).min(axis=1)[:, None]
         found[open_] += step
         settled = np.all(np.abs(step) <= _ACCURACY * scales, axis=1)
         done[open_[settled]] = True
@@ -166,7 +199,7 @@ class _Point(NamedTuple):
     factor: FloatArray
     unknowns: FloatArray
     spare: FloatArray
-    """1 / s of each pulley; zero where there is no balance."""
+    """1 / s of each pulley; zero where there is no balance, or a span is slack."""
 
     def of(self, rows: NDArray[np.intp]) -> "_Point":
         """Some of them."""
@@ -178,31 +211,41 @@ class _Point(NamedTuple):
             own[rows] = values
 
 
-def _at(balance: TensionBalance, rows: IntArray, factor: FloatArray, guess: FloatArray) -> _Point:
-    """States under a factor on the loads."""
+def _at(
+    balance: TensionBalance, rows: IntArray, factor: FloatArray, guess: FloatArray, other: FloatArray | None = None
+) -> _Point:
+    """States under a factor on the loads, from a guess, or else from another one."""
     unknowns = balance.solve(rows, factor, guess)
     lost = np.isnan(unknowns[:, 0])
+    if other is not None and lost.any():
+        unknowns[lost], guess = balance.solve(rows[lost], factor[lost], other[lost]), other
+        lost = np.isnan(unknowns[:, 0])
     spare = 1.0 / balance.use(rows, factor, unknowns)
-    spare[lost] = 0.0
+    spare[lost | (balance.pressing(rows, factor, unknowns).min(axis=1) < _SLACK * balance.mean[rows])] = 0.0
     return _Point(factor, np.where(lost[:, None], guess, unknowns), spare)
 
 
-def _between(balance: TensionBalance, rows: IntArray, pulley: IntArray, low: _Point, high: _Point) -> FloatArray:
-    """Factors at which s = 1 of one pulley each, between two states, by the regula falsi (Illinois)."""
-    own = np.arange(rows.size)
-    near, far = 1.0 / low.factor, 1.0 / high.factor
-    a, b = low.spare[own, pulley] - 1.0, high.spare[own, pulley] - 1.0
+def _by_secants(
+    balance: TensionBalance, rows: IntArray, low: _Point, high: _Point, condition: Callable[[IntArray], Condition]
+) -> FloatArray:
+    """Factors at which conditions hold, or a span gets slack before, by the regula falsi (Illinois)."""
+    near, far, own = 1.0 / low.factor, 1.0 / high.factor, np.arange(rows.size)
+
+    def value(some: IntArray, point: _Point) -> FloatArray:
+        pressing = balance.pressing(rows[some], point.factor, point.unknowns)
+        return np.where(point.spare.any(axis=1), condition(some)(pressing, 1.0 / point.spare), -1.0)
+
+    a, b = value(own, low), value(own, high)
     at_near, root, open_ = low.unknowns, near.copy(), own
     for _ in range(_REFINEMENTS):
         if not open_.size:
             break
         root[open_] = (near - a * (far - near) / np.where(a == b, 1.0, b - a))[open_]
         here = _at(balance, rows[open_], 1.0 / root[open_], at_near[open_])
-        spare = here.spare[np.arange(open_.size), pulley[open_]]
-        value = spare - 1.0
-        same = np.sign(value) == np.sign(a[open_])
+        now = value(open_, here)
+        same = np.sign(now) == np.sign(a[open_])
         near[open_], far[open_] = np.where(same, root[open_], near[open_]), np.where(same, far[open_], root[open_])
-        a[open_], b[open_] = np.where(same, value, 0.5 * a[open_]), np.where(same, 0.5 * b[open_], value)
-        at_near[open_] = np.where((same & (spare > 0.0))[:, None], here.unknowns, at_near[open_])
-        open_ = open_[(np.abs(value) > _ACCURACY) & (np.abs(far - near)[open_] > _ACCURACY * root[open_])]
+        a[open_], b[open_] = np.where(same, now, 0.5 * a[open_]), np.where(same, 0.5 * b[open_], now)
+        at_near[open_] = np.where((same & here.spare.any(axis=1))[:, None], here.unknowns, at_near[open_])
+        open_ = open_[(np.abs(now) > _ACCURACY) & (np.abs(far - near)[open_] > _ACCURACY * root[open_])]
     return np.asarray(1.0 / root)

@@ -8,7 +8,6 @@ else holds a tensioner there, as weight and dry friction, goes on holding it.
 
 from collections.abc import Callable
 from copy import copy
-from functools import partial
 from typing import NamedTuple, Self
 
 import numpy as np
@@ -28,6 +27,10 @@ _PRESSED = 0.1
 """Least tension above that at which the belt lifts off: of a guess over the mean tension, of a step over the last."""
 _LONGEST = 0.2
 """Step of Newton's method for the place of a tensioner, over the way on which it moves by the smallest radius."""
+
+
+Condition = Callable[[FloatArray, FloatArray], FloatArray]
+"""What sets the factor on the loads: zero, shape (n,), of tensions that press (n, spans) and of s (n, pulleys)."""
 
 
 class States(NamedTuple):
@@ -152,8 +155,10 @@ class TensionBalance:
 
     def use(self, rows: IntArray, factor: FloatArray, unknowns: FloatArray) -> FloatArray:
         """What s is at each pulley, shape (n, pulleys); inf where the belt lifts off."""
-        tension, wrap = self._tension(rows, factor, unknowns), self._geometry(rows, unknowns).wrap
-        before, after = across(tension - self._lifted[rows], self._prepared)
+        return self._use(rows, self.pressing(rows, factor, unknowns), self._geometry(rows, unknowns).wrap)
+
+    def _use(self, rows: IntArray, pressing: FloatArray, wrap: FloatArray) -> FloatArray:
+        before, after = across(pressing, self._prepared)
         held = (before + after) * np.tanh(0.5 * self._frictions[rows] * wrap)
         return np.where(held > 0.0, np.abs(before - after) / held, np.where(np.isnan(held), np.nan, np.inf))
 
@@ -171,26 +176,58 @@ class TensionBalance:
 
         The belt presses on every pulley: where it does not, it has slid before.
         """
-        found, step = unknowns.copy(), np.full(unknowns.shape, np.inf)
+        found, left = unknowns.copy(), np.arange(rows.size)
         edge = np.max(self._lifted[rows] - factor[:, None] * self.differences[rows], axis=1)
         found[:, 0] = np.maximum(found[:, 0], edge + _PRESSED * np.abs(self.mean[rows]))
         for _ in range(_MOST_ITERATIONS):
-            step = -newton_step(partial(self.residual, rows, factor), found, self.scales)
+            step = -self.newton_step(rows[left], factor[left], found[left])
             step[:, 1:] = np.clip(step[:, 1:], -_LONGEST * self.scales[1:], _LONGEST * self.scales[1:])
-            step[:, 0] = np.maximum(step[:, 0], (_PRESSED - 1.0) * (found[:, 0] - edge))
-            found = found + step
-            if not np.nanmax(np.abs(step) / self.scales, initial=0.0) > _CONVERGED:
+            step[:, 0] = np.maximum(step[:, 0], (_PRESSED - 1.0) * (found[left, 0] - edge[left]))
+            found[left] += step
+            away = np.max(np.abs(step) / self.scales, axis=1)
+            left, away = left[~(away <= _CONVERGED)], away[~(away <= _CONVERGED)]
+            if not np.isfinite(away).any():
                 break
-        lost = np.any(~(np.abs(step) <= 1e3 * _CONVERGED * self.scales), axis=1)
-        found[lost] = np.nan
+        else:
+            left = left[away > 1e3 * _CONVERGED]
+        found[left] = np.nan
         return found
+
+    def newton_step(
+        self, rows: IntArray, factor: FloatArray, unknowns: FloatArray, condition: "Condition | None" = None
+    ) -> FloatArray:
+        """What Newton's method takes off the unknowns, and off ln f with a condition that sets the factor f.
+
+        Difference quotients; the path changes with tensioners alone, so tensions and f are varied on it.
+        """
+        shape, moved = self._geometry(rows, unknowns), unknowns.copy()
+
+        def off(factor: FloatArray, shape: _Geometry) -> FloatArray:
+            missing = self._off(rows, factor, moved, shape)
+            if condition is None:
+                return missing
+            pressing = self.pressing(rows, factor, moved)
+            return np.column_stack([missing, condition(pressing, self._use(rows, pressing, shape.wrap))])
+
+        here, slopes = off(factor, shape), list[FloatArray]()
+        for one, scale in enumerate(self.scales.tolist()):
+            moved[:, one] += _DIFFERENCE * scale
+            there = off(factor, shape if one == 0 else self._geometry(rows, moved))
+            slopes.append((there - here) / (_DIFFERENCE * scale))
+            moved[:, one] = unknowns[:, one]
+        if condition is not None:
+            slopes.append((off(factor * (1.0 + _DIFFERENCE), shape) - here) / _DIFFERENCE)
+        return _solved(np.stack(slopes, axis=2), here)
 
     def _tension(self, rows: IntArray, factor: FloatArray, unknowns: FloatArray) -> FloatArray:
         return np.asarray(unknowns[:, :1] + factor[:, None] * self.differences[rows])
 
     def residual(self, rows: IntArray, factor: FloatArray, unknowns: FloatArray) -> FloatArray:
         """What the balances miss: unstretched length, m, or the tension of a pulled span, N, then each tensioner."""
-        tension, shape = self._tension(rows, factor, unknowns), self._geometry(rows, unknowns)
+        return self._off(rows, factor, unknowns, self._geometry(rows, unknowns))
+
+    def _off(self, rows: IntArray, factor: FloatArray, unknowns: FloatArray, shape: _Geometry) -> FloatArray:
+        tension = self._tension(rows, factor, unknowns)
         missing = [self._belt_on(rows, tension, shape) if self._pulled is None else tension[:, self._pulled]]
         pressing = tension - self._lifted[rows]
         for number, one in enumerate(self._carriers):
@@ -268,26 +305,6 @@ def _spring(tensioner: MovingTensioner, place: FloatArray) -> FloatArray:
     row = tensioner.spring
     low, high = (np.maximum(depth, 0.0) for depth in (row["lower"] - place, place - row["upper"]))
     return np.asarray(row["preload"] - row["rate"] * place + row["stop_stiffness"] * (low - high))
-
-
-def newton_step(off: Callable[[FloatArray], FloatArray], unknowns: FloatArray, scales: FloatArray) -> FloatArray:
-    """What Newton's method takes off many sets of unknowns, with difference quotients.
-
-    Parameters
-    ----------
-    off
-        What equations miss, shape (n, k), of unknowns of this shape.
-    unknowns : ndarray, shape (n, k)
-    scales : ndarray, shape (k,)
-        Sizes of the unknowns.
-    """
-    here = off(unknowns)
-    slopes = np.empty((*here.shape, here.shape[1]))
-    for one, scale in enumerate(scales):
-        moved = unknowns.copy()
-        moved[:, one] += _DIFFERENCE * scale
-        slopes[:, :, one] = (off(moved) - here) / (_DIFFERENCE * scale)
-    return _solved(slopes, here)
 
 
 def _solved(slopes: FloatArray, off: FloatArray) -> FloatArray:

@@ -5,7 +5,7 @@ import pytest
 import beltdyn as bd
 from beltdyn.errors import ModelError
 from beltdyn.model import Drive
-from beltdyn.points.changed_drive import at_speed, driver_of, held_at, sense_of, with_load, with_torque
+from beltdyn.points.changed_drive import at_speed, driver_of, held_at, sense_of, under_power, under_torque, with_load
 
 
 @pytest.fixture
@@ -47,12 +47,20 @@ def test_a_speed_stands_in_place_of_motor_and_loads(loaded: Drive) -> None:
 
 
 def test_a_torque_leaves_motors(loaded: Drive) -> None:
-    found = with_torque(loaded, 1, -7.0).pulleys[1]
+    found = under_torque(loaded.pulleys[1], -7.0)
     assert found.torque is not None
     assert found.torque.at([0.0])[0] == -7.0
     assert [load.kind for load in found.load] == ["motor"]
     with pytest.raises(ModelError, match="driver has a prescribed speed"):
-        with_torque(loaded, 0, 1.0)
+        under_torque(loaded.pulleys[0], 1.0)
+
+
+def test_a_power_is_taken_at_the_speed_without_slip(loaded: Drive) -> None:
+    driver, driven = at_speed(loaded, 0, 20.0).pulleys
+    found = under_power(loaded, 1, 100.0, [driver, driven])
+    assert found.torque is not None
+    speed = 20.0 * loaded.path.radii[0] / loaded.path.radii[1]
+    assert found.torque.at([0.0])[0] == pytest.approx(-100.0 / speed)
 
 
 def test_what_drives(loaded: Drive) -> None:
