@@ -179,9 +179,7 @@ def _newton(
         step = -balance.newton_step(rows[open_], np.exp(here[:, -1]), here[:, :-1], condition(open_))
         step *= 1.0 if number < _WHOLE_STEPS else 0.5
         step *= np.minimum(1.0, _WIDEST_STEP / np.maximum(np.abs(step / scales).max(axis=1), 1e-12))[:, None]
-        before, after = (
-            balance.pressing(rows[open_], np.exp(one[:, -1]), one[:, :-1]) for one in (here, here + step)
-        )
+        before, after = (balance.pressing(rows[open_], np.exp(one[:, -1]), one[:, :-1]) for one in (here, here + step))
         held = np.where(after < _LEFT * before, (1.0 - _LEFT) * before / (before - after), 1.0)
         step *= np.where(before > 0.0, held, 1.0).min(axis=1)[:, None]
         found[open_] += step

@@ -41,6 +41,19 @@ def test_tensions_hub_loads_and_positions_are_those_of_finite_elements(alternato
     assert np.all(lower[[0, 2]] < 0.8)  # the tensioner is limited by a span that gets slack
 
 
+def test_slip_safeties_of_other_loads_lead_to_the_same_loads(alternator: QuasiSteady) -> None:
+    """At rest all states are on one path of the loads, with one slip of each pulley and one slack span."""
+    torques = torques_of(alternator.drive, alternator.driver)(
+        alternator.belt_speed(alternator.drive, torques_of(alternator.drive, alternator.driver))
+    )
+    loads = np.array([0.4, 0.5, 0.7, 1.0, 1.5, 2.0])
+    still = np.zeros(loads.size)
+    found = alternator.slip_safety(alternator.at(still, loads[:, None] * torques, still), np.ones(1))[0]
+    loaded = np.isfinite(found).all(axis=0)
+    assert loaded.sum() == 2
+    np.testing.assert_allclose((found * loads[:, None])[:, loaded] / found[3, loaded], 1.0, rtol=1e-4)
+
+
 def test_acceleration_adds_the_torque_of_all_inertias(alternator: QuasiSteady) -> None:
     speed, acceleration = np.full(2, 10.0), np.array([0.0, 5.0])
     found = alternator.at(speed, np.zeros((2, 3)), acceleration)
