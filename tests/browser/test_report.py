@@ -35,7 +35,7 @@ WIDER = """() => [...document.querySelectorAll("main *, body *")].filter(one => 
 
 @pytest.fixture(scope="module")
 def reports(tmp_path_factory: pytest.TempPathFactory) -> dict[str, Path]:
-    """Of steady running, of its modes, and of two loads beside each other."""
+    """Of steady running, of its modes, of two loads beside each other, and a drive sheet of seven pulleys."""
     folder = tmp_path_factory.mktemp("report")
     drive = bd.loads(files("beltdyn").joinpath("examples", "alternator_drive.toml").read_text(encoding="utf-8"))
     steady = bd.steady_state(drive)
@@ -45,6 +45,8 @@ def reports(tmp_path_factory: pytest.TempPathFactory) -> dict[str, Path]:
         "modes": bd.modes(drive, about=steady),
         "several": [steady, more],
     }
+    duty = [{"share": 0.05, "speed": 80.0 + 20.0 * row, "power": {"alternator": 500.0}} for row in range(20)]
+    shown["sheet"] = bd.sheet(bd.example("accessory_drive").replace(duty=duty), acceleration="2000 rpm/s")
     return {name: bd.write_report(one, folder / f"{name}.html") for name, one in shown.items()}
 
 
@@ -56,7 +58,7 @@ def opened(browser: Any, report: Path, width: int) -> Any:
     return page
 
 
-@pytest.mark.parametrize("name", ["steady", "modes", "several"])
+@pytest.mark.parametrize("name", ["steady", "modes", "several", "sheet"])
 @pytest.mark.parametrize("width", [1600, 1000, 420])
 def test_a_report_fits_screens(
     browser: Any, reports: dict[str, Path], width: int, name: str, shoot: Callable[[Any, str], None]
@@ -102,4 +104,13 @@ def test_a_report_is_printed_whole(browser: Any, reports: dict[str, Path], name:
     printed = page.pdf(path=str(Path(os.environ.get("BELTDYN_PICTURES", tmp_path)) / f"{name}.pdf"), format="A4")
     count = len(re.findall(rb"/Type\s*/Page\b", printed))
     assert height / PAPER_HEIGHT <= count <= 2.0 * height / PAPER_HEIGHT + 1.0
+    page.context.close()
+
+
+def test_a_drive_sheet_is_printed_on_one_page(browser: Any, reports: dict[str, Path]) -> None:
+    """Of seven pulleys and twenty operating points."""
+    page = opened(browser, reports["sheet"], PAPER_WIDTH)
+    page.emulate_media(media="print")
+    assert page.evaluate(WIDER) == []
+    assert len(re.findall(rb"/Type\s*/Page\b", page.pdf(format="A4"))) == 1
     page.context.close()

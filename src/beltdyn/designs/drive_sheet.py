@@ -53,7 +53,7 @@ def sheet(
     table: Path | str | None = None,
     speed: Numbers | None = None,
     points: int = 20,
-    acceleration: Number = 0.0,
+    acceleration: Number = "0 rpm/s",
     light_load: float = 0.1,
     friction: Numbers = "0.7, 1, 1.3",
     tolerance: Number = "0.5 %",

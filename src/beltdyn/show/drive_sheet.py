@@ -32,7 +32,7 @@ def drive_sheet(result: Result) -> Sheet:
     parts: list[Table | Facts] = [Facts(tuple(_facts(dataset))), _pulleys(dataset), _spans(dataset)]
     if "state" in dataset.dims:
         parts.append(_states(dataset))
-    parts += [_points(dataset), _by_name(dataset, "pulley"), _by_name(dataset, "span")]
+    parts += [_points(dataset), _by_name(dataset, "span"), _by_name(dataset, "pulley")]
     if "mode" in dataset.dims:
         parts.append(_modes(dataset))
     if "standard" in dataset.dims:

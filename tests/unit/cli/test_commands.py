@@ -4,14 +4,17 @@ import subprocess
 import sys
 from collections.abc import Callable
 from functools import wraps
+from inspect import signature
 from math import hypot
 from pathlib import Path
-from typing import Any
+from typing import Any, get_args
 
 import numpy as np
 import pytest
 
 from beltdyn import __version__
+from beltdyn.analyses import ANALYSES
+from beltdyn.cli.analysis import analysis_command
 from beltdyn.errors import ConvergenceError
 from beltdyn.model import Drive, advise, install, load
 from beltdyn.results import FileRecorder, Layout, Run, open_run
@@ -267,3 +270,13 @@ def test_a_run_goes_on_by_its_result_file(drive_file: Path, run_main: RunMain) -
     code, _, error = run_main(["simulate", "--resume", str(path)])
     assert code == 2
     assert ".checkpoint does not exist" in error
+
+
+@pytest.mark.parametrize("name", ANALYSES)
+def test_an_analysis_has_defaults_of_the_types_that_its_options_read(name: str) -> None:
+    """A text for an option that reads a text: what a command line fills in is read as what it is given."""
+    command = analysis_command(ANALYSES[name])
+    for option in signature(command).parameters.values():
+        if isinstance(option.default, float | int) and not isinstance(option.default, bool):
+            kinds = get_args(option.annotation) or (option.annotation,)
+            assert {float, int} & set(kinds), f"{option.name} = {option.default}"
