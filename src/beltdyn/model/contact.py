@@ -25,7 +25,8 @@ class Contact(Part):
     Each law of normal force and friction has its own parameters: the friction law ``"relative_creep"`` has
     `creep_ratio`, the slip velocity at saturation over the rim speed; ``"coefficient_slope"`` has `creep_velocity`, the
     slip velocity at saturation; ``"force_slope"`` (as published) has `creep_rate_factor`, the slope of the friction
-    force over the slip velocity.
+    force over the slip velocity; ``"stribeck"`` has `kinetic_ratio` and `stribeck_velocity` beside `creep_ratio`, and
+    friction that falls with the slip velocity.
 
     Examples
     --------

@@ -6,6 +6,7 @@ from beltdyn.contact.friction.law import LAWS as LAWS
 from beltdyn.contact.friction.law import FrictionLaw as FrictionLaw
 from beltdyn.contact.friction.law import FrictionParameters as FrictionParameters
 from beltdyn.contact.friction.relative_creep import RelativeCreep as RelativeCreep
+from beltdyn.contact.friction.stribeck import Stribeck as Stribeck
 from beltdyn.kernel import by_type, kernel
 
 _pressed = by_type(LAWS.by_class("force"), "friction_force")

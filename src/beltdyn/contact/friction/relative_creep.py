@@ -69,10 +69,11 @@ def relative_creep(
     return force, -share * normal, -share * slip, -force * law.creep_ratio * scaled / (creep * creep)
 
 
-_KEYS = (
+CREEP_KEYS = (
     Parameter(
         "creep_ratio", "", "the slip velocity at which friction saturates, over the rim speed", found=True, example=0.01
     ),
     Parameter("standstill_creep", "m/s", "the same slip velocity on a pulley at standstill", found=True, example=0.001),
 )
-register(FrictionLaw("relative_creep", RelativeCreep, relative_creep, _KEYS))
+"""The keys of a creep velocity that is proportional to the rim speed."""
+register(FrictionLaw("relative_creep", RelativeCreep, relative_creep, CREEP_KEYS))

@@ -1,0 +1,96 @@
+"""Friction that falls from its static coefficient mu to a kinetic one (Stribeck; Bo and Pavelescu 1982).
+
+f_t = -mu f_n v_t / v_c up to the creep velocity v_c = sqrt((s v_r)^2 + v_0^2), beyond it
+
+    f_t = -mu f_n sign(v_t) (r + (1 - r) exp(-(|v_t| - v_c) / v_s)).
+
+The negative slope on sliding arcs drives stick-slip and squeal; a ratio r above 1 gives the rising friction of rubber.
+"""
+
+from math import exp, sqrt
+from typing import NamedTuple
+
+from numpy.typing import ArrayLike
+
+from beltdyn.arrays import FloatArray
+from beltdyn.contact.friction.law import FrictionLaw
+from beltdyn.contact.friction.relative_creep import CREEP_KEYS, RelativeCreep
+from beltdyn.kernel import kernel
+from beltdyn.kinds import Parameter, register
+
+
+class Stribeck(NamedTuple):
+    """Parameters of friction that falls with the slip velocity."""
+
+    creep_ratio: float
+    """s."""
+    standstill_creep: float
+    """v_0, m/s."""
+    kinetic_ratio: float
+    """r."""
+    stribeck_velocity: float
+    """v_s, m/s."""
+
+    def saturation(self, normal: ArrayLike, friction: ArrayLike, rim: ArrayLike) -> FloatArray:
+        """Slip velocity v_c whatever the normal force, m/s."""
+        return RelativeCreep(self.creep_ratio, self.standstill_creep).saturation(normal, friction, rim)
+
+    def smoothed(self, factor: float) -> "Stribeck":
+        """The law with its velocities larger by a factor."""
+        return Stribeck(
+            self.creep_ratio * factor,
+            self.standstill_creep * factor,
+            self.kinetic_ratio,
+            self.stribeck_velocity * factor,
+        )
+
+
+@kernel
+def stribeck(
+    law: Stribeck, slip: float, normal: float, friction: float, rim: float
+) -> tuple[float, float, float, float]:
+    """Friction force and its derivatives.
+
+    Parameters
+    ----------
+    law
+        Parameters.
+    slip
+        Slip velocity v_t, m/s.
+    normal
+        Normal force f_n, N/m, not negative.
+    friction
+        Static coefficient mu.
+    rim
+        Speed of the rim v_r, m/s.
+
+    Returns
+    -------
+    tuple of 4 floats
+        f_t (N/m), df_t/dv_t (N s/m^2), df_t/df_n, df_t/dv_r (N s/m^2).
+    """
+    scaled = law.creep_ratio * rim
+    creep = sqrt(scaled * scaled + law.standstill_creep * law.standstill_creep)
+    creep_by_rim = law.creep_ratio * scaled / creep
+    if abs(slip) <= creep:
+        share = friction / creep
+        force = -share * slip * normal
+        return force, -share * normal, -share * slip, -force * creep_by_rim / creep
+    sign = 1.0 if slip > 0.0 else -1.0
+    fall = (1.0 - law.kinetic_ratio) * exp(-(abs(slip) - creep) / law.stribeck_velocity)
+    by_normal = -sign * friction * (law.kinetic_ratio + fall)
+    by_slip = friction * normal * fall / law.stribeck_velocity
+    return by_normal * normal, by_slip, by_normal, -sign * by_slip * creep_by_rim
+
+
+_KEYS = (
+    *CREEP_KEYS,
+    Parameter("kinetic_ratio", "", "the kinetic over the static coefficient of friction", example=0.7),
+    Parameter(
+        "stribeck_velocity",
+        "m/s",
+        "the slip velocity over which friction falls to its kinetic value by 1/e",
+        example=0.5,
+    ),
+)
+register(FrictionLaw("stribeck", Stribeck, stribeck, _KEYS))
