@@ -20,7 +20,7 @@ from beltdyn.stretch import StretchParameters
 from beltdyn.system.arrays import System
 from beltdyn.system.build import belt_system
 from beltdyn.system.state import State
-from beltdyn.theory.sagging_span import lowest_frequency, sag_parameter
+from beltdyn.theory.span import lowest_frequency, sag_parameter
 
 GRAVITY = 9.81
 PINS = [(0, 0), (0, 1), (-1, 0), (-1, 1)]

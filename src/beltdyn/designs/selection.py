@@ -19,7 +19,7 @@ from beltdyn.parts.messages import reason
 from beltdyn.parts.quantity import RPM, number_in, numbers_in
 from beltdyn.theory.belt_rating import least_tension
 from beltdyn.theory.path import OpenBelt, open_belt
-from beltdyn.theory.sagging_span import lowest_frequency
+from beltdyn.theory.span import lowest_frequency
 
 DIAMETERS = tuple(
     1e-3 * one

@@ -7,7 +7,7 @@ import numpy as np
 from beltdyn.arrays import FloatArray
 from beltdyn.model.belt import Belt
 from beltdyn.model.path import Path
-from beltdyn.theory.sagging_span import lowest_frequency, sag_parameter
+from beltdyn.theory.span import lowest_frequency, sag_parameter
 
 
 @dataclass(frozen=True)
@@ -44,7 +44,7 @@ class Installation:
 
 
 def span_frequencies(belt: Belt, path: Path, tensions: FloatArray, gravity: tuple[float, float]) -> FloatArray:
-    """First frequencies of the spans of a belt of given length, Hz; see `theory.sagging_span`.
+    """First frequencies of the spans of a belt of given length, Hz; see `theory.span`.
 
     The mass of a meter is that of the stretched belt. A slack belt does not swing: zero.
     """

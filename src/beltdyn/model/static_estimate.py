@@ -8,7 +8,7 @@ from beltdyn.arrays import FloatArray
 from beltdyn.model.belt import Belt
 from beltdyn.model.contact import Contact
 from beltdyn.model.path import Path
-from beltdyn.theory.stretch import stretch_with_penetration
+from beltdyn.theory.static_tension import stretch_with_penetration
 
 
 @dataclass(frozen=True)

@@ -8,7 +8,7 @@ import numpy as np
 from beltdyn.arrays import FloatArray
 from beltdyn.model.drive import Drive
 from beltdyn.model.installation import Installation, span_frequencies
-from beltdyn.theory.stiff_span import deflection_force, stretching
+from beltdyn.theory.span import deflection_force, stretching
 
 DEFLECTION = 0.016
 """Deflection of the middle over the length of a span, by custom of belt makers (1/64 inch per inch)."""
@@ -38,7 +38,7 @@ def tension_checks(
     """Frequencies and deflection forces of the spans of a belt at rest, new, run in, and before it is tensioned again.
 
     The span is a string with the bending stiffness of the belt between hinges, and stretched by its deflection where
-    the pulleys are fixed; see `beltdyn.theory.stiff_span`.
+    the pulleys are fixed; see `beltdyn.theory.span`.
     """
     if not installation.span_tensions.min() > 0.0:
         return ()

@@ -13,10 +13,8 @@ __getattr__, __dir__, __all__ = lazy_loader.attach(
         "hysteresis",
         "path",
         "running_drive",
-        "sagging_span",
         "sliding_flutter",
+        "span",
         "static_tension",
-        "stiff_span",
-        "stretch",
     ],
 )

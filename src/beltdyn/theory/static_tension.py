@@ -3,6 +3,8 @@
 from math import sqrt
 from typing import NamedTuple
 
+import numpy as np
+
 from beltdyn.errors import ModelError
 from beltdyn.stretch import StretchParameters
 from beltdyn.theory.path import open_belt
@@ -164,3 +166,27 @@ def span_radius(depth: float, radius: float, bend: float, wrap: float) -> float:
     length = sqrt(bend)
     bent = min(0.5 * wrap, length / radius)
     return radius - 0.5 * depth + bent * (length - 0.5 * radius * bent)
+
+
+def stretch_with_penetration(length: float, path: float, law: StretchParameters, sinking: float) -> float:
+    """Stretch g of a belt at rest with penetration: the root of g length + sinking T g = path, T of g.
+
+    Examples
+    --------
+    >>> from beltdyn.stretch import Linear
+    >>> round(bd.theory.static_tension.stretch_with_penetration(1.0, 1.01, Linear(1e4), sinking=1e-5), 6)
+    1.009083
+    """
+    lower, upper = 1.0, path / length
+    g = upper
+    while True:
+        force = float(law.tension(g))
+        excess = g * length + sinking * force * g - path
+        lower, upper = (lower, g) if excess > 0.0 else (g, upper)
+        slope = length + sinking * (force + float(law.tangent_stiffness(g)) * g)
+        ahead = g - excess / slope
+        if not lower < ahead < upper:
+            ahead = 0.5 * (lower + upper)
+        if abs(ahead - g) <= np.finfo(float).eps * g:
+            return ahead
+        g = ahead

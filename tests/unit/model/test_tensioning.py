@@ -5,7 +5,7 @@ import pytest
 
 from beltdyn.model import Drive, install, loads
 from beltdyn.model.tensioning import DEFLECTION, HELD, STATES, TensionCheck, tension_checks
-from beltdyn.theory.stiff_span import deflection_force
+from beltdyn.theory.span import deflection_force
 
 TEXT = """
 [belt]

@@ -1,0 +1,87 @@
+"""A span between its pulleys: lowest frequency with sag, and the force that deflects it.
+
+Frequency (Irvine and Caughey 1974).  A parabola between ends that hold it is stretched as it swings, since it sags.
+With the weight w per length across it
+
+    lambda^2 = (w l / T)^2 l EA / (T L),        L = l (1 + (w l / T)^2 / 8),
+    tan(k / 2) = k / 2 - 4 / lambda^2 (k / 2)^3,        omega^2 = (T + EI (k / l)^2) (k / l)^2 / m,
+
+where k, the first root, belongs to the symmetric swing: pi without sag, and up to 3 pi.  The antisymmetric one,
+k = 2 pi, does not stretch the span, and is the lowest from lambda = 2 pi on.
+
+Force.  With the tension T, the bending stiffness EI and u = l/2 sqrt(T / EI), a force F deflects the middle by
+
+    w = F l / 4T (1 - tanh(u) / u),
+
+which is F l / 4T of a string for large u, and F l^3 / 48 EI of a beam for small u. A span between fixed centers is
+stretched by 2 w^2 / l, as by a bent line of two straight halves.
+"""
+
+from math import cos, pi, sin, sqrt, tanh
+
+_SMALLEST = 1e-12
+"""lambda^2 below which a span is straight."""
+_SMALL = 1e-3
+"""u below which 1 - tanh(u) / u is its series, u^2 / 3."""
+
+
+def sag_parameter(weight: float, length: float, tension: float, axial_stiffness: float) -> float:
+    """Irvine's parameter lambda^2 for the stiffening by sag, 1."""
+    sag = weight * length / tension
+    return sag**2 * axial_stiffness / (tension * (1.0 + sag**2 / 8.0))
+
+
+def lowest_frequency(
+    length: float, tension: float, mass: float, *, bending: float = 0.0, sag_parameter: float = 0.0
+) -> float:
+    """Lowest frequency of transverse vibration of a span in its plane, Hz."""
+    wave = min(symmetric_root(sag_parameter), 2.0 * pi) / length
+    return wave * sqrt((tension + bending * wave**2) / mass) / (2.0 * pi)
+
+
+def symmetric_root(sag_parameter: float) -> float:
+    """First root k of the symmetric swing, between pi and 3 pi, by bisection."""
+    if sag_parameter < _SMALLEST:
+        return pi
+    low, high = 0.5 * pi, 1.5 * pi
+    for _ in range(60):
+        half = 0.5 * (low + high)
+        excess = sin(half) - (half - 4.0 / sag_parameter * half**3) * cos(half)
+        low, high = (half, high) if excess > 0.0 else (low, half)
+    return low + high
+
+
+def deflection_force(deflection: float, length: float, tension: float, bending: float = 0.0) -> float:
+    """Force across the middle of a span that deflects it, N.
+
+    Parameters
+    ----------
+    deflection : float
+        Of the middle, m.
+    length : float
+        Of the span, m.
+    tension : float
+        N.
+    bending : float, default 0
+        Bending stiffness, N m^2.
+
+    Examples
+    --------
+    >>> from beltdyn.theory.span import deflection_force
+    >>> deflection_force(0.01, 0.5, 200.0)  # 4 T w / l of a string
+    16.0
+    """
+    return 4.0 * tension * deflection / length / _flexibility(length, tension, bending)
+
+
+def stretching(deflection: float, length: float) -> float:
+    """How much longer a span becomes by a deflection of its middle, m."""
+    return 2.0 * deflection**2 / length
+
+
+def _flexibility(length: float, tension: float, bending: float) -> float:
+    """1 - tanh(u) / u."""
+    if not bending > 0.0:
+        return 1.0
+    half = 0.5 * length * sqrt(tension / bending)
+    return half**2 / 3.0 if half < _SMALL else 1.0 - tanh(half) / half
