@@ -35,6 +35,8 @@ _ACCURACY = 1e-6
 """Of the slip safety."""
 _SLACK = 1e-3
 """Tension that presses, over the mean one, at which a span counts as slack."""
+_MOST_STEPS = 80
+"""Steps to where a balance is lost, at most."""
 _LEFT = 0.1
 """Tension that presses after a step of Newton's method, over that before, at least."""
 _WHOLE_STEPS, _DAMPED_STEPS, _WIDEST_STEP = 10, 24, 0.5
@@ -140,17 +142,37 @@ def _between(balance: TensionBalance, rows: IntArray, pulley: IntArray, low: "_P
         return lambda pressing, use: pressing[np.arange(some.size), slackest[some]] / mean - _SLACK
 
     slack = _newton(balance, each, low.factor[first], low.unknowns[first], gets_slack, _DAMPED_STEPS)
-    below, above = low.of(first), high.of(first)
-    open_ = np.flatnonzero(~_within(slack, below, above))
+    ends = _within(slack, low.of(first), high.of(first))
+    open_ = np.flatnonzero(~ends)
     if open_.size:
-        slack[open_] = _by_secants(
-            balance, each[open_], below.of(open_), above.of(open_), lambda some: gets_slack(open_[some])
-        )
-    found[gone] = np.fmin(found[gone], slack[back])
+        last = _last(balance, each[open_], low.of(first[open_]), high.factor[first[open_]])
+        slack[open_] = last.factor
+        pairs = np.flatnonzero(~ends[back])
+        high.put(gone[pairs], last.of(np.searchsorted(open_, back[pairs])))
+    passed = ~ends[back] & (high.spare[own, pulley][gone] < 1.0) & np.isnan(found[gone])
+    found[gone] = np.where(passed, np.nan, np.fmin(found[gone], slack[back]))
     left = np.flatnonzero(np.isnan(found))
     if left.size:
         found[left] = _by_secants(balance, rows[left], low.of(left), high.of(left), lambda some: slips(left[some]))
     return found
+
+
+def _last(balance: TensionBalance, rows: IntArray, low: "_Point", high: FloatArray) -> "_Point":
+    """The last states before a balance is lost, as where a tensioner cannot follow, by steps that halve there."""
+    last, earlier, step = low.of(np.arange(rows.size)), low.of(np.arange(rows.size)), 0.25 * (high - low.factor)
+    for _ in range(_MOST_STEPS):
+        open_ = np.flatnonzero(np.abs(step) > _ACCURACY * last.factor)
+        if not open_.size:
+            break
+        here, way = last.of(open_), last.factor[open_] - earlier.factor[open_]
+        slope = (here.unknowns - earlier.unknowns[open_]) / np.where(way == 0.0, np.inf, way)[:, None]
+        factor = here.factor + step[open_]
+        there = _at(balance, rows[open_], factor, here.unknowns + step[open_, None] * slope, here.unknowns)
+        good = there.spare.any(axis=1) & (np.abs(factor - low.factor[open_]) <= np.abs(high - low.factor)[open_])
+        earlier.put(open_[good], here.of(np.flatnonzero(good)))
+        last.put(open_[good], there.of(np.flatnonzero(good)))
+        step[open_] *= np.where(good, 1.0, 0.5)
+    return last
 
 
 def _within(factor: FloatArray, low: "_Point", high: "_Point") -> BoolArray:
