@@ -68,6 +68,12 @@ class Server:
         return said
 
 
+@pytest.fixture(scope="session")
+def serve() -> Callable[..., Server]:
+    """What starts a server in a folder."""
+    return Server
+
+
 @pytest.fixture
 def folder(tmp_path: Path) -> Path:
     text = files("beltdyn").joinpath("examples", "alternator_drive.toml").read_text(encoding="utf-8")

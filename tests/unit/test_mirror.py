@@ -43,6 +43,8 @@ ELSEWHERE = {
     "designs/study_table.py": "unit/designs/test_study.py",
     # Seen by a user through something else, and tested there.
     "app/numbers_view.py": "unit/app/test_page.py",
+    "app/results_view.py": "unit/app/test_page.py",
+    "app/table_dialog.py": "unit/app/test_page.py",
     "__init__.py": "unit/test_public_names.py",
     "analyses.py": "unit/cli/test_analysis.py",
     "cli/*.py": "unit/cli/test_commands.py",

@@ -1,6 +1,7 @@
 """Analyses on the page: start, progress, cancellation and results."""
 
 import math
+import re
 from collections.abc import Callable
 from functools import cache, partial
 from inspect import Parameter, signature
@@ -13,10 +14,14 @@ from docstring_parser import parse
 from nicegui import app, ui
 
 from beltdyn.analyses import ANALYSES, SIMULATE
+from beltdyn.app.computing import COMPILING
 from beltdyn.app.jobs import Job, Outcome
-from beltdyn.app.numbers_view import show_parts
+from beltdyn.app.numbers_view import show_findings, show_parts
+from beltdyn.app.scene import groups
 from beltdyn.app.session import Session
-from beltdyn.errors import ModelError
+from beltdyn.errors import BeltdynError, ModelError
+from beltdyn.model import Drive
+from beltdyn.parts.quantity import RPM
 from beltdyn.parts.text_file import shorten
 
 if TYPE_CHECKING:
@@ -29,6 +34,13 @@ _SHARED = ("output", "progress", "overwrite", "start", "checkpoint")
 """Options set by the page or not needed: its runs are not resumed."""
 _SUFFIXES = {"table": (".csv",), "measured": (".csv",), "study": (".toml",), "compare": (".nc",)}
 """File option -> suffixes of its files; other file options offer all of these."""
+
+
+_RARE = ("at", "force_tolerance", "elements", "sobol", "settling", "friction", "tolerance", "wear", "light_load")
+"""Options shown on request."""
+_QUOTED = re.compile(r'"([^"]+)"')
+_SLOWEST, _FASTEST = 0.3, 1.2
+"""The range of speeds that is proposed, over that of the drive."""
 
 
 class Option(NamedTuple):
@@ -52,6 +64,17 @@ class Option(NamedTuple):
         """Suffixes of the files of a file option; empty for others."""
         every = tuple(dict.fromkeys(one for suffixes in _SUFFIXES.values() for one in suffixes))
         return _SUFFIXES.get(self.name, every) if self.kind is Path else ()
+
+    @property
+    def example(self) -> str:
+        """What may be typed, out of its description; empty where that quotes nothing with a number."""
+        quoted = _QUOTED.findall(self.about)
+        return next((one for one in quoted if any(letter.isdigit() for letter in one)), "")
+
+    @property
+    def rare(self) -> bool:
+        """Whether it is shown on request."""
+        return self.name in _RARE and not self.required
 
     def read(self, text: str) -> str | int | float:
         """Parse typed text, or the name of a chosen file."""
@@ -91,6 +114,25 @@ def options_of(name: str) -> tuple[Option, ...]:
     return tuple(sorted(found, key=lambda option: not option.required))
 
 
+def proposal(option: Option, drive: Drive | None) -> str:
+    """What a required option begins with: the driver, and a range about its speed; empty where there is none."""
+    from beltdyn.app.computing import given_speed
+    from beltdyn.points.changed_drive import driver_of
+
+    if not option.required or drive is None or option.name not in ("pulley", "speed", "from_", "to"):
+        return ""
+    try:
+        number = driver_of(drive)
+    except BeltdynError:
+        return ""
+    if option.name == "pulley":
+        return drive.pulleys[number].name
+    speed = RPM * abs(given_speed(drive, number))
+    low, high = (f"{factor * speed:.2g}" for factor in (_SLOWEST, _FASTEST))
+    low, high = (f"{float(one):.0f}" for one in (low, high))
+    return {"speed": f"{low}..{high} rpm", "from_": f"{low} rpm", "to": f"{high} rpm"}[option.name]
+
+
 def _own(name: str) -> list[Parameter]:
     parameters = signature(ANALYSES[name].function, eval_str=True).parameters.values()
     return [one for one in parameters if one.kind is Parameter.KEYWORD_ONLY and one.name not in _SHARED]
@@ -126,20 +168,22 @@ class AnalysisView:
         self._cards: list[tuple[Outcome, ui.expansion]] = []
         self._seen: Glimpse | None = None
         names = offered()
-        with ui.row().classes("w-full items-center gap-2 q-mt-md"):
+        with ui.row().classes("w-full items-center no-wrap gap-2"):
             self._name = ui.select(
                 {name: f"{name}: {about}" for name, about in names.items()}, value=SIMULATE, label="analysis"
             )
-            self._name.props("dense options-dense").classes("grow").style("max-width: min(30em, 100%)").mark("analysis")
+            self._name.props("dense outlined options-dense").classes("grow").style("min-width: 0").mark("analysis")
             self._name.on_value_change(self._ask_options)
-            self._start = ui.button("Run", icon="play_arrow", on_click=self.start).props("dense no-caps").mark("run")
-            self._cancel = (
-                ui.button("Cancel", icon="stop", on_click=self.cancel).props("dense no-caps outline").mark("cancel")
+            self._start = (
+                ui.button("Run", icon="play_arrow", on_click=self.start).props("no-caps unelevated").mark("run")
             )
-        self._options = ui.row().classes("w-full items-start gap-2")
+            self._cancel = (
+                ui.button("Cancel", icon="stop", on_click=self.cancel).props("no-caps outline").mark("cancel")
+            )
+        self._options = ui.column().classes("w-full gap-1")
         self._inputs: dict[Option, ui.input | ui.select] = {}
         self._bar = ui.linear_progress(value=0.0, show_value=False).props('instant-feedback aria-label="progress"')
-        self._state = ui.label().classes("text-caption").props('role="status"').mark("progress")
+        self._state = ui.label().classes("bd-state").props('role="status"').mark("progress")
         self._box = ui.column().classes("w-full gap-1 bd-tables").mark("watched")
         self._results = ui.column().classes("w-full gap-1")
         self._timer = ui.timer(_OFTEN, self._look, active=session.job is not None)
@@ -150,28 +194,57 @@ class AnalysisView:
     def update(self) -> None:
         """Enable or disable buttons according to the drive."""
         running = self._session.job is not None
+        if self._proposed != self._proposals():
+            self._ask_options()
         self._start.set_enabled(self._session.draft.drive is not None and not running)
         self._cancel.set_visibility(running)
         self._bar.set_visibility(running)
 
+    def redraw(self) -> None:
+        """Show the outcomes anew, as in other units."""
+        for _, card in self._cards:
+            card.delete()
+        self._cards.clear()
+        self._show_outcomes()
+
+    def _proposals(self) -> list[str]:
+        """What options offer of the present drive."""
+        named = [str(one.get("name", "")) for one in groups(self._session.document.data, "pulley")]
+        drive = self._session.draft.drive
+        return named + [proposal(one, drive) for one in options_of(str(self._name.value))]
+
     def _ask_options(self) -> None:
-        """Show the options of the chosen analysis."""
+        """Show the options of the chosen analysis, and rare ones on request."""
         self._options.clear()
+        self._proposed = self._proposals()
+        listed = options_of(str(self._name.value))
         with self._options:
-            self._inputs = {one: self._input(one) for one in options_of(str(self._name.value))}
+            with ui.element("div").classes("bd-fields"):
+                self._inputs = {one: self._input(one) for one in listed if not one.rare}
+            if any(one.rare for one in listed):
+                with (
+                    ui.expansion("More options").classes("w-full bd-all").props("dense"),
+                    ui.element("div").classes("bd-fields"),
+                ):
+                    self._inputs |= {one: self._input(one) for one in listed if one.rare}
 
     def _input(self, one: Option) -> ui.input | ui.select:
-        """A field of an option, for a file option a list of files in the folder."""
-        name = one.name.strip("_")
+        """A field of an option; for a file a list of files in the folder, for a pulley one of pulleys."""
+        name, drive = one.name.strip("_").replace("_", " "), self._session.draft.drive
         box: ui.input | ui.select
         if one.suffixes:
             there = self._session.workspace.folder.files(*one.suffixes)
             words = name if there else f"{name}: no {' or '.join(one.suffixes)} file in the folder"
-            box = ui.select(there, label=words, clearable=True).style("min-width: 14em")
-            box.props("dense options-dense stack-label")
+            box = ui.select(there, label=words, clearable=True)
+            box.props("dense outlined options-dense stack-label").classes("bd-whole")
+        elif one.name == "pulley":
+            pulleys = [str(each.get("name", "")) for each in groups(self._session.document.data, "pulley")]
+            box = ui.select(pulleys, label=name, value=proposal(one, drive) or None, clearable=not one.required)
+            box.props("dense outlined options-dense stack-label")
         else:
-            box = ui.input(label=name, placeholder=one.default).style("width: 9em")
-            box.props('dense stack-label autocomplete="off"')
+            usual = one.default or (f"such as {one.example}" if one.example else "")
+            box = ui.input(label=name, placeholder=usual, value=proposal(one, drive))
+            box.props('dense outlined stack-label autocomplete="off"')
         with box:
             ui.tooltip(one.about).classes("bd-about")
         return box.mark(f"option:{one.name}")
@@ -212,8 +285,10 @@ class AnalysisView:
         if job is not None:
             part, phase, remaining, glimpse = job.step
             self._bar.value = part
+            self._bar.props(remove="indeterminate") if part else self._bar.props("indeterminate")
             left = "" if math.isnan(remaining) else f", about {remaining:.0f} s left"
-            self._state.text = f"{job.name}: {phase}, {part:.0%}{left}"
+            done = f", {part:.0%}" if part and not phase.startswith(COMPILING) else ""
+            self._state.text = f"{job.name}: {phase}{done}{left}"
             self._show_glimpse(glimpse)
             return
         self._timer.active, self._state.text = False, ""
@@ -260,31 +335,36 @@ class AnalysisView:
     def _fill(self, outcome: Outcome) -> None:
         if outcome.error:
             ui.label(outcome.error).classes("bd-message")
-        frame = ui.element("div").classes("w-full")
-        with ui.row().classes("gap-2") as buttons:
+        with ui.row().classes("w-full items-center gap-x-2 gap-y-0"):
             if (report := outcome.report) is not None:
                 address = app.add_static_file(local_file=report)
-                _button("Show report", "movie", lambda: _open(frame, address)).mark("look")
-                ui.link("open in new tab", address, new_tab=True).classes("self-center")
+                _button("Show report", "article", lambda: _open(address)).mark("look")
                 _button("Download report", "download", partial(ui.download.file, report)).mark("report")
             for text, file in (("Result file", outcome.result), ("Resulting drive file", outcome.best)):
                 if file is not None:
                     _button(text, "download", partial(ui.download.file, file)).mark(text)
-        buttons.move(target_index=0)
         for warning in outcome.warnings:
             ui.label(warning).classes("bd-message bd-warning")
-        show_parts(outcome.parts)
+        show_findings(outcome.findings, self._session)
+        for picture in outcome.pictures:
+            ui.image(picture).props("no-spinner no-transition").classes("bd-picture")
+        if outcome.parts:
+            shown = bool(outcome.findings.figures or outcome.pictures)
+            with ui.expansion("All numbers", value=not shown).classes("w-full bd-all").props("dense"):
+                show_parts(outcome.parts)
 
 
 def _button(text: str, icon: str, on_click: Callable[[], None]) -> ui.button:
     return ui.button(text, icon=icon, on_click=on_click).props("dense flat no-caps")
 
 
-def _open(frame: ui.element, address: str) -> None:
-    """Show a report in the page; a second click hides it."""
-    if frame.default_slot.children:
-        frame.clear()
-        return
+def _open(address: str) -> None:
+    """Show a report over the page."""
     prefix = str(ui.context.client.request.scope.get("root_path", ""))
-    with frame:
+    with ui.dialog(value=True) as dialog, ui.card().classes("bd-paper"):
+        with ui.row().classes("w-full items-center no-wrap gap-3"):
+            ui.label("Report").classes("bd-heading-plain grow")
+            ui.link("open in new tab", address, new_tab=True)
+            ui.button("Close", on_click=dialog.close).props("no-caps flat dense").mark("close report")
         ui.element("iframe").props(f'src="{prefix}{address}" title="report"').classes("bd-report")
+    dialog.on("hide", dialog.delete)

@@ -25,6 +25,7 @@ export default {
       <circle v-for="(one, i) in shown.ghosts || []" :key="'g' + i" class="bd-ghost" :cx="one.x" :cy="one.y" :r="one.r" />
       <path v-if="shown.belt" :class="shown.valid ? 'bd-belt' : 'bd-belt bd-sketch'" :d="shown.belt"
             :stroke-width="Math.max(shown.thickness || 0, 3 * px)" />
+      <path v-for="(one, i) in pulled" :key="'p' + i" class="bd-pulled" :d="one.d" :stroke-width="one.width" />
       <g v-if="live" class="bd-live">
         <g v-for="(one, i) in live.pulleys" :key="'lp' + i">
           <circle class="bd-rim" :cx="one.x" :cy="one.y" :r="one.r" />
@@ -63,13 +64,17 @@ export default {
       </g>
       <text v-for="(one, i) in shown.spans || []" :key="'s' + i" class="bd-small bd-span"
             :x="one.x + one.right * away(one)" :y="one.y + one.down * away(one) + 4 * px"
-            :font-size="11 * px" text-anchor="middle">{{ one.label }}</text>
+            :font-size="11 * px" text-anchor="middle">{{ written(one.length) }}</text>
+      <text v-for="(one, i) in pulled" :key="'n' + i" :class="['bd-small', 'bd-span', 'bd-pull', { 'bd-side': one.side }]"
+            :x="one.x" :y="one.y" :font-size="11 * px" text-anchor="middle">{{ one.label }}</text>
       <rect v-for="(end, i) in shown.ends || []" :key="'e' + i" class="bd-end" :x="end[0] - 5 * px" :y="end[1] - 5 * px"
             :width="10 * px" :height="10 * px" />
       <circle v-if="chosen" class="bd-handle bd-size" :cx="chosen.x + 0.7071 * chosen.r" :cy="chosen.y + 0.7071 * chosen.r"
               :r="6 * px" @pointerdown.stop="down($event, { kind: 'size', number: chosen.number, from: null })">
         <title>drag to size</title>
       </circle>
+      <text v-for="(one, i) in numbers" :key="'gn' + i" class="bd-small bd-of-grid" :x="one.x" :y="one.y" :font-size="10 * px"
+            :text-anchor="one.anchor" aria-hidden="true">{{ one.text }}</text>
       <g class="bd-scale" aria-hidden="true">
         <path :d="scale.line" />
         <text :x="scale.x" :y="scale.y - 5 * px" :font-size="11 * px" text-anchor="middle">{{ scale.label }}</text>
@@ -78,7 +83,7 @@ export default {
             text-anchor="middle">Double-click to place a pulley</text>
     </svg>
    </div>`,
-  props: { scene: Object, live: Object, selected: Number, text: String, name: String },
+  props: { scene: Object, live: Object, tensions: Array, unit: Object, selected: Number, text: String, name: String },
   data: () => ({
     view: { x: -250, y: -150, w: 500, h: 300 },
     size: { w: 800, h: 450 },
@@ -127,9 +132,37 @@ export default {
     scale() { // a cell of the grid, in the lower left corner
       const step = niceStep(50 * this.px);
       const [left, y] = [this.view.x + 14 * this.px, this.view.y + this.view.h - 12 * this.px];
-      const label = step < 1000 ? `${Number(step.toPrecision(3))} mm` : `${Number((step / 1000).toPrecision(3))} m`;
+      const label = `${Number((step / this.measure.size).toPrecision(3))} ${this.measure.name}`;
       const end = 4 * this.px;
       return { line: `M${left} ${y - end}v${2 * end}M${left} ${y}h${step}m0 ${-end}v${2 * end}`, x: left + step / 2, y, label };
+    },
+    measure() {
+      return this.unit || { name: "mm", size: 1 };
+    },
+    pulled() { // tensions of spans beside their lengths: the thicker the line, the larger the tension
+      const spans = this.shown.spans || [], known = this.tensions || [];
+      if (this.live || !this.shown.valid || known.length !== spans.length || known.length === 0) return [];
+      const [least, most] = [Math.min(...known), Math.max(...known)];
+      if (most - least < 0.02 * Math.abs(most)) return []; // at rest all are alike
+      return spans.map((one, i) => {
+        const share = (known[i] - least) / (most - least);
+        const side = known[i] === most ? "tight " : known[i] === least ? "slack " : "";
+        const away = this.away(one), [x1, y1, x2, y2] = one.ends;
+        return {
+          d: `M${x1} ${y1}L${x2} ${y2}`, width: (2 + 5 * share) * this.px, side,
+          x: one.x + one.right * away, y: one.y + one.down * away + 17 * this.px, label: `${side}${known[i].toPrecision(3)} N`,
+        };
+      });
+    },
+    numbers() { // of the grid, along the lower and the left edge
+      const step = niceStep(50 * this.px) * 2, found = [];
+      const name = (at) => String(Number((at / this.measure.size).toPrecision(6)));
+      const room = 70 * this.px;
+      for (let x = Math.ceil((this.view.x + 2.2 * room) / step) * step; x < this.view.x + this.view.w - room / 2; x += step)
+        found.push({ x, y: this.view.y + this.view.h - 5 * this.px, text: name(x), anchor: "middle" });
+      for (let y = Math.ceil((this.view.y + room / 3) / step) * step; y < this.view.y + this.view.h - room / 1.5; y += step)
+        found.push({ x: this.view.x + 5 * this.px, y: y + 3.5 * this.px, text: name(-y || 0), anchor: "start" });
+      return found;
     },
     axes() {
       return `M0 ${this.view.y}v${this.view.h}M${this.view.x} 0h${this.view.w}`;
@@ -195,6 +228,10 @@ export default {
       const arc = `M${from.join(" ")}A${r} ${r} 0 0 ${one.sense > 0 ? 0 : 1} ${to.join(" ")}`;
       return `${arc}M${barb(0.6).join(" ")}L${to.join(" ")}L${barb(-0.6).join(" ")}`;
     },
+    written(length) {
+      const { name, size } = this.measure;
+      return `${(length / size).toFixed(size === 1 ? 1 : 4)} ${name}`;
+    },
     at(kind, one) {
       const dragged = this.drag && this.drag.kind === kind && this.drag.number === one.number && this.drag.to;
       return dragged ? this.drag.to : one[kind];
@@ -226,7 +263,7 @@ export default {
     spoken(one) {
       const side = one.outside ? "on the back of the belt" : "on the inside of the belt";
       const wrap = one.wrap ? `, wrapped by ${one.wrap}` : "";
-      return `${one.name}, radius ${one.r.toFixed(1)} mm, ${side}${wrap}. Arrow keys move, plus and minus size, B turns it to the other side, Delete removes.`;
+      return `${one.name}, radius ${this.written(one.r)}, ${side}${wrap}. Arrow keys move, plus and minus size, B turns it to the other side, Delete removes.`;
     },
     choose(number) {
       if (number !== this.selected) this.$emit("choose", { number });

@@ -8,8 +8,9 @@ from concurrent.futures import Future
 from multiprocessing.context import SpawnProcess
 from multiprocessing.synchronize import Event as SharedEvent
 from pathlib import Path
-from typing import TYPE_CHECKING, NamedTuple
+from typing import NamedTuple
 
+from beltdyn.app.findings import Findings, at_rest, in_running, of_modes
 from beltdyn.designs.processes import SPAWN, LocalProcesses, start_process, start_worker
 from beltdyn.errors import BeltdynError
 from beltdyn.kernel import observe_compilation
@@ -17,29 +18,55 @@ from beltdyn.model import Drive, loads
 from beltdyn.results import Run
 from beltdyn.show.sheet import Facts, Table, sheet
 
-if TYPE_CHECKING:
-    from beltdyn.solvers.progress import Progress
-
-
 # Tell the page when Numba compiles kernels
 
-PREPARING = "compiling kernels (once per machine, up to a minute)"
-"""The state shown meanwhile."""
+Counted = tuple[int, int]
+"""Kernels compiled, and kernels needed; equal where none is being compiled."""
 
 
-def tell_of_compilation(tell: Callable[[bool], None]) -> None:
-    """Report from now on when this process begins and ends to compile kernels."""
+COMPILING = "compiling kernels, once on this machine"
+
+
+def in_words(counted: Counted) -> str:
+    """The state shown meanwhile."""
+    done, total = counted
+    return f"{COMPILING}: {done} of {total}"
+
+
+def tell_of_compilation(tell: Callable[[Counted], None]) -> None:
+    """Report from now on how many kernels this process has compiled, and that it has ended to do so."""
     import beltdyn.kernel.compiler  # noqa: F401 (it listens to Numba)
 
-    compiles = False
+    last: Counted = (0, 0)
 
     def report(done: int, total: int) -> None:
-        nonlocal compiles
-        if compiles != (done < total):
-            compiles = not compiles
-            tell(compiles)
+        nonlocal last
+        if (done, total) != last and (done < total or last[0] < last[1]):
+            tell((done, total))
+        last = done, total
 
     observe_compilation(report)
+
+
+class Counter:
+    """Counts of kernels that a process tells of, as others read them."""
+
+    def __init__(self) -> None:
+        self._counts = SPAWN.Array("i", 2)
+
+    def tell(self, counted: Counted) -> None:
+        """Set them."""
+        self._counts[:] = list(counted)
+
+    @property
+    def counted(self) -> Counted:
+        """The present ones."""
+        done, total = self._counts[:]
+        return done, total
+
+    def clear(self) -> None:
+        """Tell that nothing is being compiled."""
+        self.tell((0, 0))
 
 
 _MODES = 6
@@ -75,6 +102,8 @@ class Answer(NamedTuple):
     """Why there are no numbers; empty otherwise."""
     seconds: float
     """How long it took."""
+    findings: Findings = Findings()
+    """What is shown as figures and charts."""
 
 
 class _Known(NamedTuple):
@@ -88,19 +117,19 @@ class _Known(NamedTuple):
 _known: dict[str, _Known] = {}
 
 
-_compiles: SharedEvent | None = None
-"""An event, set while this process compiles kernels."""
+_compiles: Counter | None = None
+"""The kernels that this process compiles."""
 
 
-def begin(stop: SharedEvent, compiles: SharedEvent) -> None:
-    """Prepare a computing process, which tells by an event when it compiles kernels."""
+def begin(stop: SharedEvent, compiles: Counter) -> None:
+    """Prepare a computing process, which counts the kernels that it compiles."""
     global _compiles
     start_worker(stop)
     _compiles = compiles
-    tell_of_compilation(lambda going: compiles.set() if going else compiles.clear())
+    tell_of_compilation(compiles.tell)
 
 
-def compile_ahead(asked: Asked, stop: SharedEvent, compiles: SharedEvent) -> None:
+def compile_ahead(asked: Asked, stop: SharedEvent, compiles: Counter) -> None:
     """Load or compile the kernels of steady running and modes in advance."""
     begin(stop, compiles)
     for what in ("running", "modes"):
@@ -111,8 +140,8 @@ def answer(asked: Asked) -> Answer:
     """Compute the numbers of a tab; errors are returned as answers."""
     begun = time.perf_counter()
     try:
-        parts, told = {"rest": _rest, "running": _running, "modes": _modes}[asked.what](asked)
-        return Answer(parts, told, "", time.perf_counter() - begun)
+        parts, told, found = {"rest": _rest, "running": _running, "modes": _modes}[asked.what](asked)
+        return Answer(parts, told, "", time.perf_counter() - begun, found)
     except BeltdynError as error:
         return Answer((), (), str(error), time.perf_counter() - begun)
     finally:
@@ -120,35 +149,29 @@ def answer(asked: Asked) -> Answer:
             _compiles.clear()
 
 
-Shown = tuple[tuple[Table | Facts, ...], tuple[str, ...]]
+Shown = tuple[tuple[Table | Facts, ...], tuple[str, ...], Findings]
 
 
 def _rest(asked: Asked) -> Shown:
     """The drive at rest, as `beltdyn check` finds it."""
     from beltdyn.show.check import check
 
-    checked = check(loads(asked.text, asked.folder), _hear)
+    checked = check(loads(asked.text, asked.folder))
     if checked.failure:
         raise checked.failure
-    return checked.sheet.parts, tuple(checked.warnings)
-
-
-def _hear(progress: "Progress") -> None:
-    """Tell of compilation in processes that the search for equilibrium starts, too."""
-    if _compiles is not None:
-        (_compiles.set if progress.phase == "compiling" else _compiles.clear)()
+    return checked.sheet.parts, tuple(checked.warnings), at_rest(checked.drive, checked.installation)
 
 
 def _running(asked: Asked) -> Shown:
     run = _steady(asked)
-    return sheet(run).parts, tuple(run.warnings)
+    return sheet(run).parts, tuple(run.warnings), in_running(run)
 
 
 def _modes(asked: Asked) -> Shown:
     from beltdyn.vibration.modes import modes
 
     found = modes(_steady(asked).drive, about=_steady(asked), count=_MODES)
-    return sheet(found).parts, tuple(found.warnings)
+    return sheet(found).parts, tuple(found.warnings), of_modes(found)
 
 
 def _steady(asked: Asked) -> Run:
@@ -192,16 +215,18 @@ class Calculator:
     """A process that answers requests one after another, started with the first."""
 
     def __init__(self) -> None:
-        self._compiles, self._compiles_ahead = SPAWN.Event(), SPAWN.Event()
+        self._compiles, self._compiles_ahead = Counter(), Counter()
         self._stop = SPAWN.Event()
         self._pool: LocalProcesses | None = None
         self._ahead: SpawnProcess | None = None
         self._starting = threading.Lock()
 
     @property
-    def preparing(self) -> bool:
-        """Whether kernels are being compiled."""
-        return self._compiles.is_set() or self._compiles_ahead.is_set()
+    def compiling(self) -> Counted | None:
+        """Kernels compiled and needed while some are being compiled; None otherwise."""
+        counted = [one.counted for one in (self._compiles, self._compiles_ahead)]
+        going = [one for one in counted if one[0] < one[1]]
+        return (sum(done for done, _ in going), sum(total for _, total in going)) if going else None
 
     def look_ahead(self, asked: Asked) -> None:
         """Load or compile kernels in advance.

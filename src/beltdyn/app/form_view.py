@@ -7,8 +7,11 @@ from nicegui import ui
 from nicegui.elements.mixins.validation_element import ValidationElement
 
 from beltdyn.app import placing
-from beltdyn.app.forms import Field, as_value, fields, kinds, value_at
+from beltdyn.app.beginnings import beginning
+from beltdyn.app.forms import Field, fields, kinds, value_at
 from beltdyn.app.session import Session
+from beltdyn.app.units import unit_in
+from beltdyn.model import Drive
 from beltdyn.parts.toml_edits import Edit, Location
 
 # A form as a list of rows (keys, groups, list entries), and the edits by rows
@@ -73,8 +76,10 @@ def edits_of_value(data: Mapping[str, Any], location: Location, value: Any) -> l
     return [Edit("set", location, value)]
 
 
-def edits_of_kind(data: Mapping[str, Any], location: Location, kind: str | None) -> list[Edit]:
-    """Edits that change the kind of a group and keep common values, or remove it with None."""
+def edits_of_kind(
+    data: Mapping[str, Any], location: Location, kind: str | None, drive: Drive | None = None
+) -> list[Edit]:
+    """Edits that change the kind of a group and keep common values, or remove it with None; others begin as usual."""
     group = value_at(data, location)
     if kind is None:
         return [] if group is None else [Edit("remove", location)]
@@ -83,15 +88,26 @@ def edits_of_kind(data: Mapping[str, Any], location: Location, kind: str | None)
     tried = _with(data, location, {"kind": kind})
     known = {one.key for one in fields(tried, location)}
     kept = {key: value for key, value in group.items() if key in known} if isinstance(group, Mapping) else {}
-    return [Edit("set", location, {"kind": kind, **kept})]
+    return [Edit("set", location, {**beginning(tried, location, kind, drive), **kept, "kind": kind})]
 
 
-def edits_of_entry(data: Mapping[str, Any], location: Location, kind: str | None) -> list[Edit]:
-    """Edits that append an entry to a list, with its kind if any."""
+def edits_of_entry(
+    data: Mapping[str, Any], location: Location, kind: str | None, drive: Drive | None = None
+) -> list[Edit]:
+    """Edits that append an entry to a list, with its kind if any, which begins with usual numbers."""
     entries = value_at(data, location)
+    listed = entries if isinstance(entries, list) else []
+    first = {"kind": kind} if kind else {}
+    place = (*location, len(listed))
+    made = beginning(_with(data, location, [*listed, first]), place, kind, drive)
     if entries is not None and not isinstance(entries, list):
-        return [Edit("set", location, [{"kind": kind} if kind else {}])]
-    return [Edit("insert", (*location, len(entries or [])), {"kind": kind} if kind else {})]
+        return [Edit("set", location, [made])]
+    return [Edit("insert", place, made), *(placing.rim(data, location) if location[-1] == "hub" else [])]
+
+
+def edits_of_group(data: Mapping[str, Any], location: Location) -> list[Edit]:
+    """Edits that give a group without kinds, which begins with usual numbers."""
+    return [Edit("set", location, beginning(_with(data, location, {}), location, None))]
 
 
 def _with(data: Mapping[str, Any], location: Location, value: Any) -> dict[str, Any]:
@@ -124,7 +140,7 @@ class FormView:
         self._location: Location | None = None
         self._filling = False
         self._messages = ui.column().classes("w-full gap-0")
-        self._box = ui.column().classes("w-full gap-1")
+        self._box = ui.element("div").classes("bd-fields")
 
     def show(self, location: Location | None) -> None:
         """Show the group at a location with its present values and messages; nothing for None."""
@@ -139,12 +155,20 @@ class FormView:
         finally:
             self._filling = False
 
+    def rebuild(self) -> None:
+        """Show the same group anew, as in other units."""
+        self._rows = []
+        self.show(self._location)
+
     def _build(self) -> None:
         self._box.clear()
         self._widgets = {}
         with self._box:
             for row in self._rows:
-                holder = ui.element("div").classes("bd-field").style(f"padding-left: {14 * row.depth}px")
+                half = row.field is not None and row.what == "field" and row.field.form in ("number", "flag", "point")
+                holder = ui.element("div").classes("bd-field" if half else "bd-field bd-whole")
+                if row.depth:
+                    holder.classes("bd-inner-field").style(f"--bd-depth: {row.depth}")
                 with holder:
                     getattr(self, f"_build_{row.what}")(row)
 
@@ -176,36 +200,35 @@ class FormView:
             return field.value if isinstance(field.value, bool) else field.default == "true"
         if field.form == "choice":
             return field.value if field.value in field.choices else None
-        return field.text
+        return field.text(self._session.units)
 
     def _build_field(self, row: Row) -> None:
         field = row.field
         assert field is not None
-        name = field.key.replace("_", " ")
-        label = f"{name} [{field.unit}]" if field.unit else name
+        label, units = field.key.replace("_", " "), self._session.units
+        usual = field.usual(units)
         if field.form == "flag":
             widget: Any = ui.checkbox(label, on_change=lambda event: self._enter(field, event.value))
         elif field.form == "choice":
             shown = self._shown(field)
-            label = f"{label} (default: {field.default})" if field.default else label
             widget = ui.select(
                 list(field.choices),
-                label=label,
+                label=f"{label} (default: {usual})" if usual and shown is None else label,
                 value=shown,
-                clearable=True,
+                clearable=not field.required,
                 with_input=len(field.choices) > 8,
                 on_change=lambda event: self._enter(field, event.value),
             )
-            widget.props("dense options-dense hide-bottom-space").classes("w-full")
+            widget.props("dense outlined options-dense hide-bottom-space").classes("w-full")
         else:
-            widget = ui.input(label=label, value=field.text, placeholder=field.default)
-            widget.props('dense stack-label hide-bottom-space autocomplete="off"').classes("w-full")
-            widget.on("change", lambda: self._enter(field, as_value(field.form, widget.value or "")))
+            suffix = unit_in(units, field.unit).shown if field.unit else ""
+            widget = ui.input(label=label, value=self._shown(field), placeholder=usual)
+            widget.props(f'dense outlined stack-label hide-bottom-space autocomplete="off" suffix="{suffix}"')
+            widget.classes("w-full").on("change", lambda: self._type(field, widget.value or ""))
         widget.mark(".".join(map(str, field.location)))
         with widget:
-            ui.tooltip(field.hint + (f" Default: {field.default}." if field.default else "")).props(
-                "max-width=320px delay=600"
-            )
+            default = f" Default: {usual} {unit_in(units, field.unit).shown if field.unit else ''}".rstrip() + "."
+            ui.tooltip(field.hint + default * bool(usual)).props("max-width=320px delay=600")
         self._widgets[row.location] = widget
 
     def _build_group(self, row: Row) -> None:
@@ -225,13 +248,13 @@ class FormView:
                 self._widgets[row.location] = self._kinds(row, f"{key} {int(number) + 1}", clearable=False)
             else:
                 ui.label(f"{key} {int(number) + 1}").classes("grow")
-            button = ui.button(icon="delete", on_click=lambda: self._apply([Edit("remove", row.location)]))
+            button = ui.button(icon="delete_outline", on_click=lambda: self._apply([Edit("remove", row.location)]))
             button.props(f'flat dense round aria-label="remove {key} {int(number) + 1}"').tooltip("Remove")
 
     def _kinds(self, row: Row, label: str, clearable: bool) -> Any:
         def choose(kind: str | None) -> None:
             if not self._filling:
-                self._apply(edits_of_kind(self._session.document.data, row.location, kind))
+                self._apply(edits_of_kind(self._session.document.data, row.location, kind, self._session.draft.drive))
 
         group = value_at(self._session.document.data, row.location)
         widget = ui.select(
@@ -241,11 +264,11 @@ class FormView:
             clearable=clearable,
             on_change=lambda event: choose(event.value),
         )
-        return widget.props("dense options-dense hide-bottom-space").classes("w-full grow")
+        return widget.props("dense outlined options-dense hide-bottom-space").classes("w-full grow")
 
     def _build_add(self, row: Row) -> None:
         def add(kind: str | None = None) -> None:
-            self._apply(edits_of_entry(self._session.document.data, row.location, kind))
+            self._apply(edits_of_entry(self._session.document.data, row.location, kind, self._session.draft.drive))
 
         key = str(row.location[-1])
         button = ui.button(f"add {key}", icon="add").props("flat dense no-caps size=sm").mark(f"add:{key}")
@@ -267,13 +290,19 @@ class FormView:
         )
         button.props("flat dense no-caps size=sm")
 
+    def _type(self, field: Field, text: str) -> None:
+        """Take what was typed; what stands in the file as it is shown stays."""
+        present = value_at(self._session.document.data, field.location)
+        if text.strip() != field._replace(value=present).text(self._session.units):
+            self._enter(field, field.read(text, self._session.units))
+
     def _enter(self, field: Field, value: Any) -> None:
         if not self._filling:
             self._apply(edits_of_value(self._session.document.data, field.location, value))
 
     def _give(self, location: Location, given: bool) -> None:
         if not self._filling and given != (value_at(self._session.document.data, location) is not None):
-            self._apply([Edit("set", location, {})] if given else [Edit("remove", location)])
+            self._apply(edits_of_group(self._session.document.data, location) if given else [Edit("remove", location)])
 
 
 def _kind_of(group: Any) -> str | None:

@@ -6,6 +6,7 @@ from functools import cache
 from typing import Any, Literal, NamedTuple
 
 from beltdyn.app.scene import groups
+from beltdyn.app.units import System, shown, with_unit
 from beltdyn.model import Drive, read_catalogue
 from beltdyn.parts.text_file import ErrorLocation, option_names
 from beltdyn.parts.toml_edits import Location
@@ -14,7 +15,7 @@ Form = Literal["text", "number", "choice", "flag", "point", "numbers", "group", 
 
 _NOT_IN_FILES = frozenset({"function"})
 """Kinds that a drive file cannot hold."""
-_IN_UNIT = re.compile(r", in ((?:rad|m|s|N|Pa|kg|Hz|W)(?:[ *^/\d]+(?:rad|m|s|kg)\^?\d?)*)(?=$|[;,])")
+_IN_UNIT = re.compile(r", in ((?:rad|m|s|N|Pa|kg|Hz|W)(?:\^\d)?(?:[ *^/\d]+(?:rad|m|s|kg)(?:\^?\d)?)*)(?=$|[;,])")
 _NUMERIC = frozenset({"number", "integer"})
 _SHORT_OF: Mapping[str, tuple[str, ...]] = {
     "belt": ("profile", "ribs", "width", "installed_tension", "length", "nominal_length"),
@@ -25,6 +26,8 @@ _SHORT_OF: Mapping[str, tuple[str, ...]] = {
     "tensioner": ("pulley", "direction", "pivot", "preload", "rate", "mass", "inertia", "stops", "take_up"),
 }
 """Keys of each group shown by default, in this order; others are shown if given."""
+_APART: Mapping[str, tuple[str, ...]] = {"speed": ("torque", "load"), "torque": ("speed",), "load": ("speed",)}
+"""Keys of a pulley that exclude others: the torque of a shaft with prescribed speed is a result."""
 
 
 class Field(NamedTuple):
@@ -45,18 +48,35 @@ class Field(NamedTuple):
     """What holds where it is left open; empty where nothing does, or it is chosen."""
     first: bool
     """Whether it is shown from the start."""
+    required: bool
+    """Whether it must be given."""
     value: Any
     """What the file gives; None where it is left open."""
+    unit_of_values: str = ""
+    """SI unit of what a profile gives over time."""
+    example: Any = None
+    """A usual number of a required key, where its kind names one."""
 
     @property
     def key(self) -> str:
         """Its name in the file."""
         return str(self.location[-1])
 
-    @property
-    def text(self) -> str:
-        """The value of the file as typed."""
-        return as_text(self.value)
+    def text(self, system: System) -> str:
+        """The value of the file as a field shows it."""
+        return shown(self.value, self.unit, system)
+
+    def usual(self, system: System) -> str:
+        """The default as a field shows it."""
+        plain = as_value(self.form, self.default) if self.unit else None
+        return self.default if plain is None else shown(plain, self.unit, system)
+
+    def read(self, text: str, system: System) -> Any:
+        """Parse typed text; numbers without a unit are in that of the page."""
+        if self.unit and self.form in ("point", "numbers"):
+            parts = (with_unit(one.strip(), self.unit, system) for one in text.strip("[] ").split(",") if one.strip())
+            return as_value(self.form, ", ".join(parts))
+        return as_value(self.form, with_unit(text.strip(), self.unit, system) if self.unit else text)
 
 
 def as_text(value: Any) -> str:
@@ -92,24 +112,38 @@ def _number_or_text(text: str) -> int | float | str:
 
 
 def fields(data: Mapping[str, Any], location: Location) -> list[Field]:
-    """List the keys of a group of the drive file, those shown by default first."""
+    """List the keys of a group of the drive file: those shown by default first, and of these the required ones."""
     locations, group = ErrorLocation(Drive, data), value_at(data, location)
     group = group if isinstance(group, Mapping) else {}
-    tagged = _tagged(locations, data, location)
-    schema = locations.locate(tagged)[1]
+    tagged, schema = _tagged(locations, data, location), schema_of(data, location)
     required = schema.get("required") or []
     short = _SHORT_OF.get(_group_name(location), ())
     of_values = _unit(str(locations.locate(_tagged(locations, data, location[:-1]) + location[-1:])[1]["description"]))
     found = []
     for key in schema.get("properties", {}):
         own = locations.locate((*tagged, key))[1]
-        if key == "kind" or (not location and _form(own) in ("group", "groups")):
+        if key == "kind" or _is_excluded(location, group, key) or (not location and _form(own) in ("group", "groups")):
             continue
-        first = key in short or key in required or key in group or not short
+        first = key in short or key in required or key in group or not (short or required)
         given_unit = of_values if key in ("value", "values") else ""
-        found.append(_field(data, (*location, key), own, first, given_unit))
-    order = {key: place for place, key in enumerate(short)}
+        found.append(_field(data, (*location, key), own, first, key in required, given_unit))
+    order = {key: place for place, key in enumerate(short or required)}
     return sorted(found, key=lambda one: (not one.first, order.get(one.key, len(order))))
+
+
+def _is_excluded(location: Location, group: Mapping[str, Any], key: str) -> bool:
+    """Whether what a pulley has leaves no room for a key."""
+    if _group_name(location) != "pulley" or key in group:
+        return False
+    if key == "harmonics":
+        return "speed" not in group
+    return any(key in _APART[one] for one in _APART if group.get(one))
+
+
+def schema_of(data: Mapping[str, Any], location: Location) -> Mapping[str, Any]:
+    """The schema of a group, of the kind that it has."""
+    locations = ErrorLocation(Drive, data)
+    return locations.locate(_tagged(locations, data, location))[1]
 
 
 def kinds(data: Mapping[str, Any], location: Location) -> tuple[str, ...]:
@@ -154,7 +188,7 @@ def _group_name(location: Location) -> str:
 
 
 def _field(
-    data: Mapping[str, Any], location: Location, schema: Mapping[str, Any], first: bool, given_unit: str
+    data: Mapping[str, Any], location: Location, schema: Mapping[str, Any], first: bool, required: bool, given_unit: str
 ) -> Field:
     hint, value = str(schema.get("description", "")), value_at(data, location)
     form: Form = "group" if _parts(schema) and isinstance(value, Mapping) else _form(schema)
@@ -174,7 +208,10 @@ def _field(
         choices,
         default,
         first,
+        required,
         value,
+        _unit(hint) if form == "group" else "",
+        next(iter(schema.get("examples", ())), None),
     )
 
 

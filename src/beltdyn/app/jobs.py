@@ -10,7 +10,8 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 from beltdyn.analyses import ANALYSES
-from beltdyn.app.computing import PREPARING, tell_of_compilation
+from beltdyn.app.computing import Counted, in_words, tell_of_compilation
+from beltdyn.app.findings import Findings, findings_of
 from beltdyn.designs.processes import SPAWN, heeding, start_process, start_worker, working
 from beltdyn.errors import BeltdynError
 from beltdyn.model import loads
@@ -38,6 +39,9 @@ class Step(NamedTuple):
     """A run as it stood when it was looked at last."""
 
 
+_DRAWN = ("configuration", "slip", "mode_shapes", "mode_shape")
+"""Figures whose contents the page shows as charts."""
+_MOST_PICTURES = 2
 _STARTING = Step(0.0, "starting", math.nan)
 
 
@@ -58,6 +62,10 @@ class Outcome(NamedTuple):
     """The report, if there is one."""
     best: Path | None = None
     """The drive file that the analysis found, as an optimization does."""
+    findings: Findings = Findings()
+    """What is shown as figures and charts."""
+    pictures: tuple[str, ...] = ()
+    """Its first figures, as addresses of pictures."""
 
 
 class Job:
@@ -136,6 +144,7 @@ class _Teller:
         self._step = _STARTING
         self._last = -math.inf
         self._begun: dict[str, tuple[float, float]] = {}
+        self._sending = threading.Lock()
 
     def tell(self, progress: Any) -> None:
         """Report progress, and take snapshots of a run."""
@@ -146,13 +155,20 @@ class _Teller:
         if progress.phase == "integrating":
             self._look()
         part = progress.time / progress.duration
-        phase = PREPARING if progress.phase == "compiling" else progress.phase
+        phase = "loading kernels" if progress.phase == "compiling" else progress.phase
         self._step = Step(part, phase, self._remaining(progress, part, now), self._glimpse)
-        self._told.send(self._step)
+        self._send(self._step)
 
-    def tell_of_compilation(self, compiles: bool) -> None:
-        """Report when the analysis waits for kernels, and when it continues."""
-        self._told.send(self._step._replace(phase=PREPARING) if compiles else self._step)
+    def _send(self, step: Step) -> None:
+        """Send a step; kernels that another process compiles are told of in a thread of their own."""
+        with self._sending:
+            self._told.send(step)
+
+    def tell_of_compilation(self, counted: Counted) -> None:
+        """Report the kernels that the analysis waits for, and when it continues."""
+        done, total = counted
+        waits = Step(done / max(total, 1), in_words(counted), math.nan, self._glimpse)
+        self._send(waits if done < total else self._step)
 
     def _remaining(self, progress: Any, part: float, now: float) -> float:
         """Time that is left, s, by the pace that the analysis tells, or else by that of this phase until now."""
@@ -182,4 +198,14 @@ def _outcome(found: Any, result: Path) -> Outcome:
     report = write_report(found, result.with_suffix(".html"), overwrite=True)
     best = result.with_suffix(".toml")
     written = best if best.is_file() else None
-    return Outcome(found.status, "", sheet(found).parts, tuple(found.warnings), result, report, written)
+    shown = sheet(found).parts, tuple(found.warnings), result, report, written, findings_of(found), _pictures(found)
+    return Outcome(found.status, "", *shown)
+
+
+def _pictures(found: Any) -> tuple[str, ...]:
+    """The first figures of a result as a report has them, but for those that the page draws itself."""
+    from beltdyn.show.plot.figures import chosen_by_default, data_uri
+    from beltdyn.show.plot.registry import FIGURES, Choice
+
+    names = [name for name in chosen_by_default([found]) if name not in _DRAWN][:_MOST_PICTURES]
+    return tuple(data_uri(FIGURES[name].arrange(found, Choice())) for name in names)

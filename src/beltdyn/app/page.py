@@ -1,6 +1,6 @@
 """The page: canvas, forms, messages and numbers of one tab."""
 
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from importlib.resources import files
 from typing import TYPE_CHECKING, Any
@@ -9,12 +9,13 @@ from nicegui import app, ui
 from nicegui.element import Element
 from nicegui.events import GenericEventArguments, KeyEventArguments
 
-from beltdyn.app.analysis_view import AnalysisView
 from beltdyn.app.form_view import FormView
-from beltdyn.app.numbers_view import NumbersView
-from beltdyn.app.scene import groups, scene
+from beltdyn.app.results_view import ResultsView
+from beltdyn.app.scene import MILLIMETRES, groups, scene
 from beltdyn.app.session import Session
-from beltdyn.app.workspace import EMPTY, STARTS, Example, Workspace, examples
+from beltdyn.app.table_dialog import TableDialog
+from beltdyn.app.units import SYSTEMS, Unit, unit_in
+from beltdyn.app.workspace import EMPTY, STARTS, Example, Workspace, examples, thumbnail
 from beltdyn.errors import BeltdynError
 from beltdyn.parts.toml_edits import Edit
 
@@ -37,6 +38,7 @@ class Canvas(Element, component="canvas.js"):
         self.props["scene"] = {}
         self.props["selected"] = -1
         self.props["live"] = None
+        self.props["tensions"], self.props["unit"] = [], None
         self.on("act", lambda event: on_act(_told(event)))
         self.on("choose", lambda event: on_choose(_told(event).get("number")))
 
@@ -58,6 +60,16 @@ class Canvas(Element, component="canvas.js"):
     def watch(self, seen: "Glimpse | None") -> None:
         """Show a snapshot of a run instead of the belt at rest, or the drive again with None."""
         self.props["live"] = None if seen is None else seen.drawn
+        self.update()
+
+    def pull(self, tensions: Sequence[float]) -> None:
+        """Show tensions of the spans, N, as many as there are spans; none with an empty list."""
+        self.props["tensions"] = [float(one) for one in tensions]
+        self.update()
+
+    def measure(self, unit: Unit) -> None:
+        """Show lengths in a unit."""
+        self.props["unit"] = {"name": unit.shown, "size": MILLIMETRES * unit.size}
         self.update()
 
     def fit(self) -> None:
@@ -84,15 +96,26 @@ class FileMenu:
             ("Save", "save", self.save),
             ("Download", "download", self.download),
         ):
-            button = ui.button(text, icon=icon, on_click=action).props("flat dense no-caps color=white")
+            button = ui.button(text, icon=icon, on_click=action).props("flat dense no-caps")
             button.props(f'aria-label="{text}"').mark(text)
 
     def show_gallery(self) -> None:
         """Offer an empty drive file and the examples."""
         with self._dialog("New drive") as dialog:
             self._offer(dialog, Example("empty_canvas", "A belt without pulleys, to start from scratch.", EMPTY))
+            with ui.item(on_click=lambda: self._turn_to_table(dialog)).props("clickable"), ui.item_section():
+                ui.item_label("table of pulleys")
+                ui.item_label("Centers and diameters from a CSV file or a spreadsheet.").props("caption")
             for one in examples():
                 self._offer(dialog, one)
+
+    def _turn_to_table(self, gallery: ui.dialog) -> None:
+        gallery.close()
+        self.ask_table()
+
+    def ask_table(self) -> None:
+        """Ask for a table of pulleys."""
+        TableDialog(lambda text: self._begin(lambda: self._session.start(text)))
 
     def _offer(self, dialog: ui.dialog, one: Example) -> None:
         def begin() -> None:
@@ -175,7 +198,16 @@ class FileMenu:
         return True
 
 
-_TABS = ("drive", "belt", "pulley", "tensioner", "contact", "simulation", "limits")
+_TABS = {
+    "belt": "all_inclusive",
+    "pulley": "radio_button_checked",
+    "tensioner": "swap_vert",
+    "contact": "compress",
+    "simulation": "timer",
+    "limits": "speed",
+    "drive": "description",
+}
+"""Groups of the drive file, with their icons."""
 _LISTS = ("pulley", "tensioner")
 _BLUE = "#1d5f9e"
 """Contrast with white 6.6."""
@@ -214,26 +246,31 @@ class Page:
     def _build(self) -> None:
         self._dark = ui.dark_mode(None)
         ui.colors(primary=_BLUE)
-        with ui.header().classes("items-center q-py-xs gap-1 no-wrap").props("elevated=false"):
-            ui.label("beltdyn").classes("text-weight-bold q-mr-sm")
+        with ui.header().classes("items-center q-py-xs gap-1 no-wrap bd-header").props("elevated=false"):
+            ui.label("beltdyn").classes("bd-brand")
             self._title = ui.label().classes("ellipsis grow").mark("title")
             self._undo = self._icon("undo", "Undo (Ctrl+Z)", self.undo)
             self._redo = self._icon("redo", "Redo (Ctrl+Y)", self.redo)
             self._files = FileMenu(self.session, self.update)
+            units = ui.select(dict(SYSTEMS), value=self.session.units)
+            units.on_value_change(lambda event: self._measure(event.value))
+            units.props('dense borderless options-dense aria-label="units"').classes("bd-units").mark("units")
             self._icon("contrast", "Light or dark", self._turn_dark)
         with ui.element("main").classes("bd-main"):
-            with ui.element("div").classes("bd-left"):
+            with ui.element("div").classes("bd-forms"):
+                self._build_forms()
+            with ui.element("div").classes("bd-stage"):
                 self._build_toolbar()
                 self._canvas = Canvas(self.act, self.choose)
-                self._messages = ui.column().classes("w-full gap-0").props('role="status" aria-live="polite"')
-                self._analyses = AnalysisView(self.session, self._canvas.watch)
-                self._numbers = NumbersView(self.session, self.session.workspace.calculator)
-            with ui.element("div").classes("bd-right"):
-                self._build_forms()
+                self._messages = ui.column().classes("w-full gap-2 bd-messages")
+                self._messages.props('role="status" aria-live="polite"')
+            with ui.element("div").classes("bd-results"):
+                self._results = ResultsView(self.session, self._canvas.watch, self._canvas.pull)
+        self._canvas.measure(unit_in(self.session.units, "m"))
         ui.keyboard(on_key=self._key, ignore=[])
 
     def _icon(self, icon: str, says: str, on_click: Callable[[], None]) -> Any:
-        button = ui.button(icon=icon, on_click=on_click).props(f'flat dense round color=white aria-label="{says}"')
+        button = ui.button(icon=icon, on_click=on_click).props(f'flat dense round aria-label="{says}"')
         return button.tooltip(says).mark(icon)
 
     def _build_toolbar(self) -> None:
@@ -252,11 +289,13 @@ class Page:
 
     def _build_forms(self) -> None:
         with ui.tabs(on_change=lambda event: self._open_tab(event.value)) as self._tabs:
-            self._tabs.props("dense no-caps inline-label mobile-arrows outside-arrows").classes("w-full")
-            for name in _TABS:
-                ui.tab(name).mark(f"tab:{name}")
-        self._lists = ui.row().classes("w-full gap-1 q-py-xs")
-        self._form = FormView(self.session, self.apply)
+            self._tabs.props("vertical no-caps").classes("bd-tabs")
+            for name, icon in _TABS.items():
+                ui.tab(name, icon=icon).mark(f"tab:{name}")
+        with ui.element("div").classes("bd-form"):
+            self._heading = ui.label().classes("bd-heading")
+            self._lists = ui.row().classes("w-full gap-1")
+            self._form = FormView(self.session, self.apply)
         self._tabs.value = self._tab
 
     def update(self) -> None:
@@ -271,8 +310,7 @@ class Page:
         self._canvas.show(scene(session.draft), session.selected)
         self._update_messages()
         self._update_forms()
-        self._numbers.update()
-        self._analyses.update()
+        self._results.update()
 
     def _update_messages(self) -> None:
         self._messages.clear()
@@ -289,13 +327,19 @@ class Page:
 
     def _invite(self) -> None:
         """Say how to begin on an empty canvas."""
-        ui.label("Start with a drive like yours, or place the first pulley.").classes("text-subtitle1 q-mt-sm")
-        with ui.row().classes("w-full gap-2 q-mb-sm"):
-            for one in examples():
-                if one.name in STARTS:
-                    button = ui.button(STARTS[one.name], on_click=lambda one=one: self._start(one))
-                    button.props("outline no-caps").tooltip(one.about).mark(f"start:{one.name}")
-            ui.button("Open a file …", on_click=self._files.show_files).props("flat no-caps")
+        with ui.row().classes("w-full items-center gap-2"):
+            ui.label("Start with a drive like yours, or place the first pulley.").classes("bd-heading-plain grow")
+            ui.button("Table of pulleys …", on_click=self._files.ask_table).props("flat dense no-caps")
+            ui.button("Open a file …", on_click=self._files.show_files).props("flat dense no-caps")
+        offered = {one.name: one for one in examples()}
+        with ui.element("div").classes("bd-starts"):
+            for name, title in STARTS.items():
+                card = ui.element("button").props('type="button"').classes("bd-start").mark(f"start:{name}")
+                card.on("click", lambda name=name: self._start(offered[name]))
+                with card:
+                    ui.html(thumbnail(offered[name].text), sanitize=False)
+                    ui.label(title)
+                    ui.tooltip(offered[name].about).classes("bd-about")
 
     def _start(self, one: Example) -> None:
         self.session.start(one.text)
@@ -314,6 +358,7 @@ class Page:
         self.update()
 
     def _update_forms(self) -> None:
+        self._heading.text = self._tab
         self._lists.clear()
         if self._tab in _LISTS:
             with self._lists:
@@ -336,7 +381,7 @@ class Page:
         for number, one in enumerate(groups(self.session.document.data, "pulley")):
             chosen = number == self.session.selected
             button = ui.button(str(one.get("name", number + 1)), on_click=lambda number=number: self.choose(number))
-            button.props(f"dense no-caps size=sm {'' if chosen else 'outline'}")
+            button.props(f"dense no-caps unelevated size=sm {'' if chosen else 'flat'}")
         if self.session.selected is None:
             ui.label("Select a pulley here or on the canvas.").classes("text-caption")
 
@@ -345,7 +390,7 @@ class Page:
         for number, one in enumerate(listed):
             name = f"{one.get('kind', '?')}: {one.get('pulley', '?')}"
             button = ui.button(name, on_click=lambda number=number: self._choose_tensioner(number))
-            button.props(f"dense no-caps size=sm {'' if number == self._tensioner else 'outline'}")
+            button.props(f"dense no-caps unelevated size=sm {'' if number == self._tensioner else 'flat'}")
         with ui.button("add tensioner", icon="add").props("flat dense no-caps size=sm"), ui.menu():
             for kind in _TENSIONER_KINDS:
                 ui.menu_item(kind, on_click=lambda kind=kind: self.add_tensioner(kind)).mark(f"add:tensioner:{kind}")
@@ -364,6 +409,13 @@ class Page:
 
     def _remove_tensioner(self) -> None:
         self.apply([Edit("remove", ("tensioner", self._tensioner))])
+
+    def _measure(self, system: Any) -> None:
+        """Show lengths, speeds and forces in other units."""
+        self.session.units = system
+        self._canvas.measure(unit_in(system, "m"))
+        self._form.rebuild()
+        self._results.redraw()
 
     def _open_tab(self, name: str) -> None:
         self._tab = name

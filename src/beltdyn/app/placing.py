@@ -10,7 +10,7 @@ from beltdyn.errors import ModelError
 from beltdyn.model import Drive
 from beltdyn.model.belt import read_side
 from beltdyn.parts.quantity import written_like
-from beltdyn.parts.toml_edits import Edit
+from beltdyn.parts.toml_edits import Edit, Location
 
 _FIRST_RADIUS = 0.05
 _SMALLEST_RADIUS = 0.005
@@ -22,7 +22,7 @@ _ARM = 2.5
 """Length of the arm of a new tensioner, over the radius of its pulley."""
 _TENSION = 300.0
 """Default tension for the spring of a new tensioner, N."""
-_DRIVER = {"kind": "cosine_ramp", "start": 0.02, "end": 0.2, "value": "1500 rpm"}
+DRIVER = {"kind": "cosine_ramp", "start": 0.02, "end": 0.2, "value": "1500 rpm"}
 
 
 def move(data: Mapping[str, Any], number: int, x: float, y: float) -> list[Edit]:
@@ -141,6 +141,20 @@ def new_tensioner(draft: Draft, number: int, kind: str, place: int) -> list[Edit
     return edits
 
 
+def rim(data: Mapping[str, Any], hub: Location) -> list[Edit]:
+    """Give a pulley the inertia that its rim needs before a hub, if it has none."""
+    pulley = groups(data, "pulley")[int(hub[1])]
+    one = next((each for each in circles(data) if each.number == hub[1]), None)
+    if one is None or pulley.get("inertia"):
+        return []
+    return [Edit("set", (*hub[:-1], "inertia"), inertia_of_disk(one.radius))]
+
+
+def inertia_of_disk(radius: float) -> float:
+    """Inertia of an aluminum disk of the size of a pulley, kg m^2."""
+    return float(f"{_DISK * math.pi / 2 * radius**4:.2g}")
+
+
 def add(draft: Draft, x: float, y: float, base: Any = None) -> list[Edit]:
     """Add a pulley at a position, m, in the nearest span and on the possible side.
 
@@ -154,9 +168,9 @@ def add(draft: Draft, x: float, y: float, base: Any = None) -> list[Edit]:
         "radius": f"{1e3 * radius:g} mm",
     }
     if pulleys:
-        pulley["inertia"] = float(f"{_DISK * math.pi / 2 * radius**4:.2g}")
+        pulley["inertia"] = inertia_of_disk(radius)
     else:
-        pulley["speed"] = dict(_DRIVER)
+        pulley["speed"] = dict(DRIVER)
     for place, side in _places(found, x, y, len(pulleys)):
         tried = pulley | ({"side": side} if side == "outside" else {})
         if draft.drive is not None and not _runs(draft.data, place, tried, base):

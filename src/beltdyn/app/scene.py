@@ -139,22 +139,29 @@ def _pulley(one: Circle, drive: Drive | None, center: Sequence[float], draft: Dr
 
 
 def _spans(path: Path) -> list[dict[str, Any]]:
-    """Middles of spans, the directions in which there is room for their lengths, and the lengths.
+    """Ends and middles of spans, the directions in which there is room for their labels, and their lengths.
 
     Room is on the right of the belt, which goes around its pulleys counter-clockwise: off the drive.
     """
     middles, along = path.span_points.mean(axis=1), np.diff(path.span_points, axis=1)[:, 0]
     outward = np.column_stack([along[:, 1], -along[:, 0]]) / np.linalg.norm(along, axis=1, keepdims=True)
     return [
-        {"x": x, "y": y, "right": right, "down": -up, "label": _written(length)}
-        for (x, y), (right, up), length in zip(
-            (_place(*one) for one in middles.tolist()), outward.tolist(), path.span_lengths.tolist(), strict=True
+        {
+            "x": x,
+            "y": y,
+            "right": right,
+            "down": -up,
+            "length": MILLIMETRES * length,
+            "ends": [*_place(*start), *_place(*end)],
+        }
+        for (x, y), (right, up), length, (start, end) in zip(
+            (_place(*one) for one in middles.tolist()),
+            outward.tolist(),
+            path.span_lengths.tolist(),
+            path.span_points.tolist(),
+            strict=True,
         )
     ]
-
-
-def _written(length: float) -> str:
-    return f"{MILLIMETRES * length:.1f} mm" if length < 1.0 else f"{length:.3f} m"
 
 
 def _tensioners(data: Mapping[str, Any], found: Sequence[Circle]) -> list[dict[str, Any]]:

@@ -10,6 +10,7 @@ from beltdyn.app import placing
 from beltdyn.app.draft import Draft, draft
 from beltdyn.app.jobs import Job, Outcome
 from beltdyn.app.scene import groups
+from beltdyn.app.units import System
 from beltdyn.app.workspace import EMPTY, Workspace
 from beltdyn.errors import ModelError
 from beltdyn.parts.text_file import parse_toml
@@ -131,6 +132,7 @@ class Session:
         self.name: str | None = None
         self.document = Document(EMPTY)
         self.selected: int | None = None
+        self.units: System = "mm"
         self.job: Job | None = None
         self.outcomes: list[tuple[str, Outcome]] = []
         self._known: tuple[str, Draft] | None = None

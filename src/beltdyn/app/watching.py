@@ -1,25 +1,35 @@
 """Snapshots of a run being computed: colored belt, pulley positions and numbers."""
 
 import time
+from collections.abc import Mapping
 from itertools import pairwise
 from pathlib import Path
 from typing import Any, NamedTuple
 
+import h5py
 import numpy as np
 import xarray as xr
 from matplotlib.colors import to_hex
 
 from beltdyn.app.scene import MILLIMETRES
+from beltdyn.arrays import FloatArray
 from beltdyn.parts.quantity import RPM
-from beltdyn.results import Run, open_run
+from beltdyn.results import RECORDED, Run, open_run
 from beltdyn.show.plot.style import tension_colors
 from beltdyn.show.report.motion import along_belt
 from beltdyn.show.sheet import Table
 
 _OFTEN = 0.4
 """Least interval of snapshots, s."""
-_SHARE = 20.0
+_SHARE = 10.0
 """Least interval of snapshots over the cost of one."""
+_LONGEST = 3.0
+"""Interval of snapshots after which one is taken, whatever it costs: the first one loads libraries, s."""
+_SEEN = (
+    *("pulley_speed", "pulley_angle", "pulley_torque", "hub_force", "pulley_center"),
+    *("nodal_coordinates", "belt_tension", "normal_force"),
+)
+"""What is read."""
 _PIECES = 60
 """Number of separately colored pieces of the belt."""
 
@@ -45,23 +55,48 @@ class Watcher:
         self._result = result
         self._next = 0.0
         self._seen = -1.0
+        self._first: Run | None = None
 
     def look(self) -> Glimpse | None:
         """Return the latest instant with fields along the belt; None if it is too early, or not new."""
         begun = time.perf_counter()
         if begun < self._next or not self._result.exists():
             return None
-        run = open_run(self._result)
         try:
-            times = run.dataset["field_time"].values
-            if not len(times) or times[-1] <= self._seen:
-                return None
-            self._seen = float(times[-1])
-            return _glimpse(run)
+            with h5py.File(self._result, "r") as file:
+                times = file["field_time"][:]
+                if not len(times) or times[-1] <= self._seen:
+                    return None
+                self._seen = float(times[-1])
+                values = _latest(file)
+            return _glimpse(self._run(values))
         finally:
-            run.dataset.close()
             spent = time.perf_counter() - begun
-            self._next = begun + max(_OFTEN, _SHARE * spent)
+            self._next = begun + min(max(_OFTEN, _SHARE * spent), _LONGEST)
+
+    def _run(self, values: Mapping[str, FloatArray]) -> Run:
+        """A run of one instant; what all instants share is read once, which takes longest."""
+        if self._first is None:
+            run = open_run(self._result)
+            shared = run.dataset.isel(time=slice(0, 1), field_time=slice(0, 1), filtered_time=slice(0, 0)).load()
+            run.dataset.close()
+            self._first = Run(shared, run.drive)
+        known = self._first.dataset
+        latest = {name: (known[name].dims, one, known[name].attrs) for name, one in values.items()}
+        made = Run(known.assign(latest), self._first.drive)
+        vars(made)["prepared"] = self._first.prepared
+        return made
+
+
+def _latest(file: h5py.File) -> dict[str, FloatArray]:
+    """Values at the latest instant that has fields along the belt."""
+    number = int(np.searchsorted(file["time"][:], file["field_time"][-1]))
+    places = {"time": number, "field_time": len(file["field_time"]) - 1}
+    found = {}
+    for name in (*_SEEN, "time", "field_time"):
+        place = places[RECORDED[name].dims[0]]
+        found[name] = file[name][place : place + 1]
+    return found
 
 
 def _glimpse(run: Run) -> Glimpse:

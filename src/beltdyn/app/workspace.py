@@ -1,6 +1,7 @@
 """Data shared by all tabs: folder, first drive file, and examples."""
 
 import os
+from functools import cache
 from pathlib import Path
 from tempfile import TemporaryDirectory
 from typing import NamedTuple
@@ -8,10 +9,12 @@ from typing import NamedTuple
 from beltdyn.app.computing import Calculator
 from beltdyn.app.jobs import Job
 from beltdyn.errors import ModelError
+from beltdyn.model import loads
 from beltdyn.model.toml_reader import example_texts
 from beltdyn.parts.messages import reason
 from beltdyn.parts.text_file import LONGEST_TOML, read_text, shorten
 from beltdyn.results.atomic import atomic_path
+from beltdyn.show.notebook import picture
 
 # The only folder that the page reads and writes
 
@@ -153,6 +156,15 @@ class Workspace:
             self.calculator.close()
         if self._results is not None:
             self._results.cleanup()
+
+
+@cache
+def thumbnail(text: str) -> str:
+    """A small picture of a drive file of the gallery, as SVG."""
+    shown = picture(loads(text))
+    circles = "".join(f'<circle cx="{one.x:.1f}" cy="{one.y:.1f}" r="{one.radius:.1f}"/>' for one in shown.circles)
+    box = f"0 0 {shown.width:.0f} {shown.height:.0f}"
+    return f'<svg viewBox="{box}" aria-hidden="true">{circles}<path d="{shown.belt}"/></svg>'
 
 
 def examples() -> list[Example]:

@@ -31,7 +31,7 @@ class CordFatigue(Part):
 
     Examples
     --------
-    >>> line = bd.model.CordFatigue(cycles=[1e8, 1e9], forces=[100.0, 80.0], bending_force=0.5, source="test")
+    >>> line = bd.model.CordFatigue(cycles=[1e8, 1e9], forces=[100.0, 80.0], bending_force=0.5, source="data sheet")
     >>> f"{line.cycles_to_failure(80.0):.4g}"
     '1e+09'
     """
@@ -112,7 +112,7 @@ class RibFatigue(Part):
 
     Examples
     --------
-    >>> law = bd.model.RibFatigue(diameter=0.1, tension=100.0, temperature=80.0, source="test")
+    >>> law = bd.model.RibFatigue(diameter=0.1, tension=100.0, temperature=80.0, source="data sheet")
     >>> round(float(law.passages_at(100.0, 0.05)), 2)  # half the diameter: 2^5.6
     48.5
     """

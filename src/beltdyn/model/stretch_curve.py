@@ -19,6 +19,12 @@ class StretchCurve(Part):
 
     The points are `strains` and `tensions`, or the two columns of the CSV file `file`: a relative path starts at the
     folder of the drive file. The point without strain and tension may be left out.
+
+    Examples
+    --------
+    >>> from beltdyn.model.stretch_curve import StretchCurve
+    >>> StretchCurve(strains=[0.005, 0.01], tensions=["400 N", "750 N"]).tensions
+    (400.0, 750.0)
     """
 
     model_config = ConfigDict(

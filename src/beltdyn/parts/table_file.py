@@ -50,18 +50,26 @@ class CsvRows(NamedTuple):
 
 
 def read_rows(path: Path, hint: str = "") -> CsvRows:
-    """Read the lines of a CSV file that are neither empty nor comments.
+    """Read the lines of a CSV file that are neither empty nor comments; see `rows_of`.
 
     Text is UTF-8, with or without a byte-order mark, UTF-16 with one, or else Windows-1252, of which Latin-1 is a part.
-    Cells are separated by tabs or semicolons if these are in more than half of the lines, and else by commas. Where no
-    comma separates and no number has a decimal point, numbers may have decimal commas.
     """
     try:
-        lines = _decoded(read_bytes(path, LONGEST_TABLE)).splitlines()
+        text = decoded(read_bytes(path, LONGEST_TABLE))
     except UnicodeDecodeError as error:
         raise ValueError("is not a text file. Save it as CSV in UTF-8") from error
     except (OSError, ValueError) as error:
         raise ValueError(f"cannot be read: {reason(error)}{hint}") from error
+    return rows_of(text)
+
+
+def rows_of(text: str) -> CsvRows:
+    """Lines of a text in CSV that are neither empty nor comments.
+
+    Cells are separated by tabs or semicolons if these are in more than half of the lines, and else by commas. Where no
+    comma separates and no number has a decimal point, numbers may have decimal commas.
+    """
+    lines = text.splitlines()
     separator = _separator(lines)
     reader = csv.reader(lines, delimiter=separator)
     try:
@@ -98,7 +106,7 @@ def unit_in_brackets(heading: str) -> str:
     return match["unit"] if match and is_unit(match["unit"]) else ""
 
 
-def _decoded(data: bytes) -> str:
+def decoded(data: bytes) -> str:
     """A text, whatever it is encoded in."""
     if data.startswith((codecs.BOM_UTF16_LE, codecs.BOM_UTF16_BE)):
         text = data.decode("utf-16")

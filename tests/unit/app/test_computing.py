@@ -83,7 +83,7 @@ def test_what_a_drive_needs_is_made_ready_before_there_is_a_question(drive_text:
             calculator.close()
         assert ahead.exitcode is not None  # at once: what begins still would miss what the server shares with it
         assert psutil.wait_procs([process], timeout=60.0)[1] == []
-        assert not calculator.preparing
+        assert calculator.compiling is None
 
     asyncio.run(ask())
 

@@ -29,15 +29,15 @@ def test_another_kind_keeps_what_both_have(alternator_text: str) -> None:
     assert "speed" not in document.data["pulley"][0]
     assert edits_of_kind(document.data, ("pulley", 0, "speed"), None) == []
     document.apply(edits_of_kind(document.data, ("pulley", 0, "torque"), "step"))
-    assert document.data["pulley"][0]["torque"] == {"kind": "step"}
+    assert document.data["pulley"][0]["torque"] == {"kind": "step", "time": 0.1, "value": "5 N m"}
 
 
 def test_entries_are_added_with_and_without_a_kind(alternator_text: str) -> None:
     document = Document(alternator_text)
     document.apply(edits_of_entry(document.data, ("pulley", 2, "load"), "fan"))
     document.apply(edits_of_entry(document.data, ("pulley", 0, "harmonics"), None))
-    assert document.data["pulley"][2]["load"][1] == {"kind": "fan"}
-    assert document.data["pulley"][0]["harmonics"] == [{}]
+    assert document.data["pulley"][2]["load"][1] == {"kind": "fan", "rated_power": "2 kW", "rated_speed": "1500 rpm"}
+    assert document.data["pulley"][0]["harmonics"] == [{"order": 2, "amplitude": 0.01}]
 
 
 def test_a_value_is_set_left_open_or_the_same(alternator_text: str) -> None:

@@ -16,7 +16,7 @@ def data() -> dict[str, Any]:
 
 def test_the_belt_has_its_keys_with_units_and_the_profiles_of_the_catalogue(data: dict[str, Any]) -> None:
     found = {one.key: one for one in fields(data, ("belt",))}
-    assert (found["installed_tension"].unit, found["installed_tension"].text) == ("N", "300 N")
+    assert (found["installed_tension"].unit, found["installed_tension"].text("mm")) == ("N", "300")
     assert found["profile"].form == "choice"
     assert "SPB" in found["profile"].choices
     assert found["wedge_angle"].unit == "rad"
@@ -29,7 +29,8 @@ def test_the_belt_has_its_keys_with_units_and_the_profiles_of_the_catalogue(data
 def test_groups_within_groups_have_the_keys_of_their_kind(data: dict[str, Any]) -> None:
     keys = {one.key: one for one in fields(data, ("pulley", 0, "speed"))}
     assert keys["values"].unit == "rad/s"
-    assert keys["values"].text == "0 rpm, 1600 rpm, 1600 rpm, 800 rpm"
+    assert keys["values"].text("mm") == "0, 1600, 1600, 800"
+    assert keys["values"].text("SI") == "0, 167.5516, 167.5516, 83.7758"
     assert {one.key for one in fields(data, ("pulley", 4, "hub", 1))} >= {"stiffness", "damping", "inertia"}
     assert {one.key for one in fields(data, ("pulley", 0, "harmonics", 1))} == {"order", "amplitude", "phase"}
 

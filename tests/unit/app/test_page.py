@@ -187,9 +187,12 @@ def test_a_group_takes_a_kind_and_shows_its_keys(workspace: Workspace) -> None:
             marked(user, "pulley.0.speed").value = "constant"
         await user.should_see(marker="pulley.0.speed.value")
         await user.should_not_see(marker="pulley.0.speed.start")
+        await user.should_not_see(marker="add:load:fan")  # the torque of a shaft with prescribed speed is a result
+        user.find(Canvas).trigger("choose", {"number": 2})
         user.find(marker="add:load:fan").click()
-        await user.should_see(marker="pulley.0.load.0.rated_power")
-        assert not canvas(user)["scene"]["valid"]  # a fan has keys that must be given
+        await user.should_see(marker="pulley.2.load.1.rated_power")
+        assert marked(user, "pulley.2.load.1.rated_power").value == "2000"
+        assert canvas(user)["scene"]["valid"]  # a new item is valid
 
     go(workspace, journey)
 
@@ -272,7 +275,7 @@ def test_what_an_answer_waits_for_is_said(workspace: Workspace, monkeypatch: pyt
 
     class Compiles(Told):
         async def ask(self, asked: Asked) -> Answer:
-            self._compiles.set()
+            self._compiles.tell((96, 240))
             await compiled.wait()
             self._compiles.clear()
             return await super().ask(asked)
@@ -280,7 +283,7 @@ def test_what_an_answer_waits_for_is_said(workspace: Workspace, monkeypatch: pyt
     workspace.calculator = Compiles()
 
     async def journey(user: User) -> None:
-        await user.should_see("compiling kernels (once per machine, up to a minute): 0 s")
+        await user.should_see("compiling kernels, once on this machine: 96 of 240")
         compiled.set()
         await user.should_see("at rest, computed in 0.12 s")
 
@@ -289,6 +292,8 @@ def test_what_an_answer_waits_for_is_said(workspace: Workspace, monkeypatch: pyt
 
 def test_an_analysis_can_be_started_only_of_a_drive(workspace: Workspace) -> None:
     async def journey(user: User) -> None:
+        with user:
+            marked(user, "what").value = "analyses"
         assert marked(user, "run").enabled
         act(user, action="move", number=2, x=0.0, y=0.0)
         assert not marked(user, "run").enabled
@@ -296,6 +301,9 @@ def test_an_analysis_can_be_started_only_of_a_drive(workspace: Workspace) -> Non
         with user:
             marked(user, "analysis").value = "campbell"
         await user.should_see("Number of modes at each speed")  # what an option means, below the pointer
+        assert marked(user, "option:speed").value == "450..1800 rpm"  # about the 1500 rpm of the drive
+        with user:
+            marked(user, "option:speed").value = ""
         user.find(marker="run").click()
         await user.should_see("campbell needs speed. Give a value.")
 
@@ -326,3 +334,36 @@ def test_tables_are_written_with_their_text_escaped() -> None:
     written = table_html(Table("", ("", "a\nb"), (("<i>", "1"),)))
     assert "<td>&lt;i&gt;</td><td>1</td>" in written
     assert table_html(Facts((("a", "b"),))).startswith('<table class="bd-table bd-facts">')
+
+
+def test_a_drive_is_begun_from_a_pasted_table(workspace: Workspace) -> None:
+    async def journey(user: User) -> None:
+        user.find("Table of pulleys …").click()
+        await user.should_see(marker="pasted")
+        user.find(marker="use-table").click()
+        await user.should_see("the table is empty")
+        with user:
+            marked(user, "pasted").value = "motor; 0; 0; 100\nfan; 400; 0; 160"
+        user.find(marker="use-table").click()
+        await user.should_see("Pulleys at rest")
+        assert [one["r"] for one in canvas(user)["scene"]["pulleys"]] == [50.0, 80.0]
+
+    go(Workspace(workspace.folder), journey)
+
+
+def test_fields_and_canvas_are_in_the_chosen_units(workspace: Workspace) -> None:
+    async def journey(user: User) -> None:
+        user.find(Canvas).trigger("choose", {"number": 1})
+        await user.should_see(marker="pulley.1.radius")
+        assert marked(user, "pulley.1.radius").value == "32"
+        enter(user, "pulley.1.radius", "33")
+        assert canvas(user)["scene"]["pulleys"][1]["r"] == 33.0
+        with user:
+            marked(user, "units").value = "SI"
+        assert marked(user, "pulley.1.radius").value == "0.033"
+        assert canvas(user)["unit"] == {"name": "m", "size": 1000.0}
+        enter(user, "pulley.1.radius", "0.034")
+        assert canvas(user)["scene"]["pulleys"][1]["r"] == pytest.approx(34.0)
+        assert marked(user, "pulley.1.center").value == "0.03, 0.14"
+
+    go(workspace, journey)

@@ -44,7 +44,9 @@ class FrictionClutch(HubLink):
 
     Examples
     --------
-    >>> bd.model.FrictionClutch(kind="friction_clutch", capacity="20 N m", locking_damping=1.0).capacity
+    >>> bd.model.FrictionClutch(
+    ...     kind="friction_clutch", capacity="20 N m", locking_damping=1.0, inertia="20 kg cm^2"
+    ... ).capacity
     20.0
     """
 

@@ -37,7 +37,7 @@ class Isolator(HubLink):
 
     Examples
     --------
-    >>> bd.model.Isolator(kind="isolator", stiffness="200 N m/rad", damping=0.5).stiffness
+    >>> bd.model.Isolator(kind="isolator", stiffness="200 N m/rad", damping=0.5, inertia="20 kg cm^2").stiffness
     200.0
     """
 

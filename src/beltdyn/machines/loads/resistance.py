@@ -49,7 +49,7 @@ class Resistance(Load):
 
     Examples
     --------
-    >>> bd.model.Resistance(kind="resistance", constant="2 N m", linear=0.1).constant
+    >>> bd.model.Resistance(kind="resistance", constant="2 N m", linear=0.01).constant
     2.0
     """
 

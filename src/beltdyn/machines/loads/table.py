@@ -381,6 +381,14 @@ class AngleSpeedTable(_OverAngle):
 
     All are counter-clockwise positive. The points are `angles`, `speeds` and `torques`, or a CSV file `file`: its first
     line has the speeds behind a first cell, and each other line an angle and the torques there.
+
+    Examples
+    --------
+    >>> bd.model.AngleSpeedTable(
+    ...     kind="angle_speed_table", angles=["0 deg", "90 deg", "180 deg"], speeds=["0 rpm", "1500 rpm"],
+    ...     torques=[[0.0, -1.0], [-5.0, -6.0], [-1.0, -2.0]]
+    ... ).speeds
+    (0.0, 157.07963267948966)
     """
 
     model_config = ConfigDict(
