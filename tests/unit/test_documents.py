@@ -84,7 +84,7 @@ def test_tables_have_every_key(part: type[Part], name: str) -> None:
 
 def test_tables_tell_defaults_choices_and_limits() -> None:
     rows = key_tables.KEYS["contact"].splitlines()
-    assert next(row for row in rows if "`friction_law`" in row).endswith("`force_slope` | `relative_creep` |")
+    assert next(row for row in rows if "`friction_law`" in row).endswith("`stribeck` | `relative_creep` |")
     assert next(row for row in rows if "`stiffness`" in row).endswith("| chosen |")
     assert "at least 1 and at most 64" in next(row for row in rows if "`quadrature_points`" in row)
     assert "| required |" in next(row for row in key_tables.KEYS["belt"].splitlines() if "`width`" in row)
