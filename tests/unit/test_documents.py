@@ -21,7 +21,7 @@ from beltdyn.cli import main
 from beltdyn.designs.designs import free_number
 from beltdyn.designs.residuals import read_measured
 from beltdyn.machines import profiles
-from beltdyn.model import Belt, Contact, Limits, Pulley, Rating, Simulation, Steady, dumps, loads
+from beltdyn.model import Belt, Contact, Limits, Pulley, Rating, Simulation, Steady, Toothing, dumps, loads
 from beltdyn.model.belt_form import Nominal, Sold
 from beltdyn.model.catalogue import Entry, read_catalogue
 from beltdyn.model.pulley import Diameter
@@ -139,11 +139,14 @@ def test_every_key_of_a_profile_is_documented(profile: type[Part]) -> None:
 
 
 def test_the_catalogue_of_the_document_has_every_key(new_drive: str, tmp_path: Path) -> None:
-    machine, own, catalogue, rating, curve, fatigue = blocks(CATALOGUE, "toml")
+    machine, own, catalogue, rating, curve, fatigue, teeth = blocks(CATALOGUE, "toml")
     (entry,) = tomllib.loads(catalogue).values()
-    others = [tomllib.loads(one)["my-belt"] for one in (rating, curve, fatigue)]
+    others = [tomllib.loads(one)["my-belt"] for one in (rating, curve, fatigue, teeth)]
     assert entry.keys() | {key for one in others for key in one} == Entry.model_fields.keys()
     assert others[0]["rating"].keys() == Rating.model_fields.keys()
+    assert others[3]["toothing"].keys() == Toothing.model_fields.keys()
+    (tmp_path / "toothed.toml").write_text(catalogue + teeth, encoding="utf-8")
+    assert read_catalogue("toothed.toml", tmp_path)["my-belt"].toothing is not None
     without = "".join(line for line in catalogue.splitlines(keepends=True) if not line.startswith("axial_stiffness"))
     (tmp_path / "measured.toml").write_text(without + curve, encoding="utf-8")
     assert read_catalogue("measured.toml", tmp_path)["my-belt"].axial_stiffness == pytest.approx(1700.0)

@@ -112,10 +112,12 @@ def _show(profile: str, entry: "Entry") -> None:
     show("\nDerived values")
     show_facts((f"  {name}", fact) for name, fact in _consequences(entry))
     size = {"ribs": "ribs = 1", "width": 'width = "50 mm"', "diameter": 'diameter = "8 mm"'}[entry.sold_by]
-    show(f'\nIn a drive file\n  [belt]\n  profile = "{profile}"\n  {size}\n\nSources')
+    teeth = "" if entry.toothing is None else "  teeth = 100\n"
+    show(f'\nIn a drive file\n  [belt]\n  profile = "{profile}"\n  {size}\n{teeth}\nSources')
     show_paragraphs(entry.source.strip().splitlines())
-    for name, data in (("Cord fatigue", entry.cord_fatigue), ("Rib fatigue", entry.rib_fatigue)):
-        if data is not None:
+    data_of = ("Teeth", entry.toothing), ("Cord fatigue", entry.cord_fatigue), ("Rib fatigue", entry.rib_fatigue)
+    for name, data in data_of:
+        if data is not None and data.source is not None:
             show_paragraphs([f"{name}: {data.source.strip()}"])
 
 
@@ -141,6 +143,14 @@ def _values(entry: "Entry") -> Iterator[tuple[str, str]]:
         yield "measuring_force", f"{entry.measuring_force:.4g} N, half in each strand"
     if entry.largest_tension is not None:
         yield "largest_tension", f"{entry.largest_tension:.4g} N"
+    if (teeth := entry.toothing) is not None:
+        yield "toothing.pitch", f"{1e3 * teeth.pitch:.5g} mm"
+        yield "toothing.tooth_stiffness", f"{teeth.tooth_stiffness / 1e3:.3g} N/mm a tooth"
+        yield "toothing.flank_angle", f"{degrees(teeth.flank_angle):.3g}°"
+        if teeth.tooth_height is not None:
+            yield "toothing.tooth_height", f"{1e3 * teeth.tooth_height:.3g} mm"
+        if teeth.largest_tooth_load is not None:
+            yield "toothing.largest_tooth_load", f"{teeth.largest_tooth_load:.3g} N"
     if entry.largest_fleeting_angle is not None:
         yield "largest_fleeting_angle", f"{degrees(entry.largest_fleeting_angle):.3g}°"
     if line := entry.cord_fatigue:
@@ -160,7 +170,10 @@ def _consequences(entry: "Entry") -> Iterator[tuple[str, str]]:
     line = f"{offset:.3g} mm outside" if offset else "at that diameter"
     more = f"{2 * pi * offset:.3g} mm longer (2π × {offset:.3g} mm)" if offset else "of that length"
     yield "pulleys", f"diameter = {entry.pulley_diameter} diameter; the tension line is {line}"
-    yield "belts", f"nominal_length = {length}; the tension line is {more}"
+    if entry.toothing is None:
+        yield "belts", f"nominal_length = {length}; the tension line is {more}"
+    else:
+        yield "belts", f"teeth of {1e3 * entry.toothing.pitch:.5g} mm each, under measuring_force"
     if entry.measuring_force:
         yield "measured", f"{entry.measured_stretch - 1.0:.3%} longer than unstretched, under measuring_force"
     if entry.smallest_diameter is not None:

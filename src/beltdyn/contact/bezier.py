@@ -33,6 +33,8 @@ class Curve(NamedTuple):
     """Control points (rows) from the vectors (columns), shape (n, v)."""
     length: float
     """Reference length of the piece of belt, m."""
+    start: float = 0.0
+    """Material coordinate at which it begins, m, which teeth ask for."""
 
 
 @kernel(inline=True)

@@ -4,7 +4,7 @@ The centerline is a Bezier curve given by its control points, whatever the belt 
 vectors of which the control points are combinations (the basis): Q_b = integral of S_b (f_n n + (f_t + f_r) t) dx.
 """
 
-from typing import Final, NamedTuple
+from typing import Any, Final, NamedTuple
 
 import numpy as np
 
@@ -14,7 +14,18 @@ from beltdyn.contact.contact_zone import touching_intervals, zone_record
 from beltdyn.contact.law import ContactLaw, PulleyState
 from beltdyn.contact.penetration import Approach, approach
 from beltdyn.contact.point_force import PointForce, PointTangent, point_force, point_tangent, point_turn
-from beltdyn.kernel import kernel
+from beltdyn.contact.teeth import (
+    NoTeeth,
+    Tooth,
+    by_coordinate,
+    force_with,
+    power_taken,
+    speed_unknown,
+    tangent_with,
+    tooth_at,
+    turn_with,
+)
+from beltdyn.kernel import by_type, kernel
 from beltdyn.quadrature import Quadrature
 from beltdyn.records import blank, record
 
@@ -34,7 +45,7 @@ class ContactTotals(NamedTuple):
     friction_power: float
     """Friction power loss of belt and pulley, -f_t (t . dr/dt - arm omega), W."""
     compression_power: float
-    """Power lost by compression of the belt, -f_r (t . dr/dt), W."""
+    """Power lost by compression of the belt, -f_r (t . dr/dt), and what its teeth take, which they may give back, W."""
 
 
 class ContactFactors(NamedTuple):
@@ -140,19 +151,21 @@ def contact_force(
             here = approach(x, y, vx, vy, pulley)
             if here.penetration < 0.0:
                 continue
-            force = point_force(here, pulley, law, factors.secant)
+            tooth = tooth_at(pulley.surface, here, pulley.speed, curve.start + xi * curve.length)
+            force = force_with(tooth, point_force(here, pulley, law, factors.secant), here)
             fill_shape_functions(curve.basis, work.weights, work.functions)
             _add_pairs(work.force, work.functions, weight * force.x, weight * force.y)
-            totals = _add_point(totals, weight, here, force, pulley)
+            totals = _add_point(totals, weight, here, force, power_taken(tooth), pulley)
             if wanted:
-                _spread(weight, here, force, pulley, factors, work)
+                _spread(weight, here, force, tooth, pulley, factors, work)
             if moving or flowing:
                 fill_bernstein_rates(xi, work.rates)
                 fill_shape_functions(curve.basis, work.rates, work.function_rates)
             if flowing:
-                _flow(weight / curve.length, curve, here, force, pulley, factors, work)
+                motion = tangent_with(tooth, point_tangent(here, force, pulley.speed, 0.0, 1.0), here, 0.0, 1.0)
+                _flow(weight / curve.length, curve, motion, factors, work)
             if moving:
-                drift = _drift(curve, here, force, pulley, work)
+                drift = _drift(curve, here, force, tooth, pulley, work)
                 _add_end(work, 0, -share, weight * (1.0 - place), force, drift)
                 _add_end(work, 1, share, weight * place, force, drift)
         for end, xi in ((0, start), (1, stop)):
@@ -178,7 +191,7 @@ def _clear(work: np.record) -> None:
 
 @kernel(inline=True)
 def _add_point(
-    totals: ContactTotals, weight: float, here: Approach, force: PointForce, pulley: PulleyState
+    totals: ContactTotals, weight: float, here: Approach, force: PointForce, taken: float, pulley: PulleyState
 ) -> ContactTotals:
     """Sums with those of one more point, which stands for a length of belt."""
     return ContactTotals(
@@ -188,7 +201,7 @@ def _add_point(
         totals.penalty_energy + weight * force.normal.energy,
         totals.damping_power - weight * (force.normal.force - force.normal.elastic) * here.radial,
         totals.friction_power - weight * force.friction * (here.circumferential - force.arm * pulley.speed),
-        totals.compression_power - weight * force.rolling.force * here.circumferential,
+        totals.compression_power - weight * force.rolling.force * here.circumferential + weight * taken,
     )
 
 
@@ -197,31 +210,48 @@ def _spread(
     weight: float,
     here: Approach,
     force: PointForce,
+    tooth: Any,
     pulley: PulleyState,
     factors: ContactFactors,
     work: np.record,
 ) -> None:
     """Give tangent and couplings of a point to the vectors (Eq. 24)."""
+    by_turning = speed_unknown(pulley.surface) * factors.by_turning
     tangent = point_tangent(here, force, pulley.speed, factors.by_position, factors.by_velocity)
-    turn = point_turn(here, force, pulley.speed, factors.by_position, factors.by_turning)
+    tangent = tangent_with(tooth, tangent, here, factors.by_position, factors.by_velocity)
+    turn = point_turn(here, force, pulley.speed, factors.by_position, by_turning)
+    turn = turn_with(tooth, turn, here, factors.by_position, by_turning)
     _add_pairs(work.by_turn, work.functions, weight * turn.x, weight * turn.y)
     _add_pairs(work.moment, work.functions, weight * tangent.moment_x, weight * tangent.moment_y)
     _add_blocks(work, work.functions, tangent, weight)
     work.moment_by_turn += weight * turn.moment
+    _pass(tooth, weight * factors.by_position, here, work)
 
 
 @kernel(inline=True)
-def _flow(
-    share: float,
-    curve: Curve,
-    here: Approach,
-    force: PointForce,
-    pulley: PulleyState,
-    factors: ContactFactors,
-    work: np.record,
-) -> None:
-    """Add what changes of the velocity by the belt's flow do, with the weight of the point over the curve's length."""
-    motion, part = point_tangent(here, force, pulley.speed, 0.0, 1.0), share * factors.by_slope
+def _nothing_passes(tooth: NoTeeth, weight: float, here: Approach, work: np.record) -> None:
+    """Leave all as it is: forces do not depend on the length of belt that has passed."""
+
+
+@kernel(inline=True)
+def _teeth_pass(tooth: Tooth, weight: float, here: Approach, work: np.record) -> None:
+    """Add what the length of belt that has passed changes of the place of teeth, with a weight."""
+    x, y, moment = by_coordinate(tooth, here)
+    part = -weight * tooth.by_flow
+    _add_pairs(work.by_flow, work.functions, part * x, part * y)
+    work.moment_by_flow += part * moment
+
+
+_pass = by_type({NoTeeth: _nothing_passes, Tooth: _teeth_pass}, "pass")
+
+
+@kernel(inline=True)
+def _flow(share: float, curve: Curve, motion: PointTangent, factors: ContactFactors, work: np.record) -> None:
+    """Add what changes of the velocity by the belt's flow do.
+
+    The share is the weight of the point over the curve's length, motion the derivative by the velocity of the point.
+    """
+    part = share * factors.by_slope
     _add_blocks(work, work.function_rates, motion, part)
     _add_pairs(work.moment, work.function_rates, part * motion.moment_x, part * motion.moment_y)
     rx, ry = combine(curve.control, work.rates)
@@ -254,17 +284,18 @@ def _add_blocks(work: np.record, shape: FloatArray, tangent: PointTangent, facto
 
 @kernel(inline=True)
 def _drift(
-    curve: Curve, here: Approach, force: PointForce, pulley: PulleyState, work: np.record
+    curve: Curve, here: Approach, force: PointForce, tooth: Any, pulley: PulleyState, work: np.record
 ) -> tuple[float, float, float]:
     """Change of force and moment along the curve, with the rates of the weights of its control points at the point."""
     rx, ry = combine(curve.control, work.rates)
     sx, sy = combine(curve.velocity, work.rates)
-    place = point_tangent(here, force, pulley.speed, 1.0, 0.0)
-    motion = point_tangent(here, force, pulley.speed, 0.0, 1.0)
+    place = tangent_with(tooth, point_tangent(here, force, pulley.speed, 1.0, 0.0), here, 1.0, 0.0)
+    motion = tangent_with(tooth, point_tangent(here, force, pulley.speed, 0.0, 1.0), here, 0.0, 1.0)
+    own = by_coordinate(tooth, here)
     return (
-        place.xx * rx + place.xy * ry + motion.xx * sx + motion.xy * sy,
-        place.yx * rx + place.yy * ry + motion.yx * sx + motion.yy * sy,
-        place.moment_x * rx + place.moment_y * ry + motion.moment_x * sx + motion.moment_y * sy,
+        place.xx * rx + place.xy * ry + motion.xx * sx + motion.xy * sy + curve.length * own[0],
+        place.yx * rx + place.yy * ry + motion.yx * sx + motion.yy * sy + curve.length * own[1],
+        place.moment_x * rx + place.moment_y * ry + motion.moment_x * sx + motion.moment_y * sy + curve.length * own[2],
     )
 
 

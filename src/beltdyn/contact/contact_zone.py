@@ -9,14 +9,14 @@ Against a surface that is not a smooth circle the penetration is sampled along t
 its sign changes between two samples.
 """
 
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 
 from beltdyn.arrays import FloatArray
 from beltdyn.contact.bezier import BINOMIALS, combine, fill_bernstein, fill_bernstein_rates
 from beltdyn.contact.law import PulleyState
-from beltdyn.contact.surface import Round, Shaped, outer_radius, shaped_gap
+from beltdyn.contact.surface import Round, Shaped, Toothed, outer_radius, shaped_gap
 from beltdyn.kernel import by_type, kernel
 from beltdyn.records import blank, record
 
@@ -104,7 +104,7 @@ def touching_intervals(control: FloatArray, pulley: PulleyState, zone: np.record
 
 
 @kernel
-def _on_circle(surface: Round, control: FloatArray, center_x: float, center_y: float, zone: np.record) -> int:
+def _on_circle(surface: Any, control: FloatArray, center_x: float, center_y: float, zone: np.record) -> int:
     """Exact intervals on a smooth circle."""
     circle, pieces, intervals = Circle(center_x, center_y, surface.radius), zone.pieces, zone.intervals
     end = pieces.shape[1] - 1
@@ -230,4 +230,4 @@ def _depth(surface: Shaped, control: FloatArray, center_x: float, center_y: floa
     return shaped_gap(surface, x - center_x, y - center_y).penetration
 
 
-_intervals = by_type({Round: _on_circle, Shaped: _on_shape}, "touching_intervals")
+_intervals = by_type({Round: _on_circle, Shaped: _on_shape, Toothed: _on_circle}, "touching_intervals")

@@ -6,10 +6,10 @@ moves with omega (-p_y, p_x), that is omega (p . n) along t and -omega (p . t) a
 
 from collections.abc import Callable
 from math import sqrt
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 from beltdyn.contact.law import PulleyState
-from beltdyn.contact.surface import Round, Shaped, shaped_gap
+from beltdyn.contact.surface import Round, Shaped, Toothed, shaped_gap
 from beltdyn.kernel import by_type, kernel
 
 
@@ -56,7 +56,7 @@ def approach(x: float, y: float, velocity_x: float, velocity_y: float, pulley: P
 
 
 @kernel(inline=True)
-def _to_circle(surface: Round, dx: float, dy: float, vx: float, vy: float, speed: float) -> Approach:
+def _to_circle(surface: Any, dx: float, dy: float, vx: float, vy: float, speed: float) -> Approach:
     """A smooth circle, whose angle does not matter."""
     distance = sqrt(dx * dx + dy * dy)
     nx, ny = dx / distance, dy / distance
@@ -94,7 +94,7 @@ def _to_shape(surface: Shaped, dx: float, dy: float, vx: float, vy: float, speed
     )
 
 
-_approach: Callable[..., Approach] = by_type({Round: _to_circle, Shaped: _to_shape}, "approach")
+_approach: Callable[..., Approach] = by_type({Round: _to_circle, Shaped: _to_shape, Toothed: _to_circle}, "approach")
 
 
 @kernel

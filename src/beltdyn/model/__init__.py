@@ -56,6 +56,7 @@ from beltdyn.model.study import CalibrationStudy, OptimizationStudy, ParameterSt
 from beltdyn.model.tensioner_balance import TensionerBalance
 from beltdyn.model.toml_reader import example, json_schema, load, loads
 from beltdyn.model.toml_writer import dumps
+from beltdyn.model.toothing import Toothing
 
 __all__ = [
     "ERROR_LIMITS",
@@ -111,6 +112,7 @@ __all__ = [
     "Step",
     "Table",
     "TensionerBalance",
+    "Toothing",
     "WeightEnd",
     "advise",
     "alignment",

@@ -9,10 +9,10 @@ from pydantic import ValidationInfo
 
 from beltdyn.machines.tensioners.rotary import ArmAsSupplied, Sense
 from beltdyn.model.belt import Belt, read_side
-from beltdyn.model.pulley import ON_THE_BELT, Diameter
+from beltdyn.model.pulley import ON_THE_BELT, Diameter, Pulley
 from beltdyn.parts.messages import listing
 from beltdyn.parts.part import Part
-from beltdyn.parts.quantity import Coordinate, Name, Torque, TorsionalStiffness
+from beltdyn.parts.quantity import Coordinate, Count, Length, Name, Ratio, Torque, TorsionalStiffness
 
 _SENSES = {"counter-clockwise": 1.0, "clockwise": -1.0, None: 0.0}
 
@@ -29,6 +29,7 @@ def as_supplied(data: Any, info: ValidationInfo) -> Any:
     values = dict(data)
     if isinstance(values.get("pulley"), Sequence):
         values["pulley"] = [_with_radius(one, values.get("belt"), info) for one in values["pulley"]]
+        values["pulley"] = _with_toothed_radii(values["pulley"], values.get("belt"), info)
     if isinstance(values.get("tensioner"), Sequence):
         arms = [_with_arm(one, values.get("pulley") or ()) for one in values["tensioner"]]
         values["tensioner"] = [arm for arm, _ in arms]
@@ -79,6 +80,61 @@ def _excess(kind: str, belt: Belt, side: str, name: str) -> float:
             f'pulleys are sold by {sold} diameter. Set diameter_kind = "{sold}", "pitch" or "outside"'
         )
     return 0.0
+
+
+# Teeth
+
+_SAME_RADIUS = 1e-6
+"""Difference of two radii of the same pulley, relative."""
+
+
+class _Teeth(Part):
+    teeth: Count
+    pitch_error: Ratio = 0.0
+    radius: Length | None = None
+    diameter: Length | None = None
+
+
+def _with_toothed_radii(pulleys: Sequence[Any], belt: Any, info: ValidationInfo) -> list[Any]:
+    """The pulleys, with the radius of those that have teeth."""
+    if not any(_value(one, "teeth") is not None for one in pulleys):
+        return list(pulleys)
+    try:
+        made = belt if isinstance(belt, Belt) else Belt.model_validate(belt, context=info.context)
+    except ValueError:  # told where the belt is read
+        made = None
+    return [one if _value(one, "teeth") is None else _with_toothed_radius(one, made) for one in pulleys]
+
+
+def _with_toothed_radius(pulley: Any, belt: Belt | None) -> Any:
+    """A pulley with the radius of its outside, which follows from its teeth."""
+    keys = _Teeth.model_fields
+    try:
+        own = _Teeth.model_validate({key: given for key in keys if (given := _value(pulley, key)) is not None})
+    except ValueError:  # told where the pulley is read
+        return {**pulley, "radius": 1.0} if isinstance(pulley, Mapping) else pulley
+    if belt is None:
+        return {"radius": 1.0, **pulley} if isinstance(pulley, Mapping) else pulley
+    if belt.toothing is None:
+        raise ValueError(
+            f'"{_value(pulley, "name")}" has {own.teeth} teeth, but the belt has none. Give the belt a toothed profile '
+            'such as "HTD 8M" and its teeth, or omit teeth of the pulley'
+        )
+    radius = belt.toothing.radius(own.teeth, own.pitch_error, belt.pitch_offset)
+    if not radius > 0.0:
+        raise ValueError(f'"{_value(pulley, "name")}" has too few teeth: {own.teeth} leave no radius. Give more')
+    if isinstance(pulley, Pulley):
+        same = abs(pulley.radius - radius) <= _SAME_RADIUS * radius
+        return pulley if same else Pulley(**(pulley.arguments | {"radius": radius}))
+    given = own.radius if own.diameter is None else 0.5 * own.diameter
+    if given is not None and abs(given - radius) > _SAME_RADIUS * radius:
+        pitch = 2.0 * pi * (given + belt.pitch_offset) / own.teeth / (1.0 + own.pitch_error)
+        raise ValueError(
+            f'"{pulley.get("name")}" has {own.teeth} teeth on an outside diameter of {2e3 * given:.5g} mm, a pitch of '
+            f"{1e3 * pitch:.5g} mm, but the belt has a pitch of {1e3 * belt.toothing.pitch:.5g} mm. Omit radius and "
+            "diameter, which follow from the teeth, or give its pitch_error"
+        )
+    return {key: value for key, value in pulley.items() if key != "diameter"} | {"radius": radius}
 
 
 # Arms of rotary tensioners

@@ -41,6 +41,7 @@ from beltdyn.model.catalogue import Entry, read_catalogue
 from beltdyn.model.fatigue import CordFatigue, RibFatigue
 from beltdyn.model.rating import RatedBelt
 from beltdyn.model.stretch_curve import StretchCurve
+from beltdyn.model.toothing import MOST_OFF, Toothing
 from beltdyn.parts.kind_fields import LawKeys, NameOf
 from beltdyn.parts.part import Part
 from beltdyn.parts.quantity import (
@@ -113,6 +114,16 @@ class Belt(Part):
     )
     installed_tension: Force | None = Field(
         None, gt=0, description="the tension of the belt at rest in the drive, instead of its length, in N"
+    )
+    teeth: Count | None = Field(
+        None,
+        ge=4,
+        le=10_000,
+        description="the number of teeth of a toothed belt, which is as long as so many pitches, under measuring_force "
+        "if that is given",
+    )
+    toothing: Toothing | None = Field(
+        None, description="the teeth of a toothed belt, a group [belt.toothing]; a profile may have one"
     )
     width: Length = Field(gt=0, description="the width of the belt, out of the plane of the drive, in m")
     thickness: Length = Field(gt=0, description="the thickness of the belt, in the plane of the drive, in m")
@@ -223,6 +234,7 @@ class Belt(Part):
 
     _section: dict[str, Any] | None = PrivateAttr(None)
     _nominal_length: float | None = PrivateAttr(None)
+    _as_long_as_its_teeth: bool = PrivateAttr(False)
 
     @classmethod
     def alternatives(cls) -> Mapping[str, FieldInfo]:
@@ -262,6 +274,9 @@ class Belt(Part):
         if belt.length is not None and isinstance(data, Mapping) and data.get("nominal_length") is not None:
             belt._nominal_length = Nominal.model_validate({"nominal_length": data["nominal_length"]}).nominal_length
             object.__setattr__(belt, "length", belt.length / belt.measured_stretch)
+        elif belt.teeth and belt.length and isinstance(data, Mapping) and data.get("length") is None:
+            belt._as_long_as_its_teeth = True
+            object.__setattr__(belt, "length", belt.given_length / belt.measured_stretch)
         return belt
 
     @model_serializer(mode="wrap")
@@ -270,6 +285,8 @@ class Belt(Part):
         return self._with_its_length(dump(self))
 
     def _with_its_length(self, data: dict[str, Any]) -> dict[str, Any]:
+        if self._as_long_as_its_teeth:
+            return {key: value for key, value in data.items() if key != "length"}
         if self._nominal_length is None:
             return data
         return {key: value for key, value in data.items() if key != "length"} | {"nominal_length": self._nominal_length}
@@ -311,6 +328,37 @@ class Belt(Part):
                 f"axial_factor = {self.axial_factor:g} is incompatible with stretch_curve, which is of the whole belt. "
                 "Remove axial_factor"
             )
+        return self
+
+    @model_validator(mode="after")
+    def _has_whole_teeth(self) -> Self:
+        if self.teeth is None and self.toothing is None:
+            return self
+        if self.toothing is None:
+            raise ValueError(
+                f"teeth = {self.teeth} needs the pitch and stiffness of the teeth. Give a toothed profile such as "
+                '"HTD 8M", or a group [belt.toothing]'
+            )
+        pitch = self.toothing.pitch
+        if self.teeth is None:
+            near = (
+                ""
+                if self.length is None
+                else f": the length of {1e3 * self.length:.5g} mm is {self.length / pitch:.5g}"
+            )
+            raise ValueError(
+                f"teeth is missing: the belt has teeth of a pitch of {1e3 * pitch:.5g} mm{near}. Give their number "
+                "in place of a length"
+            )
+        if self.length is not None and abs(self.length / (self.teeth * pitch) - 1.0) > MOST_OFF:
+            raise ValueError(
+                f"length = {1e3 * self.length:.5g} mm is {self.length / pitch:.5g} pitches of {1e3 * pitch:.5g} mm, "
+                f"but teeth = {self.teeth}. Omit length, which follows from the teeth"
+            )
+        if self.crossed:
+            raise ValueError("crossed = true is incompatible with teeth, of which the back of a belt has none. Omit it")
+        if self.wedge_angle is not None:
+            raise ValueError("wedge_angle is incompatible with teeth: the belt is flat between them. Omit it")
         return self
 
     @model_validator(mode="after")
@@ -391,12 +439,25 @@ class Belt(Part):
         return float(self.stretch_parameters.stretch(0.5 * (self.measuring_force or 0.0)))
 
     def nominal_length_of(self, length: float) -> float:
-        """Nominal length of a closed belt of a given unstretched length, m."""
-        return length * self.measured_stretch - 2.0 * pi * self.pitch_offset
+        """Nominal length of a closed belt of a given unstretched length, m; of a toothed one along its pitches."""
+        return length * self.measured_stretch - (0.0 if self.teeth else 2.0 * pi * self.pitch_offset)
 
-    def offset(self, side: Side) -> float:
-        """Distance from a surface to the tension line, m, which the belt adds to the radius of a pulley."""
-        return self.pitch_offset if side == "inside" else self.back_offset
+    def offset(self, side: Side, toothed: bool = True) -> float:
+        """Distance from a surface to the tension line, m, which the belt adds to the radius of a pulley.
+
+        A belt with teeth runs on their tops around pulleys without, on the inside.
+        """
+        if side == "outside":
+            return self.back_offset
+        tall = 0.0 if toothed or self.toothing is None else self.toothing.tooth_height or 0.0
+        return self.pitch_offset + tall
+
+    @property
+    def given_pitch(self) -> float:
+        """Unstretched pitch of the teeth, m; ModelError without teeth."""
+        if self.teeth is None:
+            raise ModelError("the belt has no teeth. Give belt.teeth.")
+        return self.given_length / self.teeth
 
     def bent_strain(self, radius: FloatArray) -> FloatArray:
         """Strain of the tension line of a belt on circles without tension.

@@ -15,6 +15,7 @@ from pydantic import Field
 
 from beltdyn.model.catalogue import Entry, find_entry, read_catalogue
 from beltdyn.model.stretch_curve import with_initial_slope
+from beltdyn.model.toothing import Toothing
 from beltdyn.parts.part import Part
 from beltdyn.parts.quantity import AxialStiffness, BendingStiffness, Count, Length, MassPerLength
 from beltdyn.stretch import LAWS
@@ -42,11 +43,12 @@ LOSS_FACTORS = ("stretch_loss_factor", "bending_loss_factor")
 LOSSES = (*DAMPING_TIMES, *LOSS_FACTORS, "compression_loss_factor")
 
 FATIGUE = ("cord_fatigue", "rib_fatigue")
+_GROUPS = (*FATIGUE, "toothing")
 _NUMBERS = (
     *("pitch_offset", "back_offset", "wedge_angle", "friction", *_FORCES, "smallest_diameter"),
     *("largest_fleeting_angle", *LOSSES),
 )
-TAKEN_OVER = (*_NUMBERS, *FATIGUE)
+TAKEN_OVER = (*_NUMBERS, *_GROUPS)
 
 
 def stretch_keys() -> tuple[str, ...]:
@@ -108,12 +110,33 @@ def _with_length(data: Mapping[str, Any]) -> Mapping[str, Any]:
     values = dict(data)
     nominal = values.pop("nominal_length", None)
     if nominal is None:
-        return values
+        return values | _length_of_teeth(values)
+    if values.get("teeth") is not None:
+        raise ValueError(
+            "teeth and nominal_length exclude each other: a toothed belt is as long as its pitches. Omit it"
+        )
     if values.get("length") is not None:
         raise ValueError("length and nominal_length exclude each other: one follows from the other. Keep one of them")
     length = Nominal.model_validate({"nominal_length": nominal}).nominal_length
     offset = _Offset.model_validate({key: data[key] for key in _Offset.model_fields if key in data}).pitch_offset
     return values | {"length": length + 2 * pi * offset}
+
+
+def _length_of_teeth(values: Mapping[str, Any]) -> dict[str, float]:
+    """The length of a belt with teeth, if no other is given: that of its pitches."""
+    if values.get("teeth") is None or values.get("toothing") is None or values.get("length") is not None:
+        return {}
+    given = values["toothing"]
+    try:
+        toothing = given if isinstance(given, Toothing) else Toothing.model_validate(given)
+        teeth = _Teeth.model_validate({"teeth": values["teeth"]}).teeth
+    except ValueError:  # told where the belt is read
+        return {}
+    return {"length": teeth * toothing.pitch}
+
+
+class _Teeth(Part):
+    teeth: Count
 
 
 class _Offset(Part):
@@ -143,6 +166,8 @@ def _by_material(data: Mapping[str, Any], base: Path | None) -> Mapping[str, Any
             section.pop("stretch_curve", None)
         elif "stretch_curve" in section:
             values["stretch_law"] = "measured"
+        if "toothing" in section and isinstance(values.get("toothing"), Mapping):
+            values["toothing"] = section["toothing"].arguments | values["toothing"]
         values = section | values
     if "stretch_curve" in data:
         values |= {key: with_initial_slope(data, base)[key] for key in ("stretch_curve", "axial_stiffness")}
@@ -193,7 +218,7 @@ def _section(sold: Sold, width: object, base: Path | None) -> dict[str, Any]:
     size, powers = _size(sold, entry, width), _POWERS[entry.sold_by]
     values = {key: getattr(entry, key) for key in (*Stiffnesses.model_fields, "contact_stiffness", *_NUMBERS)}
     found = {key: value * size ** powers.get(key, 0) for key, value in values.items() if value is not None}
-    curves = {key: getattr(entry, key) for key in ("stretch_curve", *FATIGUE)}
+    curves = {key: getattr(entry, key) for key in ("stretch_curve", *_GROUPS)}
     strength = size ** powers["axial_stiffness"]
     return found | {key: curve.times(strength) for key, curve in curves.items() if curve is not None}
 

@@ -14,6 +14,7 @@ from pydantic import Field, ValidationError, ValidationInfo, model_validator
 from beltdyn.model.fatigue import CordFatigue, RibFatigue
 from beltdyn.model.rating import Rating
 from beltdyn.model.stretch_curve import StretchCurve, with_initial_slope
+from beltdyn.model.toothing import Toothing
 from beltdyn.parts.messages import explain, reason
 from beltdyn.parts.part import Part
 from beltdyn.parts.quantity import (
@@ -95,6 +96,7 @@ class Entry(Part):
     largest_fleeting_angle: Angle | None = Field(
         None, gt=0, lt=pi / 2, description="the largest fleeting angle of a span at a pulley, in rad"
     )
+    toothing: Toothing | None = Field(None, description="the teeth of a toothed belt")
     cord_fatigue: CordFatigue | None = Field(None, description="the S-N line of the cords")
     rib_fatigue: RibFatigue | None = Field(None, description="the law of rib fatigue")
     lengths: tuple[Length, ...] = Field((), description="the standard nominal lengths, in m")
@@ -172,9 +174,8 @@ def find_entry(catalogue: Mapping[str, Entry], profile: str) -> Entry:
 
 
 _TOOTHED = (
-    "Toothed belts are not in it: it has V-ribbed belts, V-belts, flat and round belts. As a flat belt, with "
-    "axial_stiffness, bending_stiffness and mass_per_length of its cords, a toothed belt has tensions, hub loads and "
-    "span frequencies; tooth forces and pitch errors are not modeled"
+    "Toothed belts are in it by these names: MXL, XL, L, H, XH, T2.5, T5, T10, AT5, AT10, HTD 3M, HTD 5M, HTD 8M, HTD "
+    "14M, STD 3M to 14M, GT 2M to 8M; width is given apart. For others give [belt.toothing]"
 )
 _CHAIN = (
     'Chains are not in it. Mass, stretch and links of a chain are those of a belt with discretization = "truss"; the '

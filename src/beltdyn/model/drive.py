@@ -22,6 +22,7 @@ from beltdyn.model.contact import Contact
 from beltdyn.model.duty import DutyPoint, check_duty
 from beltdyn.model.end import AnyEnd, PathEnd, ends_on_path
 from beltdyn.model.layout import Given, Layout, lay_out
+from beltdyn.model.meshing import check_teeth
 from beltdyn.model.path import Path
 from beltdyn.model.pulley import Pulley, friction_on
 from beltdyn.model.rating import RatedBelt
@@ -152,11 +153,22 @@ class Drive(Part):
                 f"simulation.force_tolerance = {tolerance:g} is incompatible with a travelling mesh, which is not "
                 f"refined; the mesh of this drive travels, {frame.reason}. Remove one of the two"
             )
+        if self.belt.teeth is not None and not frame.stays:
+            raise ValueError(
+                f"belt.teeth = {self.belt.teeth} needs a mesh that stays, through which the belt flows with its teeth; "
+                f"the mesh of this drive travels, {frame.reason}. Remove that setting"
+            )
         if self.ends and frame.stays:
             raise ValueError(
                 'simulation.frame = "staying" is incompatible with an open belt: no belt flows past its ends. Set '
                 'simulation.frame = "travelling", or omit it'
             )
+        return self
+
+    @model_validator(mode="after")
+    def _teeth_fit_the_pulleys(self) -> Self:
+        length = None if self.moving_tensioners else self.path.length
+        check_teeth(self.belt, self.pulleys, length, bool(self.ends))
         return self
 
     @property

@@ -30,6 +30,10 @@ _OFF_NOMINAL = 0.2
 """Change of a spring's force from its preload, over it, from which the given center is not the nominal position."""
 _HEAVIER = 0.9
 """Inertia of a tensioner without its pulley, over that with it, below which the mass of the pulley counts."""
+_SLACK_SHARE = 0.6
+"""Tension at rest over the pull of the loads, at least, so that a tenth of it is left on the slack side of teeth."""
+_FEW_TEETH = 6.0
+"""Teeth in mesh from which on a pulley carries all that the profile allows, by the rules of makers."""
 _TAKES = 1e-3
 """Least share of a load in the total power."""
 
@@ -43,6 +47,8 @@ def judge_plausibility(drive: Drive, installation: Installation) -> Iterator[Fin
     yield from _off_nominal(drive, installation)
     yield from _massless(drive)
     yield from _sudden_start(drive, installation)
+    yield from _few_teeth(drive, installation)
+    yield from _slack_teeth(drive, installation)
     yield from judge_alignment(drive, installation.path)
 
 
@@ -91,6 +97,8 @@ def _other_side(pulley: Pulley) -> str:
 
 def _flipped(drive: Drive, number: int) -> Drive | None:
     """The drive with a pulley on the other side of its belt; None if no belt can run so."""
+    if drive.pulleys[number].teeth is not None:
+        return None
     changed = [
         one.replace(side=_other_side(one)) if place == number else one for place, one in enumerate(drive.pulleys)
     ]
@@ -103,7 +111,7 @@ def _flipped(drive: Drive, number: int) -> Drive | None:
 def with_pitch_diameters(drive: Drive) -> Drive | None:
     """The drive with its diameters as those of the tension line; None if it is the same, or impossible."""
     offsets = [drive.belt.offset(one.side) for one in drive.pulleys]
-    if not any(offsets):
+    if not any(offsets) or drive.belt.teeth is not None:
         return None
     try:
         smaller = [one.replace(radius=one.radius - offset) for one, offset in zip(drive.pulleys, offsets, strict=True)]
@@ -184,6 +192,39 @@ def _tight_side(drive: Drive, installation: Installation) -> Iterator[Finding]:
             f"Move it to the span where the belt leaves {name}, or reverse {name}: speeds are positive "
             "counter-clockwise.",
         )
+
+
+def _few_teeth(drive: Drive, installation: Installation) -> Iterator[Finding]:
+    """Pulleys with few teeth in mesh."""
+    if drive.belt.teeth is None:
+        return
+    path, pitch = installation.path, drive.belt.given_pitch
+    meshes = (np.abs(path.radii) * path.wrap_angles / pitch).tolist()
+    few = {one.name: mesh for one, mesh in zip(drive.pulleys, meshes, strict=True) if one.teeth and mesh < _FEW_TEETH}
+    if few:
+        yield Finding(
+            f"few teeth are in mesh: {listing([f'{mesh:.1f} on {name}' for name, mesh in few.items()])}.",
+            f"With less than {_FEW_TEETH:g} each tooth carries more, makers allow a fifth less for each one missing, "
+            "and the forces of spread teeth are less exact.",
+            "Use a pulley with more teeth, a smaller pitch, or an idler that increases the wrap angle.",
+        )
+
+
+def _slack_teeth(drive: Drive, installation: Installation) -> Iterator[Finding]:
+    """Belts with teeth whose slack side would be slack under the load."""
+    driver = drive.driver
+    if drive.belt.teeth is None or driver is None or drive.moving_tensioners:
+        return
+    powers, speed = _powers(drive, driver, installation)
+    pull = float(powers[powers > 0.0].sum()) / speed if speed > 0.0 else 0.0
+    least = _SLACK_SHARE * pull
+    if not installation.tension < least:
+        return
+    yield Finding(
+        f"the tension at rest is {installation.tension:.4g} N, but the loads pull by {pull:.4g} N.",
+        "The slack side loses its tension, teeth are no longer pressed into their grooves, and the belt may jump.",
+        f"Raise the tension to at least {least:.4g} N, half of the pull and a tenth more.",
+    )
 
 
 def _off_nominal(drive: Drive, installation: Installation) -> Iterator[Finding]:

@@ -21,7 +21,7 @@ from beltdyn.model.belt import Belt, Side, read_side
 from beltdyn.model.contact import Contact
 from beltdyn.parts.kind_fields import OneOf, key_field
 from beltdyn.parts.part import Part
-from beltdyn.parts.quantity import Angle, Coordinate, Inertia, Length, Mass, Name, Ratio
+from beltdyn.parts.quantity import Angle, Coordinate, Count, Inertia, Length, Mass, Name, Ratio
 
 # Surfaces of pulleys other than smooth circles, a part for each kind
 
@@ -80,7 +80,7 @@ def _describe_diameter(schema: dict[str, Any]) -> None:
     """Add the diameter, which is replaced by the radius on reading, to the JSON schema."""
     schema["properties"] |= Diameter.model_json_schema()["properties"]
     schema["required"] = [key for key in schema["required"] if key not in ("radius", "center")]
-    schema["anyOf"] = [{"required": ["radius"]}, {"required": ["diameter"]}]
+    schema["anyOf"] = [{"required": ["radius"]}, {"required": ["diameter"]}, {"required": ["teeth"]}]
 
 
 Tilt = Annotated[Angle, Field(gt=-0.5, lt=0.5)]
@@ -111,6 +111,15 @@ class Pulley(Part):
         description='the kind of diameter: "datum" of V-belts, "effective" of V-ribbed belts, "pitch" of the tension '
         'line, "outside" of the rim, or "flat" for the back of the belt; by default that by which pulleys of this belt '
         "are sold",
+    )
+    teeth: Count | None = Field(
+        None,
+        ge=4,
+        le=10_000,
+        description="the number of teeth for a toothed belt, from which the radius follows; none of a smooth pulley",
+    )
+    pitch_error: Ratio = Field(
+        0.0, gt=-0.02, lt=0.02, description="the pitch of its teeth over that of the belt, less 1"
     )
     surface: AnySurface | None = Field(
         None, description="the surface, a group [pulley.surface], by default a smooth circle of this radius"
@@ -182,6 +191,28 @@ class Pulley(Part):
                 '"outside", or another kind of diameter'
             )
         return {**data, "side": "outside"}
+
+    def merged(self, changes: Mapping[str, Any]) -> dict[str, Any]:
+        """As for any part; other teeth give another radius, which the drive finds."""
+        arguments = super().merged(changes)
+        other = arguments.get("teeth") is not None and ("teeth" in changes or "pitch_error" in changes)
+        return {key: value for key, value in arguments.items() if not (other and key == "radius")}
+
+    @model_validator(mode="after")
+    def _has_teeth_on_a_circle(self) -> Self:
+        if self.teeth is None and self.pitch_error != 0.0:
+            raise ValueError(f"pitch_error = {self.pitch_error:g} needs teeth. Give their number, or omit it")
+        if self.teeth is not None and self.side == "outside":
+            raise ValueError(
+                f'teeth = {self.teeth} is incompatible with side = "outside": the back of the belt has no teeth. Omit '
+                "teeth for a pulley on the back"
+            )
+        if self.teeth is not None and self.surface is not None:
+            raise ValueError(
+                f'surface of kind "{self.surface.kind}" is incompatible with teeth, whose grooves are those of a '
+                "circle. Omit one of them"
+            )
+        return self
 
     @field_validator("center", mode="before")
     @classmethod
@@ -281,8 +312,11 @@ def friction_on(pulley: Pulley, belt: Belt, contact: Contact) -> float:
 def flat_friction_on(pulley: Pulley, belt: Belt, contact: Contact) -> float:
     """Friction coefficient of a belt on a pulley, without the wedge effect.
 
-    It is that of the pulley, or of the contact, or of the belt: the first that is given.
+    It is that of the pulley, or of the lands on a toothed pulley, or of the contact, or of the belt: the first that is
+    given.
     """
+    if pulley.teeth is not None and belt.toothing is not None:
+        return belt.toothing.land_friction if pulley.friction is None else pulley.friction
     for given in (pulley.friction, contact.friction, belt.friction):
         if given is not None:
             return given

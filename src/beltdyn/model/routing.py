@@ -92,7 +92,12 @@ def span_names(pulleys: Sequence[Pulley], ends: Sequence[PathEnd] | Sequence[End
 
 def radii(pulleys: Sequence[Pulley], belt: Belt) -> FloatArray:
     """Effective radii of the tension line, shape (n,), m."""
-    return np.array([pulley.radius + belt.offset(pulley.side) for pulley in pulleys])
+    return np.array([pulley.radius + _offset(pulley, belt) for pulley in pulleys])
+
+
+def _offset(pulley: Pulley, belt: Belt) -> float:
+    """Distance from a pulley to the tension line, m."""
+    return belt.offset(pulley.side, pulley.teeth is not None)
 
 
 def trace(pulleys: Sequence[Pulley], belt: Belt, ends: Sequence[PathEnd] = ()) -> Path:
@@ -141,7 +146,7 @@ def _check_sizes(pulleys: Sequence[Pulley], ends: Sequence[PathEnd]) -> None:
 def _check_tangents(pulleys: Sequence[Pulley], belt: Belt, ends: Sequence[PathEnd]) -> None:
     """Where the belt changes sides it runs between two pulleys; elsewhere there always is a tangent but from an end."""
     for end, pulley in zip(ends, (pulleys[0], pulleys[-1]), strict=False):
-        needed = pulley.radius + belt.offset(pulley.side)
+        needed = pulley.radius + _offset(pulley, belt)
         distance = needed if end.point is None else np.hypot(*np.subtract(end.point, pulley.center))
         if distance < needed:
             raise ValueError(
@@ -242,7 +247,7 @@ def _remedy(pulleys: Sequence[Pulley], belt: Belt, ends: Sequence[PathEnd]) -> s
         for changes in (_other_lists(tried), _fewer(tried))
         if (wish := next((wish for wish, changed in changes if _fits(changed, belt, ends)), None))
     ]
-    if _fits(pulleys, belt.replace(crossed=True), ends):
+    if belt.teeth is None and _fits(pulleys, belt.replace(crossed=True), ends):
         wishes.append("set belt.crossed = true if the spans are intended to cross")
     text = ", or ".join(wishes) or "check the order and the sides of the pulleys"
     return text[0].upper() + text[1:]
@@ -254,6 +259,8 @@ def _other_lists(pulleys: Sequence[Pulley]) -> Iterator[tuple[str, list[Pulley]]
     turned = [*given[:1], *given[:0:-1]]
     yield f"list the pulleys as {_listed(turned)}", turned
     for index, pulley in enumerate(given):
+        if pulley.teeth is not None:
+            continue
         side = "outside" if pulley.side == "inside" else "inside"
         changed = pulley.replace(side=side)
         yield f'set side = "{side}" for "{pulley.name}"', [*given[:index], changed, *given[index + 1 :]]

@@ -119,6 +119,11 @@ def traction(
     held = _driven_by_speed(held_at(drive, at), force_tolerance)
     driver = driver_of(held)
     number = _loaded(held, driver) if pulley is None else held.number_of(pulley)
+    if held.pulleys[number].teeth:
+        raise ModelError(
+            f"{held.pulleys[number].name} holds the belt by its teeth, so that it does not slip and has no traction "
+            "curve. Use `bd.results.tooth_loads` of steady running, which has the margin to a jump, or a smooth pulley."
+        )
     if number == driver:
         raise ModelError(
             f"pulley = {held.pulleys[number].name!r} is the driver, which is the reference of slip. Choose a driven "

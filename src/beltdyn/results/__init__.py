@@ -16,6 +16,7 @@ from beltdyn.results.run import Run, StaticResult, open_result, open_run, static
 from beltdyn.results.schema import COORDINATES, RECORDED, VARIABLES, Variable
 from beltdyn.results.summary import Compared, Summary, steady_comparison, summarize
 from beltdyn.results.tables import write_csv
+from beltdyn.results.tooth_loads import ToothLoads, tooth_loads
 
 if TYPE_CHECKING:
     from beltdyn.results import derived
@@ -41,6 +42,7 @@ __all__ = [
     "Status",
     "Summary",
     "TensionerSummary",
+    "ToothLoads",
     "Variable",
     "build_result",
     "derived",
@@ -57,6 +59,7 @@ __all__ = [
     "static_result",
     "steady_comparison",
     "summarize",
+    "tooth_loads",
     "write_csv",
 ]
 

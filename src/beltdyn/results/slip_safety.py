@@ -23,7 +23,7 @@ from numpy.typing import NDArray
 from beltdyn.arrays import BoolArray, FloatArray, IntArray
 from beltdyn.model import Prepared
 from beltdyn.model.path import span_directions, wrap_angles
-from beltdyn.results.mechanics import across
+from beltdyn.results.mechanics import across, has_teeth
 from beltdyn.results.tension_balance import Condition, TensionBalance
 
 STATE = ("span_tension", "belt_speed", "pulley_center")
@@ -52,9 +52,9 @@ def slip_safety_of_states(
 ) -> FloatArray:
     """Slip safety of each pulley: the factor on all loads at its gross slip, if the others hold.
 
-    1 on the edge of gross slip. NaN without a load, where the difference of tensions at a pulley, over their sum, is
-    below `UNLOADED`, and where the belt does not touch. Arguments have shapes (..., spans), N and m/s, and (...,
-    pulleys, 2), m; frictions replace the coefficients of the drive, with the wedge effect.
+    1 on the edge of gross slip. NaN where teeth hold the belt, without a load, where the difference of tensions at a
+    pulley, over their sum, is below `UNLOADED`, and where the belt does not touch. Arguments have shapes (..., spans),
+    N and m/s, and (..., pulleys, 2), m; frictions replace the coefficients of the drive, with the wedge effect.
     """
     pulleys = len(prepared.pulleys)
     shape = tension.shape[:-1]
@@ -62,7 +62,8 @@ def slip_safety_of_states(
     with np.errstate(invalid="ignore", divide="ignore", over="ignore"):
         rough = None if frictions is None else frictions.reshape(-1, pulleys)
         balance = TensionBalance(prepared, *flat, centers.reshape(-1, pulleys, 2), rough)
-        return _safeties(balance).reshape(*shape, pulleys)
+        safeties = np.where(has_teeth(prepared), np.nan, _safeties(balance))
+        return safeties.reshape(*shape, pulleys)
 
 
 def friction_used(tension: FloatArray, belt_speed: FloatArray, centers: FloatArray, prepared: Prepared) -> FloatArray:
@@ -74,7 +75,7 @@ def friction_used(tension: FloatArray, belt_speed: FloatArray, centers: FloatArr
     before, after = across(tension - prepared.belt.mass_per_length * belt_speed**2, prepared)
     with np.errstate(invalid="ignore", divide="ignore"):
         ratio = np.log(np.maximum(before, after) / np.maximum(np.minimum(before, after), 0.0))
-        return np.asarray(ratio / (prepared.frictions * wrap))
+        return np.where(has_teeth(prepared), 0.0, ratio / (prepared.frictions * wrap))
 
 
 def _safeties(balance: TensionBalance) -> FloatArray:

@@ -28,6 +28,8 @@ _PULLEY_HEADINGS = (
 _SPAN_HEADINGS = ("", "length\nm", "tension\nN", "first frequency\nHz")
 _TENSIONER_HEADINGS = ("", "position", "spring", "stops", "other equilibria")
 
+_TOOTH_HEADINGS = ("", "teeth", "teeth\nin mesh", "pitch\ndiameter mm", "turns over\nthose of the first")
+
 _SAME_TENSION = 5e-4
 """Relative change of tension by bending and soft contact that is not mentioned."""
 _HALF_TURN = 179.95
@@ -44,6 +46,8 @@ def rest_sheet(given: Drive, drive: Drive, installation: Installation, *, comput
         Table("Pulleys at rest", _PULLEY_HEADINGS, tuple(_pulleys(drive, installation))),
         Table("Spans at rest", _SPAN_HEADINGS, tuple(_spans(drive, installation))),
     ]
+    if drive.belt.teeth is not None:
+        parts.append(Table("Teeth", _TOOTH_HEADINGS, tuple(_teeth(drive, installation))))
     if installation.tensioner_positions.size:
         parts.append(Table("Tensioners at rest", _TENSIONER_HEADINGS, tuple(_tensioners(drive, installation))))
     if drive.belt.entry is not None and (told := instruction(drive, installation)) is not None:
@@ -67,6 +71,7 @@ def _facts(given: Drive, drive: Drive, installation: Installation) -> list[tuple
             "belt length",
             f"{length:.5g} m unstretched, stretched by {installation.strain:z.3%} on its path of {path:.5g} m",
         ),
+        *_pitches(drive, installation),
         *_as_sold(given, drive),
         *_taken_up(drive),
         ("mesh", f"{drive.elements} {drive.element_kind.name} elements, {drive.frame.words}"),
@@ -75,6 +80,17 @@ def _facts(given: Drive, drive: Drive, installation: Installation) -> list[tuple
         *_lost_in_the_belt(drive),
         ("result size", f"about {describe_size(prepare(drive))}"),
         *([("computing time", time)] if (time := describe_time(drive)) else []),
+    ]
+
+
+def _pitches(drive: Drive, installation: Installation) -> list[tuple[str, str]]:
+    """Teeth of the belt, and pitches of its path."""
+    toothing, teeth = drive.belt.toothing, drive.belt.teeth
+    if toothing is None or teeth is None:
+        return []
+    path = installation.path.length / drive.belt.given_pitch
+    return [
+        ("teeth of the belt", f"{teeth} of a pitch of {1e3 * toothing.pitch:.5g} mm; the path has {path:.3f} pitches")
     ]
 
 
@@ -152,6 +168,22 @@ def _angle(force: list[float]) -> float:
     """Direction of a force, above -180° up to 180°."""
     angle = math.degrees(math.atan2(force[1], force[0]))
     return angle if angle > -_HALF_TURN else angle + 360.0
+
+
+def _teeth(drive: Drive, installation: Installation) -> list[tuple[str, ...]]:
+    """Rows of pulleys with teeth; their ratio is exact."""
+    path, toothed = installation.path, [p for p, one in enumerate(drive.pulleys) if one.teeth]
+    pitch, first = drive.belt.given_pitch, drive.pulleys[toothed[0]].teeth
+    return [
+        (
+            drive.pulleys[p].name,
+            f"{drive.pulleys[p].teeth}",
+            f"{abs(path.radii[p]) * path.wrap_angles[p] / pitch:.1f}",
+            f"{2e3 * abs(path.radii[p]):.5g}",
+            f"{first}/{drive.pulleys[p].teeth}",
+        )
+        for p in toothed
+    ]
 
 
 def _spans(drive: Drive, installation: Installation) -> list[tuple[str, ...]]:

@@ -17,6 +17,9 @@ from beltdyn.state.steady import require_tolerance
 from beltdyn.system.arrays import System
 from beltdyn.system.state import State
 
+_TOLERANCE = 0.01
+"""Default tolerance of contact forces of a belt with teeth, whose mesh is graded."""
+
 
 def equilibrium(drive: Drive, *, force_tolerance: float | None = None, progress: Report | None = None) -> StaticResult:
     """Compute the static equilibrium of a drive at rest.
@@ -28,7 +31,7 @@ def equilibrium(drive: Drive, *, force_tolerance: float | None = None, progress:
     force_tolerance
         Tolerance of contact forces, relative to the largest on each pulley, to which a mesh graded towards the ends of
         arcs is refined; by default simulation.force_tolerance. Without either the mesh has equal elements, as many as
-        the drive.
+        the drive; of a belt with teeth the mesh is graded, to a tolerance of 0.01.
     progress
         Called repeatedly with a `Progress`.
 
@@ -52,8 +55,8 @@ def equilibrium(drive: Drive, *, force_tolerance: float | None = None, progress:
     [27.0, 27.0]
     """
     tolerance = drive.simulation.force_tolerance if force_tolerance is None else force_tolerance
-    if tolerance is not None:
-        return _refined(drive, tolerance, progress)
+    if tolerance is not None or drive.belt.teeth is not None:
+        return _refined(drive, _TOLERANCE if tolerance is None else tolerance, progress)
     prepared = prepare(on_equal_elements(drive))
     rest = rest_of(prepared, progress)
     said = {"drive_as_given": drive.text}
@@ -68,7 +71,9 @@ def _refined(drive: Drive, tolerance: float, progress: Report | None) -> StaticR
             "force_tolerance does not apply to an open belt, whose elements are equally long. Omit it, and "
             "increase belt.elements."
         )
-    unstable, prepared = bring_to_rest(drive, progress).unstable, prepare(drive)
+    prepared, unstable = prepare(drive), tuple[str, ...]()
+    if drive.belt.teeth is None:
+        unstable = bring_to_rest(drive, progress).unstable
     rest, errors = refine_at_rest(stand(bring_to_stand(prepared).prepared), tolerance)
     said = {"drive_as_given": drive.text} | {mesh_error_attribute(name): error for name, error in errors.items()}
     return _seen(prepared, rest.prepared, rest.system, rest.state, unstable, progress, said)

@@ -10,6 +10,7 @@ import numpy as np
 from beltdyn.arrays import FloatArray
 from beltdyn.kernel import kernel
 from beltdyn.system.arrays import Equations, Motion, System
+from beltdyn.system.meshing import change_body, change_flow, reach_of
 from beltdyn.system.motion import new_equations
 from beltdyn.system.ring_matrix import factorise_ring, ring_matrix, substitute
 from beltdyn.system.steady_assembly import Anchor, assemble_steady
@@ -152,11 +153,11 @@ def make_step(
         unknown = system.bodies[body].unknown
         if unknown >= 0:
             if body < tensioners:
-                motion.velocity[first + body] += factor * border_part[unknown]
+                change_body(system.rims, motion.velocity, first, body, factor * border_part[unknown])
             else:
                 motion.position[first + body] += factor * border_part[unknown]
     if not at_rest:
-        system.frame.speed[0] += factor * border_part[border_part.size - 1]
+        change_flow(system.rims, system.frame.speed, factor * border_part[border_part.size - 1])
 
 
 @kernel(inline=True)
@@ -173,6 +174,6 @@ def _size(system: System, node_part: FloatArray, border_part: FloatArray) -> flo
     for body in range(system.bodies.size):
         unknown, reach = system.bodies[body].unknown, system.bodies[body].reach
         if unknown >= 0:
-            scale = reach * reach / speed if body < tensioners else reach
+            scale = reach_of(system.rims, body, reach, speed) if body < tensioners else reach
             size = max(size, scale * abs(border_part[unknown]))
     return float(size)

@@ -27,6 +27,7 @@ from beltdyn.system.constant_drive import (
     twists,
     with_speeds_unknown,
 )
+from beltdyn.system.meshing import fit_phases, has_teeth, led_by, mesh_speeds, on_lengths, phases
 from beltdyn.system.ring_matrix import clear, substitute
 from beltdyn.system.state import State
 
@@ -85,6 +86,8 @@ _SHARP = 1.6
 _FIRST_SPEEDS = (1.0, 0.3, 0.1, 0.03, 0.01)
 _NEAR = 1e-3
 """Part of the way to another push at which the tangent still tells the solution."""
+_FIRST_CHANGE, _SAME_SPEED, _MOST_SPEEDS = 1e-4, 1e-11, 30
+"""Of the speed of a motor that drives a belt with teeth, relative, and how often it is changed at most."""
 _GENTLE = 0.3
 """Slip velocity at which friction is fully used at first, over the belt's speed, at least."""
 
@@ -104,7 +107,8 @@ class SteadySearch:
         self._supported: int | None = None
         self._held_speed = self._support = 0.0
         self._moments = np.zeros(system.pulleys.size)
-        self.constant, self._tensioners = constant_drive(system, time), system.tensioners
+        own = system._replace(rims=on_lengths(system.rims, system.length))
+        self.constant, self._tensioners = constant_drive(own, time), system.tensioners
         self._wanted = self.constant.profiles.segment.offset.copy()
         self._prescribed = self.constant.bodies.unknown[self.constant.pulleys.shaft] < 0
         self._hold(None)
@@ -112,8 +116,15 @@ class SteadySearch:
     def _hold(self, pulley: int | None) -> None:
         """Hold the shaft of a pulley at a speed, or none beyond those that are prescribed."""
         self._held = pulley
-        self._system = with_speeds_unknown(self.constant, () if pulley is None else (pulley,))
+        self._system = led_by(
+            with_speeds_unknown(self.constant, () if pulley is None else (pulley,)), self._leader(pulley)
+        )
         self._work = steady_work(self._system)
+
+    def _leader(self, held: int | None) -> int:
+        """The pulley whose known speed gives that of a belt with teeth, -1 without one."""
+        known = [held] if held is not None else np.flatnonzero(self._prescribed).tolist()
+        return next((p for p in known if self.prepared.pulleys[p].teeth), -1)
 
     def running(self) -> State:
         """The state that was found last, with the twists of hub chains."""
@@ -133,26 +144,44 @@ class SteadySearch:
         return float(self.constant.frame.speed[0])
 
     def unknowns(self) -> FloatArray:
-        """All that steady running consists of, as one vector: position, velocity, speed of the belt."""
-        return np.concatenate([self.state.position, self.state.velocity, self.constant.frame.speed])
+        """All that steady running consists of, as one vector: position, velocity, speed of the belt, phases."""
+        parts = self.state.position, self.state.velocity, self.constant.frame.speed, phases(self.constant)
+        return np.concatenate(parts)
 
     def place(self, unknowns: FloatArray) -> None:
         """Put the search in its place."""
         size = self.state.position.size
         self.state.position[:], self.state.velocity[:] = unknowns[:size], unknowns[size : 2 * size]
-        self.constant.frame.speed[:] = unknowns[2 * size :]
+        self.constant.frame.speed[:] = unknowns[2 * size : 2 * size + 1]
+        phases(self.constant)[:] = unknowns[2 * size + 1 :]
 
     def resume(self, tangent: SteadyWork | None = None) -> bool:
         """Find steady running under the required loads from that under others; False if that fails."""
+        if has_teeth(self.constant) and not np.any(self._prescribed):
+            return self._resume_with_motor()
         if tangent is None:
             return self._try(Setting())
         self._work = tangent
         return self._try(Setting(), factorised=True) or self._try(Setting())
 
+    def _resume_with_motor(self) -> bool:
+        """Find steady running of a belt with teeth whose driver has a motor, near its present speed."""
+        driver = self.prepared.drive.driver
+        if driver is None:
+            return False
+        self._held_speed = self._speed_of(driver)
+        self._hold(driver)
+        return self._try(Setting()) and self._balance(driver)
+
+    def _speed_of(self, pulley: int) -> float:
+        """Speed of the shaft of a pulley, rad/s."""
+        return float(self.state.velocity[self._system.first_body + self._system.pulleys.shaft[pulley]])
+
     def factorised(self) -> SteadyWork:
         """The factorized tangent at the state, for small changes of the drive."""
         system = self._at(self.setting)
         drive_shafts(system, self.state.velocity)
+        mesh_speeds(system, self.state.velocity)
         anchor = anchor_at(self.state, False)
         find_steady(system, self.state.at(0.0), anchor, 0.0, 0, False, self._work)
         return self._work
@@ -335,6 +364,7 @@ class SteadySearch:
         self.constant.frame.speed[0] = running * self.prepared.belt_length / path.length
         state.velocity[self._system.first_body :][: path.count] = running / path.radii
         guess_hubs(self._at(setting), state.velocity)
+        fit_phases(self._system, state)
         return self._try(setting)
 
     def _follow(self, target: Setting) -> None:
@@ -352,12 +382,38 @@ class SteadySearch:
 
     def _release(self, driver: int) -> None:
         """Let a driver turn as its torque says."""
+        if has_teeth(self.constant):
+            if not self._balance(driver):
+                raise self._refusal()
+            return
         speed = float(self.state.velocity[self._system.first_body + self._system.pulleys.shaft[driver]])
         reaction = float(self._work.equations.forces.shaft[driver])
         self._hold(None)
         own = own_torque(self._at(Setting()), self.state, driver, speed)
         self._supported, self._support, self.setting = driver, reaction - own, Setting(support=1.0)
         self._follow(Setting())
+
+    def _balance(self, driver: int) -> bool:
+        """Find the speed at which a motor drives a belt with teeth, by the secant method; False if that fails."""
+
+        def lacking() -> float:
+            self._held = None  # the profile of a held pulley is its speed, in place of its torque
+            free, self._held = self._at(Setting()), driver
+            own = own_torque(free, self.state, driver, self._speed_of(driver))
+            return float(self._work.equations.forces.shaft[driver]) - own
+
+        speed, missing = self._held_speed, lacking()
+        self._held_speed = (1.0 - _FIRST_CHANGE) * speed
+        for _ in range(_MOST_SPEEDS):
+            if not self._try(Setting()):
+                return False
+            still = lacking()
+            change = still * (self._held_speed - speed) / (still - missing) if still != missing else 0.0
+            if abs(change) <= _SAME_SPEED * abs(self._held_speed):
+                return True
+            speed, missing = self._held_speed, still
+            self._held_speed -= change
+        return False
 
     def _try(self, setting: Setting, tolerance: float | None = None, *, factorised: bool = False) -> bool:
         """Look for steady running at a setting from the state that there is, which stays where that fails.
@@ -368,6 +424,7 @@ class SteadySearch:
         state, system = self.state, self._at(setting)
         before = self.unknowns()
         drive_shafts(system, state.velocity)
+        mesh_speeds(system, state.velocity)
         allowed = (self.tolerance if tolerance is None else tolerance) * float(np.min(self.prepared.radii))
         anchor = anchor_at(state, False)
         status, iterations = find_steady(system, state.at(0.0), anchor, allowed, _MOST, factorised, self._work)

@@ -8,6 +8,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from beltdyn.arrays import FloatArray
+from beltdyn.contact.surface import ToothedRims
 from beltdyn.kernel import interpreted
 from beltdyn.machines.profiles.functions import go_on, profile_integral
 from beltdyn.model import Drive, Prepared, Pulley
@@ -24,6 +25,7 @@ from beltdyn.state.staying import FINER, Standing, anchor_at, bring_to_stand, st
 from beltdyn.system.arrays import System
 from beltdyn.system.build_machines import profile_arrays
 from beltdyn.system.build_staying import flowing_system, on_other_mesh
+from beltdyn.system.meshing import TOOTH_PHASES, turning
 from beltdyn.system.observe import observe_motion
 from beltdyn.system.state import State
 
@@ -206,9 +208,12 @@ def begin_flowing(prepared: Prepared, progress: Report | None) -> Beginning:
     if prepared.simulation.start == "steady":
         meshed = _running(meshed, prepared.simulation.force_tolerance)
     system, direction = meshed.system, anchor_at(meshed.state, True).direction
-    flowing = with_angles(meshed.rest.prepared, flowing_system(system, direction))
+    toothed = turning(system, meshed.state)
+    flowing = with_angles(meshed.rest.prepared, flowing_system(toothed, direction))
     errors = meshed.errors or {"peak pressure": float("nan")}  # not known
     said = {mesh_error_attribute(name): error for name, error in errors.items()} | {DIRECTION: direction}
+    if isinstance(toothed.rims, ToothedRims):
+        said[TOOTH_PHASES] = toothed.rims.table.phase.copy()
     return Beginning(meshed.rest.prepared, flowing, with_passage(system, meshed.state, meshed.speed), attributes=said)
 
 
@@ -250,6 +255,7 @@ def _running(meshed: _Meshed, force_tolerance: float | None) -> _Meshed:
     else:
         search, rest, _, errors, _ = steady_from_rest(rest, time, _same_mesh, force_tolerance, bands=False)
         system = on_other_mesh(rest.prepared, rest.system, search.constant.length)
+    system = system._replace(rims=search.constant.rims)
     return meshed._replace(rest=rest, system=system, state=search.running(), speed=search.belt_parameter, errors=errors)
 
 

@@ -17,6 +17,7 @@ from beltdyn.system.build_staying import staying_system
 from beltdyn.system.constant_drive import without_motion
 from beltdyn.system.discretization import nodal_coordinates, point_coordinates
 from beltdyn.system.frame import centreline_places, centreline_points
+from beltdyn.system.meshing import fit_phases, has_teeth, unloaded, with_softer_teeth
 from beltdyn.system.moving_center import pulley_center
 from beltdyn.system.state import State, at_rest
 from beltdyn.system.steady_assembly import Anchor
@@ -33,6 +34,8 @@ _MOST_MESHES = 4
 _SETTLED = 1e-3
 """Change of the tension at rest from one mesh to the next, relative, with which a mesh is fine enough for it."""
 _MOST = 60
+_SOFTER_TEETH = 1e-3, 1e-2, 0.1, 1.0
+"""Stiffness of teeth over their own on the way to equilibrium, where the way from the laid belt is too long."""
 _SLOPE, _CURVATURE = slice(2, 4), slice(4, 6)
 """First and second derivatives among the coordinates of a node."""
 _SAMPLES = 16
@@ -167,11 +170,23 @@ def carried(prepared: Prepared, other: Prepared, lengths: FloatArray, nodes: Flo
 def _balance(prepared: Prepared, system: System, state: State, anchor: Anchor, factor: float) -> bool:
     """Bring a state to equilibrium with contact stiffer by a factor; if that fails, False, and the state as it was."""
     still, begun = without_friction(with_stiffer_contact(system, factor)), state.position.copy()
-    tolerance = TOLERANCE * float(np.min(prepared.radii))
-    found = find_steady(still, state.at(0.0), anchor, tolerance, _MOST, False, steady_work(still))[0] == FOUND
+    fit_phases(still, state)
+    if _found(prepared, still, state, anchor):
+        return True
+    state.position[:] = begun
+    if not has_teeth(still):
+        return False
+    fit_phases(still, state)
+    found = all(_found(prepared, with_softer_teeth(still, part), state, anchor) for part in _SOFTER_TEETH)
     if not found:
         state.position[:] = begun
     return found
+
+
+def _found(prepared: Prepared, still: System, state: State, anchor: Anchor) -> bool:
+    """Bring a state to equilibrium without friction, if Newton's method converges."""
+    tolerance = TOLERANCE * float(np.min(prepared.radii))
+    return find_steady(still, state.at(0.0), anchor, tolerance, _MOST, False, steady_work(still))[0] == FOUND
 
 
 def without_friction(system: System) -> System:
@@ -179,7 +194,7 @@ def without_friction(system: System) -> System:
     pulleys = system.pulleys.copy()
     pulleys["friction"] = 0.0
     tensioners = without_motion(system.tensioners)
-    return system._replace(pulleys=pulleys, bodies=only_tensioners(system), tensioners=tensioners)
+    return unloaded(system._replace(pulleys=pulleys, bodies=only_tensioners(system), tensioners=tensioners))
 
 
 def _lying(prepared: Prepared, system: System, factor: float) -> State:

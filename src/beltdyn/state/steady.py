@@ -10,6 +10,7 @@ from beltdyn.arrays import FloatArray
 from beltdyn.errors import ConvergenceError, ModelError
 from beltdyn.model import Drive, Prepared, prepare
 from beltdyn.observation.recording import Recording
+from beltdyn.parts.messages import listing
 from beltdyn.parts.quantity import number_in
 from beltdyn.results import Run, mesh_error_attribute
 from beltdyn.results.provenance import STAYING, mesh_used
@@ -22,6 +23,7 @@ from beltdyn.state.search import SteadySearch
 from beltdyn.state.staying import FINER, Standing, bring_to_stand, carried
 from beltdyn.system.arrays import System
 from beltdyn.system.constant_drive import rigid_links
+from beltdyn.system.meshing import TOOTH_PHASES, has_teeth, phases
 from beltdyn.system.state import State
 from beltdyn.system.state_forces import body_forces_at
 
@@ -72,6 +74,8 @@ def search_from(prepared: Prepared, start: Run, time: float) -> SteadySearch:
     bodies[: speeds.size] = speeds
     take_along(system, bodies, found.shaft_speed.values[-1])
     search = SteadySearch(prepared, system, state, time)
+    if TOOTH_PHASES in found.attrs:
+        phases(search.constant)[:] = np.atleast_1d(found.attrs[TOOTH_PHASES])
     faster = _faster(search.constant, bodies)
     bodies *= faster
     system.frame.speed[0] = faster * found.attrs["belt_parameter"]
@@ -310,6 +314,7 @@ def _as_run(prepared: Prepared, instant: float, found: _Found) -> Run:
             wall_time=found.seconds,
             **found.band,
             belt_parameter=search.belt_parameter,
+            **({TOOTH_PHASES: phases(search.constant)} if has_teeth(search.constant) else {}),
             newton_iterations_of_search=search.iterations,
             mesh_rule=np.array(found.rule),
             **{mesh_error_attribute(name): error for name, error in found.errors.items()},
@@ -327,12 +332,29 @@ def require_steady(drive: Drive) -> None:
             f"{', '.join(shaped)} is not a smooth circle, so there is no steady running. Simulate the drive "
             "with `beltdyn simulate`, or remove `surface`."
         )
+    if drive.belt.teeth is not None:
+        _require_toothed_driver(drive)
     other = [(pulley.name, load.kind) for pulley in drive.pulleys for load in pulley.load if not load.has_mean]
     if other:
         raise ModelError(
             f'{other[0][0]} has a load of kind "{other[0][1]}", whose mean over the shaft angle is unknown; '
             "steady running needs it. Give the mean as a table over speed, or the set speed of a controlled "
             "motor as `speed`, or simulate the drive with `beltdyn simulate`."
+        )
+
+
+def _require_toothed_driver(drive: Drive) -> None:
+    """Make sure that one toothed pulley gives a belt with teeth its speed."""
+    driver, prescribed = drive.driver, [one.name for one in drive.pulleys if one.prescribed and one.teeth]
+    if driver is not None and not drive.pulleys[driver].teeth:
+        raise ModelError(
+            f"{drive.pulleys[driver].name} drives a belt with teeth, but has none, so there is no steady running. Give "
+            "it teeth, or simulate the drive with `beltdyn simulate`."
+        )
+    if len(prescribed) > 1:
+        raise ModelError(
+            f"{listing(prescribed)} have prescribed speeds and teeth: the forces between them depend on how they were "
+            "turned, so there is no steady running. Prescribe one of them, and give the other a torque."
         )
 
 

@@ -14,6 +14,7 @@ from beltdyn.system.build import nodal_supports, system_of, weight_forces
 from beltdyn.system.discretization import discretize
 from beltdyn.system.frame import flowing, staying
 from beltdyn.system.hysteresis import hysteresis_rows
+from beltdyn.system.meshing import meshing, on_lengths
 
 _STAYING_ELASTIC, _STAYING_CONTACT = 8, 12
 """Gauss points of an element that stays, for elastic forces and for contact."""
@@ -27,7 +28,7 @@ def staying_system(prepared: Prepared, lengths: FloatArray) -> System:
     if prepared.belt.bending_loss_factor > 0.0:
         modulus, length = bending_at_points(prepared)
         system = _with_section(system, bending_hysteresis=modulus, passing_length=length)
-    return system._replace(frame=staying(system.control, system.length, belt.mass_per_length))
+    return meshing(prepared, system._replace(frame=staying(system.control, system.length, belt.mass_per_length)))
 
 
 def on_other_mesh(prepared: Prepared, system: System, lengths: FloatArray) -> System:
@@ -43,6 +44,7 @@ def on_other_mesh(prepared: Prepared, system: System, lengths: FloatArray) -> Sy
         hysteresis=hysteresis_rows(belt, mesh.length, mesh.control, passing),
         supports=supports._replace(force=weight_forces(mesh, lengths.size, prepared.gravity)),
         frame=staying(mesh.control, mesh.length, belt.mass_per_length),
+        rims=on_lengths(system.rims, lengths),
     )
 
 

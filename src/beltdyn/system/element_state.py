@@ -5,6 +5,7 @@ import numpy as np
 from beltdyn.arrays import FloatArray
 from beltdyn.contact.bezier import Curve
 from beltdyn.contact.contact_force import contact_record
+from beltdyn.contact.surface import element_start
 from beltdyn.elements.dispatch import damping_force
 from beltdyn.elements.kind import DampingFactors, is_damped
 from beltdyn.kernel import kernel
@@ -163,7 +164,8 @@ def centreline(system: System, element: int, curve: int, work: np.record) -> Cur
     fill_control(system, element, curve, work.coordinates[0], work.control)
     fill_control(system, element, curve, work.coordinates[1], work.control_velocity)
     length = system.length[element] / system.control.shape[1]
-    return Curve(work.control, work.control_velocity, system.control[element, curve], length)
+    start = element_start(system.rims, element) + curve * length
+    return Curve(work.control, work.control_velocity, system.control[element, curve], length, start)
 
 
 @kernel

@@ -186,6 +186,24 @@ flow_speed: Callable[[Any, FloatArray], float] = by_type(
 
 
 @kernel(inline=True)
+def _none_passed(frame: Any, position: FloatArray) -> float:
+    """Places are told from where the belt is now."""
+    return 0.0
+
+
+@kernel(inline=True)
+def _passed(frame: Flowing, position: FloatArray) -> float:
+    """The coordinate."""
+    return float(position[frame.place])
+
+
+passed_length: Callable[[Any, FloatArray], float] = by_type(
+    {Travelling: _none_passed, Staying: _none_passed, Flowing: _passed}, "passed_length"
+)
+"""Length of unstretched belt that has passed the mesh, m, at a position of shape (n N + D,)."""
+
+
+@kernel(inline=True)
 def _no_flow(
     frame: Travelling, element: int, vectors: tuple[int, ...], speed: float, position: FloatArray, velocity: FloatArray
 ) -> None:

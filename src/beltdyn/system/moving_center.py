@@ -15,11 +15,12 @@ import numpy as np
 
 from beltdyn.arrays import FloatArray
 from beltdyn.contact.law import PulleyState
-from beltdyn.contact.surface import surface_at
+from beltdyn.contact.surface import rim_unknown, surface_at
 from beltdyn.kernel import interpreted, kernel
 from beltdyn.machines.tensioners.registry import TENSIONER, free_slide, tensioner_center
 from beltdyn.records import record, records
 from beltdyn.system.arrays import BODY, RingMatrix, System
+from beltdyn.system.frame import passed_length
 from beltdyn.system.state import State
 
 # Pulleys as contact meets them at a state: turning, and moving where a tensioner carries them
@@ -46,7 +47,7 @@ def pulley_state(system: System, pulley: int, position: FloatArray, velocity: Fl
     """
     item, body = system.pulleys[pulley], system.first_body + pulley
     carrier, speed = item.carrier, velocity[body]
-    surface = surface_at(system.rims, pulley, position[body])
+    surface = surface_at(system.rims, pulley, position[body], passed_length(system.frame, position))
     if carrier < 0:
         return PulleyState(item.center[0], item.center[1], surface, speed, item.friction, 0.0, 0.0, item.rolling)
     at = tensioner_coordinate(system, carrier)
@@ -95,7 +96,7 @@ def drift_record(vectors: int) -> np.dtype[np.void]:
 @kernel
 def moving_center(system: System, pulley: int, position: FloatArray, velocity: FloatArray) -> MovingCenter:
     """The motion of a pulley's center at a state of shape (n N + D,)."""
-    carrier, rim = system.pulleys[pulley].carrier, system.bodies[pulley].unknown
+    carrier, rim = system.pulleys[pulley].carrier, rim_unknown(system.rims, pulley, system.bodies[pulley].unknown)
     if carrier < 0:
         return MovingCenter(-1, rim, 0.0, 0.0, 0.0, 0.0, False)
     at = tensioner_coordinate(system, carrier)

@@ -10,6 +10,7 @@ from beltdyn.contact.contact_zone import out_of_reach, touching_intervals
 from beltdyn.contact.law import PulleyState
 from beltdyn.contact.penetration import approach, slip_velocity
 from beltdyn.contact.point_force import point_force
+from beltdyn.contact.teeth import tooth_at, tooth_traction
 from beltdyn.elements.dispatch import strain_energy, tension
 from beltdyn.kernel import kernel
 from beltdyn.machines.tensioners.registry import tensioner_center
@@ -184,9 +185,11 @@ def _touch_points(
         here = approach(x, y, vx, vy, pulley)
         if here.penetration >= 0.0:
             force = point_force(here, pulley, system.law, False)
+            along = samples.walk.along + system.contact.points[point] * samples.walk.length
+            tooth = tooth_at(pulley.surface, here, pulley.speed, along)
             result.contact_pulley[k, row] = number
             result.normal_force[k, row] = force.normal.force
-            result.friction_force[k, row] = force.friction
+            result.friction_force[k, row] = force.friction + tooth_traction(tooth, here)
             result.slip_velocity[k, row] = slip_velocity(here, pulley)
 
 

@@ -6,7 +6,7 @@ t . (r_0 - p) = 0                                            node 0 keeps its pl
 
 Unknowns are e, the speeds of free pulleys, places of tensioners, and c.  What depends on velocities has the tangent
 d/de + c (d/dv) D, and the column (d/dv) D e of c.  At rest a force along t on node 0 is unknown
-in the place of c.
+in the place of c.  A belt with teeth has other unknowns (`beltdyn.system.meshing`).
 """
 
 from typing import NamedTuple
@@ -17,9 +17,10 @@ from beltdyn.arrays import FloatArray
 from beltdyn.elements.dispatch import elastic_force
 from beltdyn.kernel import kernel
 from beltdyn.system.arrays import NO_TANGENT, Equations, Motion, System, TangentFactors
-from beltdyn.system.body_forces import add_machines, clear_body_forces
+from beltdyn.system.body_forces import clear_body_forces
 from beltdyn.system.element_state import gather_motion
 from beltdyn.system.flow_tangent import NO_FLOW_TANGENT, FlowFactors, add_flow_forces, find_rate, scatter_column
+from beltdyn.system.meshing import add_steady_machines, clear_last_row, flow_unknown
 from beltdyn.system.ring_matrix import clear
 from beltdyn.system.supports import add_nodal_loads, scatter
 
@@ -57,7 +58,7 @@ def assemble_steady(system: System, motion: Motion, anchor: Anchor, wanted: bool
     work, matrix, forces = equations.work, equations.matrix, equations.forces
     clear(matrix, wanted)
     clear_body_forces(forces)
-    of_flow = FlowFactors(1.0, 0.0, 1.0, 1.0, False) if wanted else NO_FLOW_TANGENT
+    of_flow = FlowFactors(1.0, 0.0, flow_unknown(system.rims), 1.0, False) if wanted else NO_FLOW_TANGENT
     for element in range(system.length.size):
         gather_motion(system, element, motion.position, motion.velocity, work.coordinates)
         elastic_force(system.element, work.coordinates[0], system.length[element], wanted, work.element)
@@ -65,15 +66,17 @@ def assemble_steady(system: System, motion: Motion, anchor: Anchor, wanted: bool
         _add_momentum(system, element, work)
         add_flow_forces(system, motion, element, of_flow, equations)
         scatter(system, element, wanted, work, matrix)
-        if wanted and not anchor.at_rest:
+        if wanted and not anchor.at_rest and flow_unknown(system.rims) != 0.0:
             scatter_column(system, element, equations)
     factors = TangentFactors(1.0, 1.0, 0.0, False) if wanted else NO_TANGENT
-    add_machines(system, motion, factors, matrix.corner, forces)
+    add_steady_machines(system.rims, system, motion, factors, matrix.corner, forces)
     for body in range(system.bodies.size):
         unknown = system.bodies[body].unknown
         if unknown >= 0:
             matrix.border_side[unknown] -= forces.force[body]
     add_nodal_loads(system, motion.position, factors.by_position, matrix)
+    if wanted:
+        clear_last_row(system.rims, matrix)
     _hold(motion, anchor, wanted, equations)
 
 

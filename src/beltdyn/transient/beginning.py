@@ -24,6 +24,7 @@ from beltdyn.system.build_staying import flowing_system, staying_system
 from beltdyn.system.constant_drive import constant_drive
 from beltdyn.system.discretization import curve_lengths, nodal_coordinates, point_coordinates
 from beltdyn.system.frame import centreline_points
+from beltdyn.system.meshing import turning
 from beltdyn.system.state import State, at_rest, laid
 from beltdyn.transient.earlier_run import begin_from, with_instant
 
@@ -109,7 +110,9 @@ def compile_ahead(drive: Drive) -> None:
     prepared = prepare(drive)
     if prepared.frame.stays:
         lengths = prepared.equal_lengths(prepared.elements)
-        system = flowing_system(staying_system(prepared, lengths), np.array([1.0, 0.0]))
+        given = staying_system(prepared, lengths)
+        at_zero = at_rest(given, np.zeros((given.nodes, len(given.scale))))
+        system = flowing_system(turning(given, at_zero), np.array([1.0, 0.0]))
     else:
         system = drive_system(prepared)
     compile_kernels(system, laid(system, prepared.path))

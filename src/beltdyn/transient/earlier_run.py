@@ -20,6 +20,7 @@ from beltdyn.system.arrays import System
 from beltdyn.system.build import drive_system
 from beltdyn.system.build_staying import flowing_system, staying_system
 from beltdyn.system.discretization import point_coordinates
+from beltdyn.system.meshing import TOOTH_PHASES, turned_by
 from beltdyn.system.state import State, at_rest
 from beltdyn.transient.checkpoint import is_checkpoint
 
@@ -54,7 +55,7 @@ def instant_of(run: Run, at: float | str | None, name: str = "at") -> float:
 def staying_mesh(prepared: Prepared, run: Run) -> System:
     """The arrays of a drive over time on the mesh of a run that stays, with a belt that does not flow."""
     lengths = np.diff(run.dataset["node_coordinate"].values, append=prepared.belt_length)
-    return staying_system(prepared, lengths)
+    return turned_by(prepared, staying_system(prepared, lengths), run.dataset.attrs.get(TOOTH_PHASES))
 
 
 def recorded_state(run: Run, time: float, system: System) -> State:
@@ -88,7 +89,9 @@ def begin_from(drive: Drive) -> Beginning:
         attributes: dict[str, Any] = {}
         if prepared.frame.stays:
             direction = np.array(run.dataset.attrs[DIRECTION], dtype=float)
-            attributes = {DIRECTION: direction}
+            attributes = {
+                name: run.dataset.attrs[name] for name in (DIRECTION, TOOTH_PHASES) if name in run.dataset.attrs
+            }
             system = flowing_system(staying_mesh(prepared, run), direction)
         else:
             system = drive_system(prepared)

@@ -22,6 +22,7 @@ from beltdyn.system.arrays import System
 from beltdyn.system.build import drive_system
 from beltdyn.system.build_staying import flowing_system, staying_system, without_hysteresis
 from beltdyn.system.constant_drive import constant_drive, dry_friction_of, rim_of_bodies, twists
+from beltdyn.system.meshing import stopped, turning
 from beltdyn.system.state import State
 from beltdyn.system.state_forces import body_forces_at
 from beltdyn.transient.earlier_run import recorded_state, staying_mesh
@@ -52,7 +53,8 @@ def state_of(run: Run, time: float) -> tuple[System, State, float]:
     state = State(*(np.delete(vector, place) for vector in (moving.position, moving.velocity, moving.acceleration)))
     held = constant_drive(given, time)._replace(element=staying_system(run.prepared, given.length).element)
     held.frame.speed[0] = speed
-    return held, state, speed
+    angles = state.position[held.first_body :][: held.pulleys.size]
+    return stopped(held, angles, float(moving.position[place])), state, speed
 
 
 _DRY = ("tensioning_friction", "yielding_friction")
@@ -195,7 +197,8 @@ def _linearised(prepared: Prepared, held: System, state: State, speed: float) ->
     for kind in tensioners.dtype.names or ():
         for name in _DRY if "spring" in (tensioners.dtype[kind].names or ()) else ():
             tensioners[kind]["spring"][name] = 0.0
-    system = flowing_system(held._replace(tensioners=tensioners), anchor_at(state, True).direction)
+    turned = turning(held._replace(tensioners=tensioners), state)
+    system = flowing_system(turned, anchor_at(state, True).direction)
     flowing = with_passage(held, state, speed)
     vibrations = Vibrations(system)
     tangents = vibrations.tangents(0.0, flowing.position, flowing.velocity)

@@ -14,6 +14,11 @@ from beltdyn.contact.surface import eccentric as eccentric
 from beltdyn.contact.surface.kind import KINDS as KINDS
 from beltdyn.contact.surface.kind import Gap as Gap
 from beltdyn.contact.surface.kind import SurfaceKind as SurfaceKind
+from beltdyn.contact.surface.toothed import TEETH as TEETH
+from beltdyn.contact.surface.toothed import MeshingRims as MeshingRims
+from beltdyn.contact.surface.toothed import Toothed as Toothed
+from beltdyn.contact.surface.toothed import ToothedRims as ToothedRims
+from beltdyn.contact.surface.toothed import meshing_at, toothed_at
 from beltdyn.kernel import KindRows, by_type, choice, kernel
 from beltdyn.records import Records
 
@@ -61,21 +66,56 @@ class Shaped(NamedTuple):
 
 
 @kernel
-def _round_at(rims: RoundRims, pulley: int, angle: float) -> Round:
+def _round_at(rims: RoundRims, pulley: int, angle: float, passed: float = 0.0) -> Round:
     return Round(rims.radius[pulley])
 
 
 @kernel
-def _shaped_at(rims: ShapedRims, pulley: int, angle: float) -> Shaped:
+def _shaped_at(rims: ShapedRims, pulley: int, angle: float, passed: float = 0.0) -> Shaped:
     return Shaped(rims.radius[pulley], rims.table, pulley, cos(angle), sin(angle))
 
 
-surface_at: Callable[[Any, int, float], Any] = by_type({RoundRims: _round_at, ShapedRims: _shaped_at}, "surface_at")
-"""Surface of a pulley at an angle, rad."""
+surface_at: Callable[..., Any] = by_type(
+    {RoundRims: _round_at, ShapedRims: _shaped_at, ToothedRims: toothed_at, MeshingRims: meshing_at}, "surface_at"
+)
+"""Surface of a pulley at an angle, rad, when a length of belt (m) has passed the mesh."""
+
+
+@kernel(inline=True)
+def _no_start(rims: Any, element: int) -> float:
+    return 0.0
+
+
+@kernel(inline=True)
+def _start(rims: Any, element: int) -> float:
+    return float(rims.start[element])
+
+
+element_start: Callable[[Any, int], float] = by_type(
+    {RoundRims: _no_start, ShapedRims: _no_start, ToothedRims: _start, MeshingRims: _start}, "element_start"
+)
+"""Material coordinate at which an element begins, m; zero where there are no teeth that ask for it."""
+
+
+@kernel(inline=True)
+def _own_unknown(rims: Any, pulley: int, unknown: int) -> int:
+    return unknown
+
+
+@kernel(inline=True)
+def _unknown_of_leader(rims: MeshingRims, pulley: int, unknown: int) -> int:
+    return rims.kept.shape[0] - 1 if pulley == rims.leader else unknown
+
+
+rim_unknown: Callable[[Any, int, int], int] = by_type(
+    {RoundRims: _own_unknown, ShapedRims: _own_unknown, ToothedRims: _own_unknown, MeshingRims: _unknown_of_leader},
+    "rim_unknown",
+)
+"""Place of a rim's unknown in the border, from that of its body: the last one of the pulley that leads a mesh."""
 
 
 @kernel
-def _circle_reach(surface: Round) -> float:
+def _circle_reach(surface: Any) -> float:
     return surface.radius
 
 
@@ -84,7 +124,9 @@ def _shaped_reach(surface: Shaped) -> float:
     return surface.radius + surface.table[surface.row].reach
 
 
-outer_radius: Callable[[Any], float] = by_type({Round: _circle_reach, Shaped: _shaped_reach}, "outer_radius")
+outer_radius: Callable[[Any], float] = by_type(
+    {Round: _circle_reach, Shaped: _shaped_reach, Toothed: _circle_reach}, "outer_radius"
+)
 """Radius of the circle around a surface, about the shaft, m."""
 
 

@@ -1,0 +1,235 @@
+"""Force of spread teeth at a point of the belt, and its variation.
+
+The groove of a tooth is ahead of it by the angle a (`beltdyn.contact.surface.toothed`), reduced to the nearest groove,
+so that a tooth that is off by more than half a pitch has jumped.  With R_p the pitch radius and rho = |r - O|, misfit
+and rate are
+
+    delta = R_p a,    d(delta)/dt = R_p (omega - v_t / rho),
+
+and the force on the belt along t is R_p / rho times
+
+    q = k (delta without the backlash) + c d(delta)/dt    per length of belt,
+
+with the moment -R_p q on the pulley: of a potential but for its damper.
+"""
+
+from collections.abc import Callable
+from math import atan2, floor
+from typing import Any, Final, NamedTuple
+
+from beltdyn.contact.penetration import Approach
+from beltdyn.contact.point_force import PointForce, PointTangent, PointTurn
+from beltdyn.contact.surface import Round, Shaped
+from beltdyn.contact.surface.toothed import Toothed
+from beltdyn.kernel import by_type, kernel
+
+LOOSE: Final = 1e-3
+"""Stiffness of a tooth within its backlash over that beyond it: lands hold an idle pulley in its place."""
+
+
+class NoTeeth(NamedTuple):
+    """No tooth: the belt is smooth."""
+
+    none: float
+    """Zero."""
+
+
+class Tooth(NamedTuple):
+    """Force of teeth at a point, and how it changes."""
+
+    traction: float
+    """q, N/m."""
+    slope: float
+    """dq / d(delta), N/m^2."""
+    damping: float
+    """dq / d(d(delta)/dt), N s/m^2."""
+    pitch_radius: float
+    rate: float
+    by_flow: float
+    """As of `Toothed`."""
+    misfit_rate: float
+    """d(delta)/dt, m/s."""
+
+
+@kernel(inline=True)
+def _no_tooth(surface: Any, here: Approach, speed: float, along: float) -> NoTeeth:
+    return NoTeeth(0.0)
+
+
+@kernel
+def _tooth(surface: Toothed, here: Approach, speed: float, along: float) -> Tooth:
+    """Force of teeth at a material coordinate (m) on a pulley of a speed (rad/s)."""
+    angle = surface.phase - atan2(here.normal_y, here.normal_x) + surface.rate * along
+    angle -= surface.groove * floor(angle / surface.groove + 0.5)
+    misfit = surface.pitch_radius * angle
+    rate = surface.pitch_radius * (speed - here.circumferential / here.lever)
+    slope, force = surface.stiffness, surface.stiffness * misfit
+    if surface.half_gap > 0.0:
+        held = abs(misfit) > surface.half_gap
+        beyond = abs(misfit) - surface.half_gap if held else 0.0
+        force = surface.stiffness * (LOOSE * misfit + (1.0 - LOOSE) * (beyond if misfit > 0.0 else -beyond))
+        slope = surface.stiffness if held else LOOSE * surface.stiffness
+    return Tooth(
+        force + surface.damping * rate,
+        slope,
+        surface.damping,
+        surface.pitch_radius,
+        surface.rate,
+        surface.by_flow,
+        rate,
+    )
+
+
+tooth_at: Callable[[Any, Approach, float, float], Any] = by_type(
+    {Round: _no_tooth, Shaped: _no_tooth, Toothed: _tooth}, "tooth_at"
+)
+"""The teeth at a point: of a surface, how the point stands, speed of the pulley (rad/s), material coordinate (m)."""
+
+
+@kernel(inline=True)
+def _traction_of_none(tooth: NoTeeth, here: Approach) -> float:
+    return 0.0
+
+
+@kernel(inline=True)
+def _traction(tooth: Tooth, here: Approach) -> float:
+    return tooth.traction * tooth.pitch_radius / here.lever
+
+
+tooth_traction: Callable[[Any, Approach], float] = by_type(
+    {NoTeeth: _traction_of_none, Tooth: _traction}, "tooth_traction"
+)
+"""Force of teeth on the belt along t, N/m."""
+
+
+@kernel(inline=True)
+def _without(tooth: NoTeeth, force: PointForce, here: Approach) -> PointForce:
+    return force
+
+
+@kernel(inline=True)
+def _with_teeth(tooth: Tooth, force: PointForce, here: Approach) -> PointForce:
+    along = _traction(tooth, here)
+    return PointForce(
+        force.normal,
+        force.friction,
+        force.rolling,
+        force.x - along * here.normal_y,
+        force.y + along * here.normal_x,
+        force.by_slip,
+        force.by_normal,
+        force.by_speed,
+        force.moment - tooth.pitch_radius * tooth.traction,
+        force.arm,
+        force.arm_slope,
+    )
+
+
+force_with: Callable[[Any, PointForce, Approach], PointForce] = by_type(
+    {NoTeeth: _without, Tooth: _with_teeth}, "force_with"
+)
+"""Contact force at a point with that of teeth."""
+
+
+@kernel(inline=True)
+def _tangent_without(
+    tooth: NoTeeth, tangent: PointTangent, here: Approach, by_position: float, by_velocity: float
+) -> PointTangent:
+    return tangent
+
+
+@kernel(inline=True)
+def _tangent_with_teeth(
+    tooth: Tooth, tangent: PointTangent, here: Approach, by_position: float, by_velocity: float
+) -> PointTangent:
+    bend, radius = here.curvature, tooth.pitch_radius
+    swing = here.circumferential * bend * bend * by_position
+    across = tooth.damping * radius * swing
+    along = -tooth.slope * radius * bend * by_position
+    along += tooth.damping * radius * bend * (here.radial * bend * by_position - by_velocity)
+    tilt = by_position * bend * bend * radius * tooth.traction
+    nt, tn, tt = -tilt, radius * bend * across - tilt, radius * bend * along
+    nx, ny = here.normal_x, here.normal_y
+    xn, xt, yn, yt = -ny * tn, nx * nt - ny * tt, nx * tn, ny * nt + nx * tt
+    moment_n, moment_t = -radius * across, -radius * along
+    return PointTangent(
+        tangent.xx + xn * nx - xt * ny,
+        tangent.xy + xn * ny + xt * nx,
+        tangent.yx + yn * nx - yt * ny,
+        tangent.yy + yn * ny + yt * nx,
+        tangent.moment_x + moment_n * nx - moment_t * ny,
+        tangent.moment_y + moment_n * ny + moment_t * nx,
+    )
+
+
+tangent_with: Callable[[Any, PointTangent, Approach, float, float], PointTangent] = by_type(
+    {NoTeeth: _tangent_without, Tooth: _tangent_with_teeth}, "tangent_with"
+)
+"""Derivative of force and moment by position and velocity of a point, with that of teeth; see `point_tangent`."""
+
+
+@kernel(inline=True)
+def _turn_without(tooth: NoTeeth, turn: PointTurn, here: Approach, by_angle: float, by_speed: float) -> PointTurn:
+    return turn
+
+
+@kernel(inline=True)
+def _turn_with_teeth(tooth: Tooth, turn: PointTurn, here: Approach, by_angle: float, by_speed: float) -> PointTurn:
+    change = tooth.pitch_radius * (by_angle * tooth.slope + by_speed * tooth.damping)
+    along = change * tooth.pitch_radius / here.lever
+    return PointTurn(
+        turn.x - along * here.normal_y, turn.y + along * here.normal_x, turn.moment - tooth.pitch_radius * change
+    )
+
+
+turn_with: Callable[[Any, PointTurn, Approach, float, float], PointTurn] = by_type(
+    {NoTeeth: _turn_without, Tooth: _turn_with_teeth}, "turn_with"
+)
+"""Derivative of force and moment by angle and speed of the pulley, with that of teeth; see `point_turn`."""
+
+
+@kernel(inline=True)
+def _speed_unknown(surface: Any) -> float:
+    return 1.0
+
+
+@kernel(inline=True)
+def _own_speed_unknown(surface: Toothed) -> float:
+    return surface.by_speed
+
+
+speed_unknown: Callable[[Any], float] = by_type(
+    {Round: _speed_unknown, Shaped: _speed_unknown, Toothed: _own_speed_unknown}, "speed_unknown"
+)
+"""1, or 0 of a pulley whose phase is unknown in place of its speed."""
+
+
+@kernel(inline=True)
+def _not_along(tooth: NoTeeth, here: Approach) -> tuple[float, float, float]:
+    return 0.0, 0.0, 0.0
+
+
+@kernel(inline=True)
+def _by_coordinate(tooth: Tooth, here: Approach) -> tuple[float, float, float]:
+    turn = _turn_with_teeth(tooth, PointTurn(0.0, 0.0, 0.0), here, 1.0, 0.0)
+    return tooth.rate * turn.x, tooth.rate * turn.y, tooth.rate * turn.moment
+
+
+by_coordinate: Callable[[Any, Approach], tuple[float, float, float]] = by_type(
+    {NoTeeth: _not_along, Tooth: _by_coordinate}, "by_coordinate"
+)
+"""Derivative of force and moment by the material coordinate of a point that stays in its place, over m."""
+
+
+@kernel(inline=True)
+def _none_lost(tooth: NoTeeth) -> float:
+    return 0.0
+
+
+@kernel(inline=True)
+def _taken(tooth: Tooth) -> float:
+    return tooth.traction * tooth.misfit_rate
+
+
+power_taken: Callable[[Any], float] = by_type({NoTeeth: _none_lost, Tooth: _taken}, "power_taken")
+"""Power that teeth take from belt and pulley, stored or lost, W/m."""

@@ -1,0 +1,137 @@
+"""Force of spread teeth: derivatives against differences, potential, nearest groove, backlash."""
+
+from typing import Any
+
+import numpy as np
+import pytest
+
+from beltdyn.arrays import FloatArray
+from beltdyn.contact.bezier import Curve
+from beltdyn.contact.contact_force import ContactFactors, ContactTotals, contact_force, contact_workspace
+from beltdyn.contact.friction import LAWS
+from beltdyn.contact.law import ContactLaw, PulleyState
+from beltdyn.contact.normal import NoPull
+from beltdyn.contact.penetration import approach
+from beltdyn.contact.surface import Toothed
+from beltdyn.contact.teeth import LOOSE, tooth_at, tooth_traction
+from beltdyn.quadrature import gauss_points
+
+LENGTH, RULE = 0.06, gauss_points(6)
+GROOVE = 2.0 * np.pi / 40
+
+
+def pulley(phase: float = 0.01, damping: float = 0.0, half_gap: float = 0.0, speed: float = 7.0) -> PulleyState:
+    """A pulley of 40 teeth and 0.1 m."""
+    own = Toothed(0.1, 2e6, damping, half_gap, 0.1005, GROOVE / 0.0157, GROOVE, phase, 1.0, 1.0)
+    return PulleyState(0.3, -0.2, own, speed=speed, friction=0.2)
+
+
+def law() -> ContactLaw:
+    friction = LAWS["relative_creep"]
+    made = friction.record(*(one.example for one in friction.parameters)).smoothed(40.0)
+    return ContactLaw(NoPull(1e6, 40.0), made, follow_zone=True, arm_to_rim=True)
+
+
+def sunk() -> tuple[FloatArray, FloatArray]:
+    """Control points of a curve that enters the pulley, and their velocities."""
+    along = np.linspace(-0.3, 0.3, 4)
+    out = np.stack([np.cos(along), np.sin(along)], axis=1)
+    control = np.array([0.3, -0.2]) + (0.1 + 0.002 * np.arange(4)[:, None] / 3 - 5e-4) * out
+    return control, 0.7 * np.stack([-out[:, 1], out[:, 0]], axis=1) - 0.02 * out
+
+
+def act(
+    control: FloatArray,
+    rates: FloatArray,
+    one: PulleyState,
+    factors: tuple[float, float] = (0.0, 0.0),
+    start: float = 0.0,
+) -> tuple[Any, ContactTotals]:
+    work = contact_workspace(4, 4)
+    curve = Curve(control, rates, np.eye(4), LENGTH, start)
+    by = ContactFactors(factors[0], factors[1], factors[1], 0.0, 0.0, False)
+    return work, contact_force(curve, one, law(), RULE, by, work)
+
+
+def answer(*arguments: Any, **more: Any) -> FloatArray:
+    """Forces on the vectors, then the moment on the pulley."""
+    work, totals = act(*arguments, **more)
+    return np.append(work.force.ravel(), totals.moment)
+
+
+@pytest.mark.parametrize("damping", [0.0, 300.0])
+@pytest.mark.parametrize("factors", [(1.0, 0.0), (0.0, 1.0), (1.0, 300.0)])
+def test_tangent(factors: tuple[float, float], damping: float) -> None:
+    control, rates = sunk()
+    one, step = pulley(damping=damping), 1e-8 if factors[0] else 1e-5
+    work, _ = act(control, rates, one, factors)
+    tangent = np.block([[work.xx, work.xy], [work.yx, work.yy]])
+    columns = []
+    for axis in range(2):
+        for b in range(4):
+            change = np.zeros((4, 2))
+            change[b, axis] = step
+            there, back = (
+                answer(control + s * factors[0] * change, rates + s * factors[1] * change, one) for s in (1.0, -1.0)
+            )
+            columns.append((there - back) / (2.0 * step))
+    found, size = np.array(columns).T, np.abs(tangent).max()
+    forces = np.concatenate([found[:-1:2], found[1:-1:2]])
+    np.testing.assert_allclose(tangent, forces, atol=2e-6 * size)  # truncation and rounding of central differences
+    np.testing.assert_allclose(work.moment.T.ravel(), found[-1], atol=2e-6 * np.abs(found[-1]).max())
+
+
+@pytest.mark.parametrize("factors", [(1.0, 0.0), (0.0, 1.0), (1.0, 300.0)])
+def test_derivative_by_the_turning_of_the_pulley(factors: tuple[float, float]) -> None:
+    control, rates = sunk()
+    work, _ = act(control, rates, pulley(damping=300.0), factors)
+    there, back = (
+        answer(control, rates, pulley(0.01 + s * factors[0], 300.0, speed=7.0 + s * factors[1])) for s in (1e-7, -1e-7)
+    )
+    expected = (there - back) / 2e-7
+    given = np.append(work.by_turn.ravel(), work.moment_by_turn)
+    np.testing.assert_allclose(given, expected, atol=2e-6 * np.abs(expected).max())
+
+
+def test_derivative_by_the_length_of_belt_that_passes() -> None:
+    control, rates = sunk()
+    work, _ = act(control, rates, pulley(), (1.0, 0.0))
+    there, back = (answer(control, rates, pulley(), start=-s) for s in (1e-7, -1e-7))
+    expected = (there - back) / 2e-7
+    given = np.append(work.by_flow.ravel(), work.moment_by_flow)
+    np.testing.assert_allclose(given, expected, atol=2e-6 * np.abs(expected).max())
+
+
+def traction(one: PulleyState, angle: float, along: float = 0.0) -> float:
+    """Force of teeth at a place on the rim that stands still."""
+    x, y = 0.3 + 0.1 * np.cos(angle), -0.2 + 0.1 * np.sin(angle)
+    here = approach(x, y, 0.0, 0.0, one)
+    return float(tooth_traction(tooth_at(one.surface, here, 0.0, along), here))
+
+
+def test_a_groove_ahead_pulls_and_the_nearest_one_holds() -> None:
+    one = pulley(phase=0.0, speed=0.0)
+    assert traction(one, -0.01) == pytest.approx(2e6 * 0.1005 * 0.01 * 1.005, rel=1e-12)
+    assert traction(one, -0.01 + 3 * GROOVE) == pytest.approx(traction(one, -0.01), rel=1e-9)
+    assert traction(one, 0.49 * GROOVE) < 0.0 < traction(one, 0.51 * GROOVE)  # more than half a pitch: a jump
+    assert traction(one, -0.01, along=0.0157) == pytest.approx(traction(one, -0.01), rel=1e-9)  # the next tooth
+
+
+def test_backlash() -> None:
+    one = pulley(phase=0.0, half_gap=5e-4, speed=0.0)
+    inside, beyond = traction(one, -0.004), traction(one, -0.01)
+    assert inside == pytest.approx(LOOSE * 2e6 * 0.1005 * 0.004 * 1.005, rel=1e-9)
+    held = (1.0 - LOOSE) * (0.1005 * 0.01 - 5e-4) + LOOSE * 0.1005 * 0.01
+    assert beyond == pytest.approx(2e6 * held * 1.005, rel=1e-9)
+    assert traction(one, 0.01) == pytest.approx(-beyond, rel=1e-9)
+
+
+def test_what_teeth_take_of_belt_and_pulley_is_power_on_both() -> None:
+    control, rates = sunk()
+    work, totals = act(control, rates, pulley())
+    surface = pulley().surface
+    assert isinstance(surface, Toothed)
+    smooth = pulley()._replace(surface=surface._replace(stiffness=0.0))
+    bare, without = act(control, rates, smooth)
+    given = np.sum((work.force - bare.force) * rates) + (totals.moment - without.moment) * 7.0
+    assert totals.compression_power - without.compression_power == pytest.approx(-given, rel=1e-9)
