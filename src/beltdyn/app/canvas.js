@@ -64,9 +64,9 @@ export default {
       </g>
       <text v-for="(one, i) in shown.spans || []" :key="'s' + i" class="bd-small bd-span"
             :x="one.x + one.right * away(one)" :y="one.y + one.down * away(one) + 4 * px"
-            :font-size="11 * px" text-anchor="middle">{{ written(one.length) }}</text>
+            :font-size="11 * px" :text-anchor="anchor(one)">{{ written(one.length) }}</text>
       <text v-for="(one, i) in pulled" :key="'n' + i" :class="['bd-small', 'bd-span', 'bd-pull', { 'bd-side': one.side }]"
-            :x="one.x" :y="one.y" :font-size="11 * px" text-anchor="middle">{{ one.label }}</text>
+            :x="one.x" :y="one.y" :font-size="11 * px" :text-anchor="one.anchor">{{ one.label }}</text>
       <rect v-for="(end, i) in shown.ends || []" :key="'e' + i" class="bd-end" :x="end[0] - 5 * px" :y="end[1] - 5 * px"
             :width="10 * px" :height="10 * px" />
       <circle v-if="chosen" class="bd-handle bd-size" :cx="chosen.x + 0.7071 * chosen.r" :cy="chosen.y + 0.7071 * chosen.r"
@@ -150,7 +150,8 @@ export default {
         const away = this.away(one), [x1, y1, x2, y2] = one.ends;
         return {
           d: `M${x1} ${y1}L${x2} ${y2}`, width: (2 + 5 * share) * this.px, side,
-          x: one.x + one.right * away, y: one.y + one.down * away + 17 * this.px, label: `${side}${known[i].toPrecision(3)} N`,
+          x: one.x + one.right * away, y: one.y + one.down * away + (one.down < -0.3 ? -9 : 17) * this.px,
+          anchor: this.anchor(one), label: `${side}${known[i].toPrecision(3)} N`,
         };
       });
     },
@@ -246,8 +247,11 @@ export default {
       const [x, y] = this.tip(one);
       return `M${one.x} ${one.y}L${x} ${y}`;
     },
-    away(one) { // of a length from its span: more beside an upright one, as text is wide
-      return (14 + 20 * Math.abs(one.right)) * this.px;
+    away(one) { // of a length from its span
+      return (this.anchor(one) === "middle" ? 14 + 20 * Math.abs(one.right) : 12) * this.px;
+    },
+    anchor(one) { // beside an upright span the text begins or ends
+      return Math.abs(one.right) < 0.5 ? "middle" : one.right > 0 ? "start" : "end";
     },
     spokes(one) {
       return [0, 120, 240].map((more) => {
