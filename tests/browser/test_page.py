@@ -137,6 +137,7 @@ def test_a_newcomer_goes_from_an_empty_canvas_to_a_report(shoot: Shoot, open_pag
     page.get_by_role("button", name="Run", exact=True).click()
     page.locator(".bd-live").wait_for()
     expect(page.get_by_role("status").filter(has_text="integrating")).to_have_count(1)
+    page.get_by_text(re.compile(r"^at 0\.\d+ s; belt tension")).wait_for()  # the picture moves
     shoot(page, "newcomer_watching")
     page.reload()
     page.locator(".bd-live").wait_for()  # the run goes on

@@ -1,4 +1,4 @@
-"""Computation of the numbers below the canvas in a separate process: rest, steady running and modes."""
+"""Computation of the numbers beside the canvas in a separate process: rest, steady running and modes."""
 
 import asyncio
 import threading

@@ -234,9 +234,11 @@ class FormView:
     def _build_group(self, row: Row) -> None:
         assert row.field is not None
         if not row.kinds:
-            widget: Any = ui.checkbox(row.field.key, on_change=lambda event: self._give(row.location, event.value))
+            widget: Any = ui.checkbox(
+                _in_words(row.field.key), on_change=lambda event: self._give(row.location, event.value)
+            )
         else:
-            widget = self._kinds(row, row.field.key, clearable=True)
+            widget = self._kinds(row, _in_words(row.field.key), clearable=True)
         with widget:
             ui.tooltip(row.field.hint).props("max-width=320px delay=600")
         self._widgets[row.location] = widget.mark(".".join(map(str, row.location)))
@@ -258,7 +260,7 @@ class FormView:
 
         group = value_at(self._session.document.data, row.location)
         widget = ui.select(
-            list(row.kinds),
+            {kind: _in_words(kind) for kind in row.kinds},
             label=label,
             value=_kind_of(group) if _kind_of(group) in row.kinds else None,
             clearable=clearable,
@@ -277,7 +279,8 @@ class FormView:
             return
         with button, ui.menu():
             for kind in row.kinds:
-                ui.menu_item(kind, on_click=lambda kind=kind: add(kind)).mark(f"add:{key}:{kind}")
+                item = ui.menu_item(_in_words(kind), on_click=lambda kind=kind: add(kind))
+                item.mark(f"add:{key}:{kind}")
 
     def _build_more(self, row: Row) -> None:
         def toggle() -> None:
@@ -303,6 +306,11 @@ class FormView:
     def _give(self, location: Location, given: bool) -> None:
         if not self._filling and given != (value_at(self._session.document.data, location) is not None):
             self._apply(edits_of_group(self._session.document.data, location) if given else [Edit("remove", location)])
+
+
+def _in_words(kind: str) -> str:
+    """The name of a kind without underscores."""
+    return kind.replace("_", " ")
 
 
 def _kind_of(group: Any) -> str | None:

@@ -318,12 +318,21 @@ class Page:
             if not groups(self.session.document.data, "pulley"):
                 self._invite()
                 return
+            if self._begins():
+                ui.label("Place the next pulley: a belt runs around two or more.").classes("bd-heading-plain")
+                return
             for one in self.session.draft.told:
                 label = ui.label(one.sentence).classes("bd-message cursor-pointer")
                 label.on("click", lambda one=one: self._go_to(one.location))
         if self.session.document.lost_comments:
             self.session.document.lost_comments = False
             ui.notify("The file was rewritten without its comments. Undo restores them.", type="warning")
+
+    def _begins(self) -> bool:
+        """Whether the first pulley stands alone, and nothing is wrong but that."""
+        data, told = self.session.document.data, self.session.draft.told
+        alone = len(groups(data, "pulley")) == 1 and not data.get("end")
+        return alone and all(len(one.location) < 2 for one in told)
 
     def _invite(self) -> None:
         """Say how to begin on an empty canvas."""

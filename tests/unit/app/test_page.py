@@ -101,6 +101,18 @@ def test_an_empty_canvas_offers_drives_to_start_with(workspace: Workspace) -> No
     go(Workspace(workspace.folder), journey)
 
 
+def test_the_first_pulley_is_no_mistake(workspace: Workspace) -> None:
+    async def journey(user: User) -> None:
+        act(user, action="add", x=0.0, y=0.0)
+        await user.should_see("Place the next pulley")
+        await user.should_not_see("a closed belt needs at least two")
+        act(user, action="add", x=0.3, y=0.0)
+        await user.should_see("Pulleys at rest")
+        await user.should_not_see("Place the next pulley")
+
+    go(Workspace(workspace.folder), journey)
+
+
 def test_a_drag_is_followed_and_becomes_one_step_of_undo(workspace: Workspace, monkeypatch: pytest.MonkeyPatch) -> None:
     followed: list[str] = []
     monkeypatch.setattr(Canvas, "follow", lambda _, scene: followed.append(scene["belt"]))
