@@ -29,17 +29,28 @@ class _Place(NamedTuple):
     stiffness: float | None
     """Of contact, N/m^2."""
     tensioner: dict[str, Any]
+    weights: FloatArray
+    """Of the pulleys, N, shape (pulleys, 2)."""
 
     @classmethod
     def of(cls, drive: dict[str, Any]) -> "_Place":
         pulleys, springs = drive["pulley"], drive.get("tensioner") or [{}]
         radii = [one["radius"] if one["side"] == "inside" else -one["radius"] for one in pulleys]
         centers = np.array([one["center"] for one in pulleys])
-        return cls(centers, np.array(radii), drive["belt"], drive["contact"].get("stiffness"), springs[0])
+        weights = np.array([[one["mass"]] for one in pulleys]) * np.array(drive["gravity"])
+        return cls(centers, np.array(radii), drive["belt"], drive["contact"].get("stiffness"), springs[0], weights)
 
     @property
     def route(self) -> Route:
         return Route.around(self.centers, self.radii)
+
+    @property
+    def route_of_force(self) -> Route:
+        """The lines of force: tangents of circles that bending makes larger, and penetration smaller."""
+        sizes, softness = np.abs(self.radii), 0.0 if self.stiffness is None else 1.0 / self.stiffness
+        depths = 0.5 * (sizes - np.sqrt(np.maximum(sizes**2 - 4.0 * self.tension * softness, 0.0)))
+        lifts = self.belt["bending_stiffness"] / (2.0 * self.tension * sizes) - 0.5 * depths
+        return Route.around(self.centers, self.radii + np.sign(self.radii) * lifts)
 
     @property
     def tension(self) -> float:
@@ -188,10 +199,12 @@ def _stable_balance(place: _Place, pulley: int, swung: Callable[[float], FloatAr
 
     def longer(q: float) -> float:
         small = 1e-4 * abs(step)
-        return float((at(q + small).route.length - at(q - small).route.length) / (2.0 * small))
+        return float((at(q + small).route_of_force.length - at(q - small).route_of_force.length) / (2.0 * small))
 
     def excess(q: float, tension: float) -> float:
-        return float(given["preload"] - given["rate"] * q - tension * longer(q))
+        small = 1e-4 * abs(step)
+        weight = float((swung(q + small) - swung(q - small)) @ place.weights[pulley]) / (2.0 * small)
+        return float(given["preload"] - given["rate"] * q + weight - tension * longer(q))
 
     def is_stable(q: float) -> bool:
         ends = (q - 0.1 * abs(step), q + 0.1 * abs(step))

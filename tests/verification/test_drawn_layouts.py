@@ -52,7 +52,14 @@ def test_the_tension_is_reached_or_the_reason_is_true(
     measured(**{name.replace(" ", "_"): number for name, number in counts.items()})
     assert not {seed: one for seed, one in outcomes.items() if one.startswith("wrong")}
     unverified = {seed: one for seed, one in outcomes.items() if one.startswith("unverified")}
+    if bring is bring_to_rest:  # what neither mesh confirms counts among all layouts, on the staying mesh
+        unverified = {seed: unverified[seed] for seed in unverified if _stands(seed)}
     assert len(unverified) <= UNVERIFIED * len(seeds), unverified
+
+
+def _stands(seed: int) -> bool:
+    """Whether a layout is reached, or its reason confirmed, on the staying mesh."""
+    return not outcome(layout_at_rest(seed), bring_to_stand).startswith("unverified")
 
 
 def outcome(given: dict[str, Any], bring: Bring) -> str:
