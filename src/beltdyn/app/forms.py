@@ -28,6 +28,8 @@ _SHORT_OF: Mapping[str, tuple[str, ...]] = {
 """Keys of each group shown by default, in this order; others are shown if given."""
 _APART: Mapping[str, tuple[str, ...]] = {"speed": ("torque", "load"), "torque": ("speed",), "load": ("speed",)}
 """Keys of a pulley that exclude others: the torque of a shaft with prescribed speed is a result."""
+_OF_TEETH = ("toothing", "pitch_error")
+"""Keys that go with a number of teeth of the belt."""
 
 
 class Field(NamedTuple):
@@ -122,7 +124,7 @@ def fields(data: Mapping[str, Any], location: Location) -> list[Field]:
     found = []
     for key in schema.get("properties", {}):
         own = locations.locate((*tagged, key))[1]
-        if key == "kind" or _is_excluded(location, group, key) or (not location and _form(own) in ("group", "groups")):
+        if key == "kind" or _is_excluded(data, location, key) or (not location and _form(own) in ("group", "groups")):
             continue
         first = key in short or key in required or key in group or not (short or required)
         given_unit = of_values if key in ("value", "values") else ""
@@ -131,9 +133,14 @@ def fields(data: Mapping[str, Any], location: Location) -> list[Field]:
     return sorted(found, key=lambda one: (not one.first, order.get(one.key, len(order))))
 
 
-def _is_excluded(location: Location, group: Mapping[str, Any], key: str) -> bool:
-    """Whether what a pulley has leaves no room for a key."""
-    if _group_name(location) != "pulley" or key in group:
+def _is_excluded(data: Mapping[str, Any], location: Location, key: str) -> bool:
+    """Whether what a drive has leaves no room for a key of its belt or a pulley."""
+    group = value_at(data, location) or {}
+    if key in group:
+        return False
+    if key in _OF_TEETH:
+        return not value_at(data, ("belt", "teeth"))
+    if _group_name(location) != "pulley":
         return False
     if key == "harmonics":
         return "speed" not in group
