@@ -28,6 +28,11 @@ def accessory_drive() -> Drive:
     return load(str(files("beltdyn") / "examples" / "accessory_drive.toml"))
 
 
+def timing_drive() -> Drive:
+    """The toothed belt with four pulleys of the example."""
+    return load(str(files("beltdyn") / "examples" / "timing_drive.toml"))
+
+
 def over_time(drive: Drive) -> Drive:
     """The accessory drive until it runs steadily: no harmonics, and no dry friction that holds its arm anywhere."""
     crank, *others, compressor = drive.pulleys
@@ -63,8 +68,13 @@ def main() -> None:
         title="Steady running",
     )
     case_2 = better(loaded_two_pulley(1e5), 60, duration=1.5, rtol=1e-4)
-    accessory = accessory_drive()
-    for name, drive, timed in (("case 2", case_2, case_2), ("accessory drive", accessory, over_time(accessory))):
+    accessory, timing = accessory_drive(), timing_drive()
+    drives = (
+        ("case 2", case_2, case_2),
+        ("accessory drive", accessory, over_time(accessory)),
+        ("timing drive", timing, timing),
+    )
+    for name, drive, timed in drives:
         found = steady_state(drive)
         rest = seconds(partial(steady_state, drive))
         held = held_at(found.drive, None)

@@ -14,6 +14,7 @@ from types import MappingProxyType
 from typing import NamedTuple
 
 import example_numbers as by_hand
+import example_teeth as toothed
 import example_tensioners as tensioned
 import examples_accessory_drive as accessory
 from PIL import Image
@@ -60,6 +61,7 @@ EXAMPLES: Mapping[str, Example] = MappingProxyType(
         "conveyor": Example(("configuration", "span_tensions", "tensioners"), tensioned.conveyor),
         "alternator_drive": Example(("speeds", "span_tensions", "tensioners", "hub_loads"), tensioned.alternator_drive),
         "tensioner_stop": Example(("span_tensions", "tensioners", "slip_safety"), tensioned.tensioner_stop),
+        "timing_drive": Example(("span_tensions", "contact_pressure"), toothed.timing_drive),
         "slip_through": Example(("speeds", "torques", "slip_safety", "slip"), by_hand.slip_through),
         "accessory_drive": Example(
             ("speeds", "span_tensions", "tensioners", "slip", "hub_loads"), accessory.numbers, accessory.study

@@ -107,6 +107,7 @@ FIGURES: dict[str, list[Panel]] = {
         Panel("driver", "Angle from the inlet of the driver [°]", "Slip velocity / v_c", "linear"),
         Panel("driven", "Angle from the inlet of the driven pulley [°]", "", "linear"),
     ],
+    "toothed": [Panel("", "Place on the arc [mm]", "Load of a tooth [N]", "linear")],
     "published_drive": [
         Panel("speed", "Time [s]", "Driven pulley [rad/s]", "linear"),
         Panel("arc", "Angle on the driven pulley [°]", "Tension [N]", "linear"),

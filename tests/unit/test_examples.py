@@ -14,6 +14,7 @@ EXAMPLES = {
     for file in files("beltdyn").joinpath("examples").iterdir()
 }
 EXPECTED = {
+    "timing_drive": ["few teeth are in mesh: 4.3 on water pump."],
     "two_pulley": [
         "the contact between belt and pulleys is so soft that it reduces the belt tension by 5.8%",
         "contact.damping = 10 N s/m^2 is 0.5% of critical",

@@ -3,6 +3,8 @@
 The belt hardly bends and the contact is hard, as the closed forms have it: they leave out bending and penetration.
 """
 
+from collections.abc import Callable
+
 import numpy as np
 import pytest
 
@@ -55,13 +57,16 @@ def loaded() -> Run:
 
 
 @pytest.mark.parametrize("pulley", [0, 1])
-def test_load_sharing(loaded: Run, pulley: int) -> None:
+def test_load_sharing(loaded: Run, pulley: int, curve: Callable[..., None]) -> None:
     along, traction, away = arc(loaded, pulley)
     x, length = along - along[0], along[-1] - along[0]
     after, before = loaded.dataset.span_tension.isel(time=-1).values[[pulley, 1 - pulley]]
     agree = AXIAL * (2.0 * np.pi * away / (TEETH * PITCH) - 1.0)  # the tension at which pitches agree
     shape = -(before - agree) * np.cosh((length - x) / LENGTH) + (after - agree) * np.cosh(x / LENGTH)
     slope = shape / (LENGTH * np.sinh(length / LENGTH))
+    name = ("driver", "driven pulley")[pulley]
+    curve("toothed", 1e3 * x, -PITCH * traction, f"{name}, found", "-")
+    curve("toothed", 1e3 * x[::12], PITCH * slope[::12], f"{name}, closed form", ".")
     np.testing.assert_allclose(-traction, slope, atol=1e-4 * np.abs(slope).max())
 
 

@@ -10,6 +10,7 @@ from beltdyn.results.mechanics import (
     across,
     cells,
     gross_sliding,
+    has_teeth,
     pressing,
     relative_loss,
     sliding_shares,
@@ -57,6 +58,8 @@ def slip_parts(
 ) -> SlipParts:
     """Take slip apart into elastic creep, bending, what the slope of the friction law makes, and sliding.
 
+    Between pulleys with teeth there is neither creep nor loss of stretch by bending: what is left is that of radii.
+
     With Coulomb's friction the belt adheres to every rim where it reaches it, with the tension T of the span before
     and the stretch g(T) there: the elastic creep is 1 - g(T_i) / g(T_d), (T_d - T_i) / EA at small strain (Grashof
     1883), with the driver d (`Drive.reference`). On its way there it bends, and the rim meets it with less stretch than
@@ -73,8 +76,9 @@ def slip_parts(
     reaching = np.where(rim[..., driver, None] > 0.0, before, after)
     reached, lost = law.stretch(reaching), _entry_loss(reaching, prepared)
     total, sliding = relative_loss(-rim, rim, driver), relative_loss(gross, rim, driver)
-    elastic = np.where(runs[..., None], 1.0 - reached / reached[..., driver, None], np.nan)
-    bending = np.where(runs[..., None], lost - lost[..., driver, None], np.nan)
+    creeps = ~(has_teeth(prepared) & has_teeth(prepared)[driver])
+    elastic = np.where(runs[..., None], creeps * (1.0 - reached / reached[..., driver, None]), np.nan)
+    bending = np.where(runs[..., None], creeps * (lost - lost[..., driver, None]), np.nan)
     return SlipParts(total, elastic, bending, total - elastic - bending - sliding, sliding)
 
 

@@ -6,13 +6,19 @@ more than it is pressed on lifts, and the belt begins to jump there.
 """
 
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
 import numpy as np
 
+from beltdyn.analyses import RUN
 from beltdyn.arrays import FloatArray, IntArray
 from beltdyn.errors import ModelError
+from beltdyn.model import Prepared
 from beltdyn.results.mechanics import cells
-from beltdyn.results.run import Run
+from beltdyn.results.schema import InMemory, Recorded
+
+if TYPE_CHECKING:
+    from beltdyn.results.result import Result
 
 _LEAST = 1e-9
 """Traction of teeth over the largest one, below which nothing lifts them."""
@@ -45,7 +51,7 @@ class ToothLoads:
     """Forces on these teeth along the belt, N, shape (n,); positive where they push it on."""
 
 
-def tooth_loads(run: Run, time: float | None = None) -> tuple[ToothLoads, ...]:
+def tooth_loads(run: "Result", time: float | None = None) -> tuple[ToothLoads, ...]:
     """Loads of the teeth of a belt in a run or in steady running.
 
     Parameters
@@ -70,47 +76,57 @@ def tooth_loads(run: Run, time: float | None = None) -> tuple[ToothLoads, ...]:
     >>> bd.results.tooth_loads(run)
     ()
     """
-    if not isinstance(run, Run):
+    if run.kind != RUN:
         raise ModelError(f"loads of teeth need results over time; these are of {run.kind}. Use a run.")
-    prepared, dataset = run.prepared, run.dataset
-    belt, toothing = prepared.belt, prepared.belt.toothing
-    if belt.teeth is None or toothing is None:
+    if run.prepared.belt.teeth is None:
         return ()
-    seen = dataset.isel(field_time=-1) if time is None else dataset.sel(field_time=time, method="nearest")
-    now = dataset.sel(time=float(seen["field_time"]), method="nearest")
-    touched, traction = seen["contact_pulley"].values, seen["friction_force"].values
-    pressing = seen["normal_force"].values
-    along, pitch = seen["belt_coordinate"].values, belt.given_pitch
-    cell = cells(along, prepared.belt_length)
+    times = run.dataset["field_time"].values
+    number = times.size - 1 if time is None else int(np.argmin(np.abs(times - time)))
+    return loads_at(InMemory(run.dataset), run.prepared, number)
+
+
+def loads_at(recorded: Recorded, prepared: Prepared, number: int) -> tuple[ToothLoads, ...]:
+    """Loads of teeth at an output along the belt, by its number."""
+    toothing = prepared.belt.toothing
+    if prepared.belt.teeth is None or toothing is None:
+        return ()
+    touched, traction, pressing = (
+        np.asarray(recorded[name][number]) for name in ("contact_pulley", "friction_force", "normal_force")
+    )
+    along, length, pitch = np.asarray(recorded["belt_coordinate"]), prepared.belt_length, prepared.belt.given_pitch
+    cell = cells(along, length)
+    mean = float(np.nanmean(np.asarray(recorded["belt_speed"])[-1]))
+    most = np.nan if toothing.largest_tooth_load is None else toothing.largest_tooth_load
     found = list[ToothLoads]()
     for p, pulley in enumerate(prepared.pulleys):
         here = np.flatnonzero(touched == p)
         if not pulley.teeth or not here.size:
             continue
-        place = np.mod(along[here] - _inlet(along, here, prepared.belt_length), prepared.belt_length)
+        place = np.mod(along[here] - _inlet(along, here, length), length)
         order = np.argsort(place)
-        place, force, share = place[order], traction[here][order], cell[here][order]
-        normal = pressing[here][order]
-        count = max(1, round(float(share.sum()) / pitch))
-        middles = (np.arange(count) + 0.5) * float(share.sum()) / count
-        loads = np.interp(middles, place, pitch * force)
-        pressed = _means(place, share, normal, count) * pitch
-        off = np.abs(_means(place, share, force, count)) * pitch * np.tan(toothing.flank_angle)
-        lifts = off > _LEAST * max(float(np.max(off)), 1e-300)
-        margin = float(np.min(pressed[lifts] / off[lifts])) if np.any(lifts) and toothing.flank_angle > 0.0 else np.inf
-        sense = pulley.turning * np.sign(float(now["belt_speed"].values.mean()) or 1.0)
+        here, place = here[order], place[order]
+        arc = float(cell[here].sum())
+        count = max(1, round(arc / pitch))
+        middles = (np.arange(count) + 0.5) * arc / count
+        pressed, pushed = (_means(place, cell[here], values[here], count) for values in (pressing, traction))
         found.append(
             ToothLoads(
-                pulley.name,
-                float(share.sum()) / pitch,
-                pitch * float(np.max(np.abs(force))),
-                np.nan if toothing.largest_tooth_load is None else toothing.largest_tooth_load,
-                margin,
-                middles / pitch,
-                sense * loads,
+                name=pulley.name,
+                in_mesh=arc / pitch,
+                largest=pitch * float(np.max(np.abs(traction[here]))),
+                allowed=most,
+                jump_margin=_margin(pressed, np.abs(pushed) * np.tan(toothing.flank_angle)),
+                places=middles / pitch,
+                loads=(-1.0 if mean < 0.0 else 1.0) * np.interp(middles, place, pitch * traction[here]),
             )
         )
     return tuple(found)
+
+
+def _margin(pressed: FloatArray, off: FloatArray) -> float:
+    """Least ratio of what presses teeth on to what pushes them off; infinite where nothing does."""
+    lifts = off > _LEAST * np.max(off)
+    return float(np.min(pressed[lifts] / off[lifts])) if np.any(lifts) else np.inf
 
 
 def _inlet(along: FloatArray, here: IntArray, length: float) -> float:

@@ -28,6 +28,7 @@ from beltdyn.system.constant_drive import (
     with_speeds_unknown,
 )
 from beltdyn.system.meshing import fit_phases, has_teeth, led_by, mesh_speeds, on_lengths, phases
+from beltdyn.system.observe import observe
 from beltdyn.system.ring_matrix import clear, substitute
 from beltdyn.system.state import State
 
@@ -75,6 +76,8 @@ _ON_THE_WAY = 1e-6
 """Tolerance of solutions that only lead to others, over the smallest radius.  With 1e-5 Newton's method stops short of
 where no solution is any more, and what a drive transmits comes out 0.2 % too large."""
 _FIRST_LOAD = 0.05
+_FIRST_OF_TEETH = 1.0, 0.1, 0.01
+"""Of the first load, where teeth hold the belt: they do not give way to more than it bears."""
 _SOFT = 0.05
 """Length over which slow changes of the stretch are smoothed at first on another mesh, over that of the drive."""
 _SMOOTHINGS = 10.0, 100.0
@@ -104,6 +107,7 @@ class SteadySearch:
         self.tolerance = TOLERANCE
         self._passed = list[Passed]()
         self._held: int | None = None
+        self._motor: int | None = None
         self._supported: int | None = None
         self._held_speed = self._support = 0.0
         self._moments = np.zeros(system.pulleys.size)
@@ -169,7 +173,7 @@ class SteadySearch:
         driver = self.prepared.drive.driver
         if driver is None:
             return False
-        self._held_speed = self._speed_of(driver)
+        self._held_speed, self._motor = self._speed_of(driver), driver
         self._hold(driver)
         return self._try(Setting()) and self._balance(driver)
 
@@ -208,10 +212,12 @@ class SteadySearch:
         sign there leaves Newton's method no way from a belt at rest.
         """
         bends_with_loss, passed = loses_in_bending(self._system), list[Passed]()
+        loads = [factor * gentle.load for factor in (_FIRST_OF_TEETH if has_teeth(self.constant) else (1.0,))]
         for bending_loss in (1.0, 0.0) if bends_with_loss else (1.0,):
             first = gentle._replace(bending_loss=bending_loss)
             targets = first, first._replace(smoothing=1.0), Setting(bending_loss=bending_loss), Setting()
-            if not any(self._start(place, speed, first._replace(speed=part)) for part in _FIRST_SPEEDS):
+            starts = (first._replace(load=load, speed=part) for load in loads for part in _FIRST_SPEEDS)
+            if not any(self._start(place, speed, start) for start in starts):
                 continue
             self._passed = []
             if all(self.setting == target or self._reach(target) for target in targets):
@@ -222,9 +228,25 @@ class SteadySearch:
 
     def _refusal(self) -> ConvergenceError:
         """Say why there is no steady running."""
+        if has_teeth(self.constant):
+            return ConvergenceError(f"no steady running found at t = {self._time:g} s: {self._jump()}")
         passed = self._refined() or [self._here()]
         reason = slip_limit(self.prepared, self.constant, self._at(Setting()), passed)
         return ConvergenceError(f"no steady running found at t = {self._time:g} s: {reason}")
+
+    def _jump(self) -> str:
+        """Say which pulley is the first to lose a belt with teeth: that with the largest pull over an arc."""
+        here = (self._passed or [self._here()])[-1]
+        seen = observe(self.constant, np.zeros(1), here.state.position[None], here.state.velocity[None])
+        pulls = np.abs(seen.pulley_torque[0]) / self.prepared.radii
+        held = np.array([one.teeth is not None for one in self.prepared.pulleys])
+        worst = int(np.argmax(np.where(held, pulls, 0.0)))
+        return (
+            f"the search ends at {here.setting.load:.1%} of the loads, where "
+            f"`{self.prepared.pulleys[worst].name}` takes {abs(float(seen.pulley_torque[0, worst])):.4g} N m and spans "
+            f"have {float(np.nanmin(seen.span_tension)):.4g} to {float(np.nanmax(seen.span_tension)):.4g} N. The belt "
+            "goes slack or jumps beyond that: raise its tension, reduce the loads, or use a wider belt."
+        )
 
     def _refined(self) -> list[Passed]:
         """What was passed on the way to the loads, with more between where a pulley begins to slip as a whole."""
@@ -277,6 +299,8 @@ class SteadySearch:
                 f"steady running was found with fewer elements, but not with the {other.nodes} required by "
                 "force_tolerance. Increase force_tolerance."
             )
+        if self._motor is not None and not self._balance(self._motor):
+            raise self._refusal()
 
     def friction_band(self, known: Mapping[str, FloatArray] | None = None) -> dict[str, FloatArray]:
         """Ends of the bands in which dry friction may hold tensioners, m or rad; empty without friction.
@@ -383,6 +407,7 @@ class SteadySearch:
     def _release(self, driver: int) -> None:
         """Let a driver turn as its torque says."""
         if has_teeth(self.constant):
+            self._motor = driver
             if not self._balance(driver):
                 raise self._refusal()
             return
@@ -439,8 +464,8 @@ class SteadySearch:
 
     def _at(self, setting: Setting) -> System:
         """The system at a setting."""
-        system = self._system
-        offset, count, driven = system.profiles.segment.offset, system.pulleys.size, self._prescribed.copy()
+        system, segment = self._system, self._system.profiles.segment.copy()
+        offset, count, driven = segment.offset, system.pulleys.size, self._prescribed.copy()
         offset[:] = self._wanted
         if self._held is not None:
             driven[self._held], offset[self._held] = True, self._held_speed
@@ -450,7 +475,11 @@ class SteadySearch:
             offset[self._supported] += setting.support * self._support
         friction, hysteresis = system.law.friction.smoothed(setting.smoothing), system.hysteresis.copy()
         hysteresis["stretch_length"] *= setting.stretch_length
-        system = system._replace(law=system.law._replace(friction=friction), hysteresis=hysteresis)
+        system = system._replace(
+            law=system.law._replace(friction=friction),
+            hysteresis=hysteresis,
+            profiles=system.profiles._replace(segment=segment),
+        )
         return system if setting.bending_loss == 1.0 else with_bending_loss(system, setting.bending_loss)
 
 

@@ -21,7 +21,12 @@ BELT: Any = SimpleNamespace(
     bending_loss_factor=0.1,
 )
 DRIVE: Any = SimpleNamespace(
-    belt=BELT, belt_length=LENGTH, pulleys=range(3), reference=0, radii=RADII, contact_stiffness=1e9
+    belt=BELT,
+    belt_length=LENGTH,
+    pulleys=[SimpleNamespace(teeth=None)] * 3,
+    reference=0,
+    radii=RADII,
+    contact_stiffness=1e9,
 )
 TENSION = np.array([30.0, 50.0, 90.0])
 """Of the spans that leave the pulleys: the tight one reaches the first pulley, which drives."""
@@ -103,3 +108,11 @@ def test_bending_is_by_the_stretch_that_is_lost_before_the_belt_touches() -> Non
     straight = SimpleNamespace(**vars(BELT) | {"element_kind": SimpleNamespace(bent_strain=0.0)})
     limp: Any = SimpleNamespace(**vars(DRIVE) | {"belt": straight})
     assert not slip_parts(RIM, TENSION, NOTHING, 1.0, limp).bending.any()
+
+
+def test_teeth_do_not_creep() -> None:
+    toothed: Any = SimpleNamespace(**vars(DRIVE) | {"pulleys": [SimpleNamespace(teeth=20)] * 3})
+    parts = slip_parts(RIM, TENSION, NOTHING, 1.0, toothed)
+    np.testing.assert_array_equal(parts.elastic_creep, NOTHING)
+    np.testing.assert_array_equal(parts.bending, NOTHING)
+    np.testing.assert_allclose(parts.regularization, parts.slip, atol=1e-15)

@@ -60,4 +60,24 @@ def test_toothed_pulleys_do_not_slip(run: Run) -> None:
 
 def test_rest_has_no_tooth_loads(run: Run) -> None:
     with pytest.raises(ModelError, match="loads of teeth need results over time"):
-        tooth_loads(bd.equilibrium(run.drive))  # type: ignore[arg-type]
+        tooth_loads(bd.equilibrium(run.drive))
+
+
+def test_overloaded_and_lifted_teeth_are_told(run: Run) -> None:
+    assert not any("teeth" in warning for warning in run.warnings)
+    toothing = run.drive.belt.toothing
+    assert toothing is not None
+    weak = toothing.replace(largest_tooth_load=5.0, flank_angle=1.3)
+    told = bd.steady_state(run.drive.with_({"belt.toothing": weak})).warnings
+    assert [text.split()[:3] for text in told] == [["teeth", "lift", "off"], ["a", "tooth", "carries"]]
+    assert "the belt allows 5 N" in told[1]
+
+
+def test_a_motor_drives_teeth_at_the_speed_of_its_torque(run: Run) -> None:
+    motor = {"kind": "motor", "breakdown_torque": 20.0, "breakdown_slip": 0.2, "synchronous_speed": "1500 rpm"}
+    driven = {"speed": None, "inertia": 1e-3, "load": [motor]}
+    drive = run.drive.with_({f"pulley[driver].{key}": value for key, value in driven.items()})
+    end = bd.steady_state(drive).dataset.isel(time=-1)
+    assert end.pulley_speed.values[0] / end.pulley_speed.values[1] == pytest.approx(1.5, rel=1e-12)
+    assert 150.0 < float(end.pulley_speed[0]) < 157.0  # little below its synchronous speed
+    assert float(end.shaft_torque[0]) == pytest.approx(-float(end.pulley_torque[0]), rel=1e-6)

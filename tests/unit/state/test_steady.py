@@ -2,6 +2,7 @@
 
 from importlib.resources import files
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
@@ -245,3 +246,33 @@ def test_the_command_writes_a_result(
     saved = open_result(tmp_path / "drive-steady-state.nc")
     np.testing.assert_allclose(saved.dataset.span_tension, run.dataset.span_tension)
     assert bd.steady_state is steady_state
+
+
+TOOTHED = {"profile": "HTD 8M", "width": "20 mm", "teeth": 100}
+
+
+@pytest.mark.parametrize(
+    ("driver", "driven", "message"),
+    [
+        (
+            {"teeth": 24, "speed": 1.0},
+            {"teeth": 36, "speed": 1.0},
+            "driver and driven have prescribed speeds and teeth",
+        ),
+        (
+            {"radius": 0.027, "speed": 1.0},
+            {"teeth": 36, "inertia": 1.0},
+            "driver drives a belt with teeth, but has none",
+        ),
+        (
+            {"teeth": 24, "speed": 1.0},
+            {"teeth": 36, "inertia": 1.0, "torque": -900.0},
+            "the search ends at .* of the loads, where .* takes .* N m and spans have .* The belt goes slack or jumps",
+        ),
+    ],
+)
+def test_belts_with_teeth_that_do_not_run(driver: dict[str, Any], driven: dict[str, Any], message: str) -> None:
+    pulleys = [{"name": "driver", "center": [0.0, 0.0], **driver}, {"name": "driven", "center": [0.28, 0.0], **driven}]
+    drive = Drive(belt=TOOTHED, pulley=pulleys, contact={"friction": 0.3}, simulation={"duration": 1.0})
+    with pytest.raises((ModelError, ConvergenceError), match=message):
+        steady_state(drive)

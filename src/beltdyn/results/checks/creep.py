@@ -31,7 +31,9 @@ def impossible_slip(evidence: Evidence) -> Iterator[Finding]:
     if not (driver.power > 0.0 and evidence.window.turns and np.isfinite(driver.slip)):
         return
     faults, worst = [], 0.0
-    for pulley in evidence.pulleys:
+    for pulley, given in zip(evidence.pulleys, evidence.prepared.pulleys, strict=True):
+        if given.teeth is not None:
+            continue
         slip, elastic, slid = (
             1.0 - (1.0 - own) / (1.0 - others)
             for own, others in (

@@ -135,6 +135,8 @@ def _at_rest(drive: Drive) -> tuple[Drive, Installation]:
     """The drive, with the length or take-up that was found, and its belt at rest."""
     from beltdyn.state.installation import bring_to_rest
 
+    if drive.belt.teeth is not None:
+        return drive, install(drive)
     try:
         rest = bring_to_rest(drive)
     except ConvergenceError:

@@ -1,0 +1,35 @@
+"""What the page of the timing drive says in numbers, beside a hand calculation; see `docs/example_numbers.py`."""
+
+from collections.abc import Iterator
+from math import cosh, pi, sinh, sqrt
+
+from example_numbers import RPM, Number
+
+from beltdyn import Run
+from beltdyn.results import summarize, tooth_loads
+
+
+def timing_drive(run: Run) -> Iterator[Number]:
+    """Ratios of teeth, pulls of the loads, and the load of the first tooth on the camshaft by load sharing."""
+    belt, pulleys, spans = run.drive.belt, summarize(run).pulleys, [one.tension for one in summarize(run).spans]
+    toothing = belt.toothing
+    assert toothing is not None
+    radii = [one.teeth * toothing.pitch / (2.0 * pi) if one.teeth else 0.0 for one in run.drive.pulleys]
+    pump = 800.0 / (3000.0 * RPM) * (22.0 / 24.0) ** 2
+    pull = 14.0 / radii[2] + pump / radii[3]
+    yield Number("speed of the camshaft, rpm", 1500.0, pulleys[2].speed / RPM, 1e-9)
+    yield Number("tension across the crankshaft, N", pull, spans[3] - spans[0], 0.02 * pull)
+    torque = pull * radii[0]
+    yield Number("torque of the crankshaft, N m", torque, pulleys[0].shaft_torque, 0.02 * torque)
+    loads = {one.name: one for one in tooth_loads(run)}
+    mesh = 22.0 * pulleys[0].wrap_angle / (2.0 * pi)
+    yield Number("teeth in mesh on the crankshaft", mesh, loads["crankshaft"].in_mesh, 0.02 * mesh)
+    length, shared = (
+        radii[2] * pulleys[2].wrap_angle,
+        sqrt(toothing.pitch * belt.axial_stiffness / toothing.tooth_stiffness),
+    )
+    momentum, agree = belt.mass_per_length * (radii[0] * 3000.0 * RPM) ** 2, 0.5 * (belt.measuring_force or 0.0)
+    before, after = spans[1] - momentum - agree, spans[2] - momentum - agree
+    slope = (after * cosh(length / shared) - before) / (shared * sinh(length / shared))
+    first = toothing.pitch * slope
+    yield Number("largest tooth load on the camshaft, N", first, loads["camshaft"].largest, 0.05 * first)
