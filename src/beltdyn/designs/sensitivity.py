@@ -67,7 +67,8 @@ class Number(NamedTuple):
 def numbers_of(part: Part, path: str = "") -> Iterator[Number]:
     """The numbers of a drive that can be changed a little, with their paths; zeros only where they are coordinates."""
     for key, value in part.arguments.items():
-        yield from _numbers_in(value, f"{path}.{key}" if path else key)
+        if key not in part.following:
+            yield from _numbers_in(value, f"{path}.{key}" if path else key)
 
 
 def _numbers_in(value: object, path: str) -> Iterator[Number]:

@@ -192,6 +192,11 @@ class Pulley(Part):
             )
         return {**data, "side": "outside"}
 
+    @property
+    def following(self) -> tuple[str, ...]:
+        """The radius of a pulley with teeth follows from these."""
+        return () if self.teeth is None else ("radius",)
+
     def merged(self, changes: Mapping[str, Any]) -> dict[str, Any]:
         """As for any part; other teeth give another radius, which the drive finds."""
         arguments = super().merged(changes)

@@ -209,6 +209,11 @@ class Part(BaseModel):
             if not (values[name] is None and field.default is None)
         }
 
+    @property
+    def following(self) -> tuple[str, ...]:
+        """Arguments that follow from others, and cannot be changed alone."""
+        return ()
+
     def replace(self, **changes: Any) -> Self:
         """Make a validated copy with some values changed.
 

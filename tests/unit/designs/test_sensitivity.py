@@ -191,3 +191,10 @@ def test_a_measured_curve_has_no_stiffness_of_its_own(loaded: Drive) -> None:
     curved = loaded.with_({"belt.stretch_curve": curve})
     with pytest.raises(ModelError, match=r"belt\.axial_stiffness = .* is the initial slope of"):
         chosen_numbers(curved, "belt.axial_stiffness", {})
+
+
+def test_the_radius_of_a_pulley_with_teeth_is_no_number_of_its_own() -> None:
+    timing = loads(files("beltdyn").joinpath("examples", "timing_drive.toml").read_text(encoding="utf-8"))
+    paths = {one.path for one in numbers_of(timing)}
+    assert {"pulley[tensioner].radius", "belt.toothing.tooth_stiffness", "belt.toothing.pitch"} <= paths
+    assert "pulley[crankshaft].radius" not in paths
