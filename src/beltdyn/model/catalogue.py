@@ -166,7 +166,8 @@ def find_entry(catalogue: Mapping[str, Entry], profile: str) -> Entry:
     if entry is None:
         if other := _OTHER_DRIVES.get(_section(profile)):
             raise LookupError(f'profile = "{shorten(profile)}" is not in the catalogue. {other}')
-        like = get_close_matches(profile.lower(), [name.lower() for name in catalogue], n=4, cutoff=0.5)
+        like = get_close_matches(profile.lower(), [name.lower() for name in catalogue], n=10, cutoff=0.5)
+        like = sorted(like, key=lambda name: name[0] != profile[:1].lower())[:4]
         near = [name for name in catalogue if name.lower() in like]
         known = f"Similar names: {', '.join(near)}" if near else f"Choose one of {', '.join(catalogue)}"
         raise LookupError(f'profile = "{shorten(profile)}" is not in the catalogue. {known}')

@@ -73,7 +73,7 @@ CASES: dict[str, tuple[str, tuple[str, ...]]] = {
     "ribs of nothing": ("ribs = 6", ("belt.profile is missing", "the name of the belt's profile")),
     "unknown profile": (
         'profile = "PX"\nribs = 6',
-        ('profile = "PX" is not in the catalogue', "Similar names: PK, PL, PM, ZX", 'catalogue = "file.toml"'),
+        ('profile = "PX" is not in the catalogue', "Similar names: PJ, PK, PL, PM", 'catalogue = "file.toml"'),
     ),
     "profile by number": ("profile = 6\nribs = 6", ("belt.profile = 6 must be text in quotation marks",)),
     # the user's catalogue
