@@ -166,6 +166,12 @@ class Limits(Part):
     least_slip_safety: Ratio | None = Field(
         None, gt=0, description="the least slip safety: the factor on all loads at which gross slip begins"
     )
+    largest_tooth_load: Force | None = Field(
+        None, gt=0, description="the largest force on a tooth of a toothed belt at any time, in N"
+    )
+    least_jump_margin: Ratio | None = Field(
+        None, gt=0, description="the least margin of a tooth to a jump: what presses it on over what pushes it off"
+    )
     largest_utilization: Ratio | None = Field(
         None, gt=0, description="the largest utilization of a pulley: design power over the rated power of the belt"
     )

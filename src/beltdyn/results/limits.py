@@ -14,6 +14,7 @@ from beltdyn.results.means import pulley_means
 from beltdyn.results.result import Result
 from beltdyn.results.run import Run
 from beltdyn.results.schema import in_words, names, runs_steadily
+from beltdyn.results.tooth_loads import loads_over_time
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -87,6 +88,7 @@ def _of_run(run: Result) -> Iterator[Found]:
         tension = np.asarray(recorded["span_tension"])
         pulleys, spans = names(recorded, "pulley"), names(recorded, "span")
         lasts = runs_steadily(recorded) or len(recorded["time"]) == 1
+        loads = list(loads_over_time(recorded, run.prepared))
         time = [""] * len(hub_load) if lasts else [f"at {one:.4g} s" for one in np.asarray(recorded["time"])]
     over = "" if lasts else "mean at the end"
     yield _worst("largest_slip", np.abs([[one.slip for one in means]]), "%", [over], pulleys)
@@ -94,6 +96,11 @@ def _of_run(run: Result) -> Iterator[Found]:
     yield _worst("largest_tension", tension, "N", time, spans)
     yield _worst("least_tension", tension, "N", time, spans)
     yield _worst("least_slip_safety", np.array([[one.slip_safety for one in means]]), "1", [over], pulleys)
+    for key, field in (("largest_tooth_load", "largest"), ("least_jump_margin", "jump_margin")) if loads else ():
+        when = [""] * len(loads) if lasts else [f"at {instant:.4g} s" for instant, _ in loads]
+        by_name = [{one.name: getattr(one, field) for one in teeth} for _, teeth in loads]
+        values = np.array([[found.get(name, np.nan) for name in pulleys] for found in by_name])
+        yield _worst(key, values, "N" if field == "largest" else "1", when, pulleys)
     if run.drive.rated_belt is not None:
         yield _worst("largest_utilization", np.array([[one.utilization for one in means]]), "%", [over], pulleys)
 

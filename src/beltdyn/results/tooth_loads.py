@@ -5,6 +5,7 @@ the force times tan(phi); the tension, less m v^2, presses it on by (T - m v^2) 
 more than it is pressed on lifts, and the belt begins to jump there.
 """
 
+from collections.abc import Iterator
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
@@ -20,6 +21,8 @@ from beltdyn.results.schema import InMemory, Recorded
 if TYPE_CHECKING:
     from beltdyn.results.result import Result
 
+_INSTANTS = 40
+"""Largest number of outputs along the belt that are looked at for extremes."""
 _LEAST = 1e-9
 """Traction of teeth over the largest one, below which nothing lifts them."""
 
@@ -121,6 +124,15 @@ def loads_at(recorded: Recorded, prepared: Prepared, number: int) -> tuple[Tooth
             )
         )
     return tuple(found)
+
+
+def loads_over_time(recorded: Recorded, prepared: Prepared) -> Iterator[tuple[float, tuple[ToothLoads, ...]]]:
+    """Loads of teeth at some outputs along the belt, with their times, s; nothing of a belt without teeth."""
+    if prepared.belt.teeth is None:
+        return
+    times = np.asarray(recorded["field_time"])
+    for number in np.unique(np.linspace(0, times.size - 1, min(times.size, _INSTANTS)).round().astype(int)).tolist():
+        yield float(times[number]), loads_at(recorded, prepared, number)
 
 
 def _margin(pressed: FloatArray, off: FloatArray) -> float:

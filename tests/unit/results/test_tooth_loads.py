@@ -81,3 +81,13 @@ def test_a_motor_drives_teeth_at_the_speed_of_its_torque(run: Run) -> None:
     assert end.pulley_speed.values[0] / end.pulley_speed.values[1] == pytest.approx(1.5, rel=1e-12)
     assert 150.0 < float(end.pulley_speed[0]) < 157.0  # little below its synchronous speed
     assert float(end.shaft_torque[0]) == pytest.approx(-float(end.pulley_torque[0]), rel=1e-6)
+
+
+def test_limits_of_teeth(run: Run) -> None:
+    limited = bd.steady_state(run.drive.with_({"limits.largest_tooth_load": 5.0, "limits.least_jump_margin": 1.5}))
+    found = {one.key: one for one in bd.results.key_numbers(limited)}
+    loads = tooth_loads(limited)
+    assert found["largest_tooth_load"].value == pytest.approx(max(one.largest for one in loads))
+    assert found["least_jump_margin"].value == pytest.approx(min(one.jump_margin for one in loads))
+    assert (found["largest_tooth_load"].passes, found["least_jump_margin"].passes) == (False, True)
+    assert found["largest_tooth_load"].where in ("driver", "driven")

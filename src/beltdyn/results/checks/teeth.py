@@ -6,10 +6,7 @@ import numpy as np
 
 from beltdyn.parts.messages import Finding, listing
 from beltdyn.results.checks.evidence import Evidence
-from beltdyn.results.tooth_loads import ToothLoads, loads_at
-
-_INSTANTS = 40
-"""Largest number of outputs along the belt examined."""
+from beltdyn.results.tooth_loads import ToothLoads, loads_over_time
 
 
 def lifted_teeth(evidence: Evidence) -> Iterator[Finding]:
@@ -45,8 +42,5 @@ def overloaded_teeth(evidence: Evidence) -> Iterator[Finding]:
 
 def _examined(evidence: Evidence) -> Iterator[ToothLoads]:
     """Loads of teeth on all pulleys at some outputs along the belt."""
-    if evidence.prepared.belt.teeth is None:
-        return
-    count = np.asarray(evidence.recorded["field_time"]).size
-    for number in np.unique(np.linspace(0, count - 1, min(count, _INSTANTS)).round().astype(int)).tolist():
-        yield from loads_at(evidence.recorded, evidence.prepared, number)
+    for _, loads in loads_over_time(evidence.recorded, evidence.prepared):
+        yield from loads
