@@ -43,9 +43,10 @@ class PermanentMagnetMotor(Load):
     constants = PERMANENT_MAGNET_MOTOR
     torque_at = motor_torque
     next_kink = limit_reached
+    signed = ("voltage",)
 
     kind: Literal["permanent_magnet_motor"] = Field(description="the kind of load")
-    voltage: Annotated[float, quantity("V")] = Field(description="the voltage, in V, negative to turn clockwise")
+    voltage: Annotated[float, quantity("V")] = Field(description="the voltage, in V, of either sign")
     torque_constant: Annotated[float, quantity("N*m/A")] = Field(gt=0, description="the torque over current, in N*m/A")
     resistance: Annotated[float, quantity("ohm")] = Field(gt=0, description="the resistance, in ohm")
     current_limit: Annotated[float, quantity("A")] = Field(gt=0, description="the largest current, in A")

@@ -69,5 +69,5 @@ def _level(one: Field, data: Mapping[str, Any], drive: Drive | None) -> Any:
     level = _OF_UNITS.get(one.unit, 1.0)
     if one.location[0] == "pulley" and one.location[2] == "torque" and drive is not None:
         pulley = drive.pulleys[int(one.location[1])]
-        return level if drive.running_sense * pulley.turning < 0 else _OPPOSING
+        return level if drive.running_sense * pulley.turning * drive.positive_sense < 0 else _OPPOSING
     return level

@@ -140,7 +140,7 @@ def _pulleys(run: Run, instant: xr.Dataset) -> list[dict[str, float]]:
 
 def _table(run: Run, instant: xr.Dataset) -> Table:
     """Numbers of the pulleys."""
-    speeds, torques = instant["pulley_speed"].values, instant["pulley_torque"].values
+    speeds, torques = (run.drive.positive_sense * instant[name].values for name in ("pulley_speed", "pulley_torque"))
     loads = np.linalg.norm(instant["hub_force"].values, axis=-1)
     rows = [
         (one.name, f"{RPM * speed:z.1f}", f"{torque:z.3g}", f"{load:.1f}")

@@ -100,7 +100,7 @@ def inputs_of(drive: Drive) -> dict[str, Input]:
     That is the speed of each pulley whose speed is prescribed, the torque of each other one, and the coordinates of
     the center of each pulley that no tensioner with a spring carries.
     """
-    made = [_input(pulley, drive.simulation.begin) for pulley in drive.pulleys]
+    made = [_input(pulley, drive.simulation.begin) for pulley in drive.counter_clockwise_pulleys]
     sprung = {one.pulley for one in drive.moving_tensioners}
     made += [
         Input(f"pulley[{one.name}].center[{place}]", one.name, _CENTER_UNIT, f"Center, {axis}: {one.name}", value)

@@ -276,19 +276,22 @@ class _DriveSheet:
             every["tensioner_position"] = (Variable((dim, _TENSIONER), units, "Tensioner position"), full.positions)
             every["tensioner_amplitude"] = (Variable((dim, _TENSIONER), units, "Amplitude of the tensioner"), way)
         if dim == _ROW:
-            force = full.hub_force
+            force, sense = full.hub_force, self._drive.positive_sense
             every |= {
                 "hub_force": (Variable((dim, _PULLEY, "axis"), "N", "Force of the belt on the pulley"), force),
                 "hub_direction": (
                     Variable((dim, _PULLEY), "rad", "Direction of the hub load"),
                     np.arctan2(force[..., 1], force[..., 0]),
                 ),
-                "shaft_torque": (Variable((dim, _PULLEY), "N m", "Shaft torque"), full.torque),
+                "shaft_torque": (Variable((dim, _PULLEY), "N m", "Shaft torque"), sense * full.torque),
                 "power": (
                     Variable((dim, _PULLEY), "W", "Power into the drive"),
                     full.torque * speeds[:, None] / self._radii,
                 ),
-                "pulley_speed": (Variable((dim, _PULLEY), "rad/s", "Pulley speed"), speeds[:, None] / self._radii),
+                "pulley_speed": (
+                    Variable((dim, _PULLEY), "rad/s", "Pulley speed"),
+                    sense * speeds[:, None] / self._radii,
+                ),
             }
         self.variables |= {f"{name}{suffix}": one for name, one in every.items()}
         return full

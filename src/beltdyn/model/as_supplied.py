@@ -2,7 +2,7 @@
 
 from collections.abc import Iterator, Mapping, Sequence
 from math import atan2, cos, degrees, pi, remainder, sin
-from typing import Any
+from typing import Any, Literal
 
 import numpy as np
 from pydantic import ValidationInfo
@@ -12,7 +12,18 @@ from beltdyn.model.belt import Belt, read_side
 from beltdyn.model.pulley import ON_THE_BELT, Diameter, Pulley
 from beltdyn.parts.messages import listing
 from beltdyn.parts.part import Part
-from beltdyn.parts.quantity import Coordinate, Count, Length, Name, Ratio, Torque, TorsionalStiffness
+from beltdyn.parts.quantity import (
+    Coordinate,
+    Count,
+    Length,
+    Name,
+    Ratio,
+    Torque,
+    TorsionalStiffness,
+    with_other_sense,
+)
+
+Rotation = Literal["counter-clockwise", "clockwise"]
 
 _SENSES = {"counter-clockwise": 1.0, "clockwise": -1.0, None: 0.0}
 
@@ -27,6 +38,8 @@ def as_supplied(data: Any, info: ValidationInfo) -> Any:
     if not isinstance(data, Mapping):
         return data
     values = dict(data)
+    if values.get("rotation") == "clockwise" and isinstance(values.get("pulley"), Sequence):
+        values["pulley"] = _in_clockwise_drive(values["pulley"])
     if isinstance(values.get("pulley"), Sequence):
         values["pulley"] = [_with_radius(one, values.get("belt"), info) for one in values["pulley"]]
         values["pulley"] = _with_toothed_radii(values["pulley"], values.get("belt"), info)
@@ -37,6 +50,18 @@ def as_supplied(data: Any, info: ValidationInfo) -> Any:
         if centers:
             values["pulley"] = [_with_center(one, centers) for one in values["pulley"]]
     return values
+
+
+# Senses of rotation
+
+
+def _in_clockwise_drive(given: Any) -> Any:
+    """Values of pulleys with the senses that stand behind numbers exchanged, where positive numbers are clockwise."""
+    if isinstance(given, str):
+        return with_other_sense(given)
+    if isinstance(given, Mapping):
+        return {key: _in_clockwise_drive(one) for key, one in given.items()}
+    return [_in_clockwise_drive(one) for one in given] if isinstance(given, list | tuple) else given
 
 
 # Diameters

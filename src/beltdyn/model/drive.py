@@ -15,7 +15,7 @@ from beltdyn.elements import ELEMENTS, ElementKind
 from beltdyn.errors import ModelError
 from beltdyn.machines import FunctionLoad, MovingTensioner, Tensioner
 from beltdyn.machines.tensioners.registry import AnyTensioner
-from beltdyn.model.as_supplied import as_supplied
+from beltdyn.model.as_supplied import Rotation, as_supplied
 from beltdyn.model.belt import Belt
 from beltdyn.model.completion import Completed, complete
 from beltdyn.model.contact import Contact
@@ -43,7 +43,7 @@ class Drive(Part):
 
     The constructor's arguments are `belt`, `pulley` (a list of pulleys, counter-clockwise), `contact`, `tensioner`,
     `end` and `duty` (lists), `simulation`, `steady` and `limits`, each a part or a mapping of its arguments, `gravity`,
-    and `name` and `description`.
+    `rotation`, and `name` and `description`.
 
     The parts hold only the given values, from which copies (`replace`) and files are made. Derived values are
     attributes of the drive: `belt_length`, also if the tension is given instead; `path` and `centers`, with pulleys of
@@ -82,6 +82,10 @@ class Drive(Part):
     steady: Steady = Field(default_factory=Steady, description="the group [steady], the mesh of steady running")
     limits: Limits = Field(
         default_factory=Limits, description="the group [limits], limits of results for reports; none by default"
+    )
+    rotation: Rotation = Field(
+        "counter-clockwise",
+        description="the sense of rotation in which speeds and torques of pulleys, loads and motors are positive",
     )
     gravity: tuple[Acceleration, Acceleration] = Field(
         (0.0, 0.0), description="the acceleration of gravity as [x, y], in m/s^2"
@@ -204,15 +208,27 @@ class Drive(Part):
         return None
 
     @property
+    def positive_sense(self) -> int:
+        """Sense of positive speeds and torques of the drive file: 1 counter-clockwise, -1 clockwise (`rotation`)."""
+        return -1 if self.rotation == "clockwise" else 1
+
+    @cached_property
+    def counter_clockwise_pulleys(self) -> tuple[Pulley, ...]:
+        """The pulleys with speeds and torques counter-clockwise positive, as equations of motion have them."""
+        return self.pulleys if self.positive_sense > 0 else tuple(one.reversed() for one in self.pulleys)
+
+    @property
     def running_sense(self) -> int:
         """Running sense of the belt by its driver: 1 in the listed order of the pulleys, -1 against it."""
         driver = None if self.driver is None else self.pulleys[self.driver]
-        speed = None if driver is None else driver.speed
-        if driver is None or speed is None:
+        if driver is None:
             return 1
-        times = np.linspace(self.simulation.begin, self.simulation.end, 1001)
-        values = speed.at(times)
-        return -driver.turning if values[np.argmax(np.abs(values))] < 0.0 else driver.turning
+        if driver.speed is None:
+            fastest = max((load.driven_speed for load in driver.load), key=abs)
+        else:
+            values = driver.speed.at(np.linspace(self.simulation.begin, self.simulation.end, 1001))
+            fastest = float(values[np.argmax(np.abs(values))])
+        return self.positive_sense * (-driver.turning if fastest < 0.0 else driver.turning)
 
     @property
     def reference(self) -> int:

@@ -190,7 +190,7 @@ def _tight_side(drive: Drive, installation: Installation) -> Iterator[Finding]:
             f"Its spring holds about {held:.4g} N there, and the loads need {total / speed:.4g} N, which leaves a "
             f"slack-side tension of {max(held - total / speed, 0.0):.4g} N behind {name}, not {held:.4g} N.",
             f"Move it to the span where the belt leaves {name}, or reverse {name}: speeds are positive "
-            "counter-clockwise.",
+            f"{drive.rotation}.",
         )
 
 

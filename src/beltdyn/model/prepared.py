@@ -49,7 +49,8 @@ class Prepared:
     belt: Belt
     """The belt with its length, and with the number and kind of elements of that mesh."""
     pulleys: tuple[Pulley, ...]
-    """The pulleys where fixed tensioners hold them, with spring-loaded tensioners at zero."""
+    """The pulleys where fixed tensioners hold them, with spring-loaded tensioners at zero; speeds and torques are
+    counter-clockwise positive."""
     contact: Contact
     """Contact with stiffness, damping and the parameters of friction."""
     tensioners: tuple[Tensioner, ...]
@@ -278,7 +279,7 @@ def prepare(drive: Drive) -> Prepared:
         drive=drive,
         frame=drive.frame,
         belt=completed.belt,
-        pulleys=completed.pulleys,
+        pulleys=completed.pulleys if drive.positive_sense > 0 else tuple(one.reversed() for one in completed.pulleys),
         contact=completed.contact,
         tensioners=completed.tensioners,
         path=completed.path,

@@ -91,8 +91,8 @@ class Pulley(Part):
 
     With `speed` the motion of its shaft is prescribed; without, it turns freely with its `inertia` under the belt,
     `torque` and its loads. The shaft is the rim itself, or the last body of the hub chain behind the rim. Speeds and
-    torques are positive counter-clockwise, and `torque` is what is applied to the shaft: a load that opposes a
-    counter-clockwise motion is negative.
+    torques are positive in the sense of `Drive.rotation`, by default counter-clockwise, and `torque` is what is applied
+    to the shaft: a load that opposes a positive motion is negative.
 
     Examples
     --------
@@ -279,6 +279,16 @@ class Pulley(Part):
                     f"hub[{number}] has no inertia, but the body behind it turns freely. Give an inertia above zero"
                 )
         return self
+
+    def reversed(self) -> Self:
+        """The pulley with its speed, torques, loads and couplings in the opposite sense of rotation."""
+        return self.replace(
+            speed=self.speed and self.speed.reversed(),
+            torque=self.torque and self.torque.reversed(),
+            harmonics=tuple(wave.reversed() for wave in self.harmonics),
+            load=tuple(load.reversed() for load in self.load),
+            hub=tuple(link.reversed() for link in self.hub),
+        )
 
     @property
     def turning(self) -> int:

@@ -29,6 +29,7 @@ _TURNS = re.compile(r"(?:U|rev|1) ?/ ?min|min(?:\^|\*\*)?-1|min⁻¹")
 """Other spellings of rpm for angular speeds."""
 _SENSE = re.compile(r"(?P<rest>.*?)\s+(?P<sense>clockwise|cw|counter-clockwise|ccw)\s*", re.DOTALL)
 """The sense of a speed or torque, for clockwise drives with positive numbers."""
+_CLOCKWISE = ("clockwise", "cw")
 _WITH_SENSE = frozenset({"rad/s", "N*m"})
 _CELSIUS = re.compile("°\\s?C")
 """The degree Celsius, whose sign no name of a unit has."""
@@ -59,7 +60,7 @@ def _registry() -> "pint.UnitRegistry[float]":
 def to_si(text: str, unit: str) -> float:
     """Convert a text such as ``"25 mm"``, or ``"800 rpm clockwise"``, into a number in `unit`."""
     if unit in _WITH_SENSE and len(text) <= _LONGEST_TEXT and (match := _SENSE.fullmatch(text)):
-        return to_si(match["rest"], unit) * (-1.0 if match["sense"] in ("clockwise", "cw") else 1.0)
+        return to_si(match["rest"], unit) * (-1.0 if match["sense"] in _CLOCKWISE else 1.0)
     nominal, tolerance = _without_tolerance(text, unit)
     match = _NUMBER.fullmatch(nominal) if len(text) <= _LONGEST_TEXT else None
     if match is None:
@@ -84,6 +85,14 @@ def to_si(text: str, unit: str) -> float:
     if not _UNIT.fullmatch(given):
         raise ValueError(f'has an unreadable unit. Write for example "{number:g} {unit}"')
     return _convert(number, given, unit)
+
+
+def with_other_sense(text: str) -> str:
+    """A number and its unit with the opposite sense behind it; any other text as it is."""
+    match = _SENSE.fullmatch(text) if len(text) <= _LONGEST_TEXT else None
+    if match is None or not _NUMBER.fullmatch(match["rest"]):
+        return text
+    return f"{match['rest']} {'counter-clockwise' if match['sense'] in _CLOCKWISE else 'clockwise'}"
 
 
 def is_unit(text: str) -> bool:

@@ -61,7 +61,7 @@ class QuasiSteady:
 
     def belt_speed(self, drive: Drive, torques: Torques) -> float:
         """Belt speed by the driver's prescribed speed, or where its motors balance the torques, m/s."""
-        pulley, radius = drive.pulleys[self.driver], float(self._radii[self.driver])
+        pulley, radius = drive.counter_clockwise_pulleys[self.driver], float(self._radii[self.driver])
         if pulley.speed is not None:
             return float(pulley.speed.at([0.0])[0]) * radius
         limit = max((load.driven_speed for load in pulley.load), key=abs)
@@ -125,7 +125,7 @@ class QuasiSteady:
 
 def torque_of(drive: Drive, number: int, speed: float) -> float:
     """Torque of a shaft and its loads at its speed (rad/s), N m, with schedules as they are held."""
-    pulley = drive.pulleys[number]
+    pulley = drive.counter_clockwise_pulleys[number]
     found = 0.0 if pulley.torque is None else float(pulley.torque.at([0.0])[0])
     for load in pulley.load:
         factor = 1.0 if load.factor is None else float(load.factor.at([0.0])[0])

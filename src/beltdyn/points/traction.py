@@ -163,7 +163,7 @@ def _driven_by_speed(drive: Drive, force_tolerance: float | None) -> Drive:
     if drive.pulleys[driver].prescribed:
         return drive
     run = steady_state(drive, force_tolerance=force_tolerance)
-    return at_speed(drive, driver, float(run.dataset["shaft_speed"][-1, driver]))
+    return at_speed(drive, driver, drive.positive_sense * float(run.dataset["shaft_speed"][-1, driver]))
 
 
 def _loaded(drive: Drive, driver: int) -> int:

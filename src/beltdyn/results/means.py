@@ -27,7 +27,7 @@ class PulleySummary:
     name: str
     """Name of the pulley."""
     speed: float
-    """Speed, rad/s, counter-clockwise positive."""
+    """Speed, rad/s, positive in the sense of `Drive.rotation`, as are the torques."""
     belt_torque: float
     """Torque of the belt on the pulley, N m."""
     shaft_torque: float
@@ -125,10 +125,11 @@ def pulley_means(recorded: Recorded, prepared: Prepared, window: Window | None =
     power = window.product(recorded, "shaft_torque", "shaft_speed")
     rating = rate(prepared, speed, power, centers)
     rated = np.full(speed.size, np.nan) if rating is None else rating.power
+    sense = prepared.drive.positive_sense
     columns = (
-        speed,
-        belt_torque,
-        shaft_torque,
+        sense * speed,
+        sense * belt_torque,
+        sense * shaft_torque,
         power,
         *parts,
         gross,

@@ -83,7 +83,7 @@ class Settling:
     ) -> Start:
         """Settle."""
         before = self._before(prepared.drive)
-        slower = system._replace(profiles=profile_arrays(before.pulleys))
+        slower = system._replace(profiles=profile_arrays(before.counter_clockwise_pulleys))
         task = drive_task(prepared, slower, state, Statistics())
         window = self._window(prepared.pulleys[self.pulley])
         stops = self.lead + window * np.arange(1, np.ceil(self.longest / window) + 1)

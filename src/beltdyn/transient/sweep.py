@@ -9,7 +9,7 @@ from beltdyn.machines import Constant, FunctionLoad, Load, Profile
 from beltdyn.model import Drive, prepare
 from beltdyn.observation.observer import SlipThrough
 from beltdyn.parts.part import Part
-from beltdyn.parts.quantity import number_in
+from beltdyn.parts.quantity import number_in, with_other_sense
 from beltdyn.results import Run
 from beltdyn.solvers.progress import Report
 from beltdyn.state.settling import Settling
@@ -84,7 +84,7 @@ def sweep(
     >>> run.dataset.pulley_speed.sel(pulley="driver")[-1].round(4).item()  # rad/s
     2.0944
     """
-    start, end = number_in("from", from_, "rad/s"), number_in("to", to, "rad/s")
+    start, end = _speed_in(drive, "from", from_), _speed_in(drive, "to", to)
     length = number_in("duration", duration, "s")
     longest = length if settling is None else number_in("settling", settling, "s")
     steady, held = without_schedules(drive)
@@ -103,6 +103,13 @@ def sweep(
         swept_pulley=pulley,
         held=", ".join(one for one in held if not one.startswith(f"{pulley}.speed = ")),
     )
+
+
+def _speed_in(drive: Drive, name: str, given: float | str) -> float:
+    """A speed, positive in the sense in which speeds of the drive are so."""
+    if isinstance(given, str) and drive.positive_sense < 0:
+        given = with_other_sense(given)
+    return number_in(name, given, "rad/s")
 
 
 def without_schedules(drive: Drive, at: float = _LATE) -> tuple[Drive, list[str]]:

@@ -29,7 +29,7 @@ def speed_waves(drive: Drive, pulley: int) -> dict[float, complex]:
     The speed m (1 + a cos(k m t + phi)) makes the angle a / k sin(k m t + phi) beside m t.
     """
     found = dict[float, complex]()
-    for wave in drive.pulleys[pulley].harmonics:
+    for wave in drive.counter_clockwise_pulleys[pulley].harmonics:
         amplitude = -1j * wave.amplitude / wave.order * exp(1j * wave.phase)
         found[wave.order] = found.get(wave.order, 0.0) + amplitude
     return found
@@ -38,7 +38,7 @@ def speed_waves(drive: Drive, pulley: int) -> dict[float, complex]:
 def torque_waves(drive: Drive, pulley: int, speed: float) -> dict[float, complex]:
     """Waves in the torque of the loads of a shaft."""
     found = dict[float, complex]()
-    for load in drive.pulleys[pulley].load:
+    for load in drive.counter_clockwise_pulleys[pulley].load:
         factor = 1.0 if load.schedule is None else float(load.schedule.at([0.0])[0])
         for order, amplitude in _waves_of(load, speed).items():
             if factor != 0.0:

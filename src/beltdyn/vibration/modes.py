@@ -305,5 +305,8 @@ def _at_speed(drive: Drive, speed: Number, pulley: str | None, at: float | str |
 def _running(run: Run) -> str:
     """The state of steady running in words."""
     driver = run.drive.reference
-    name, speed = run.drive.pulleys[driver].name, float(run.dataset["pulley_speed"][-1, driver])
+    name, speed = (
+        run.drive.pulleys[driver].name,
+        run.drive.positive_sense * float(run.dataset["pulley_speed"][-1, driver]),
+    )
     return f"in steady running with {name} at {RPM * speed:.4g} rpm"

@@ -48,7 +48,7 @@ def test_a_tensioner_carries_one_of_the_pulleys(data: dict[str, Any]) -> None:
 
 
 def test_of_the_drive_itself_only_keys_are_listed(data: dict[str, Any]) -> None:
-    assert [one.key for one in fields(data, ())] == ["name", "description", "project", "author", "gravity"]
+    assert [one.key for one in fields(data, ())] == ["name", "description", "project", "author", "rotation", "gravity"]
 
 
 @pytest.mark.parametrize(

@@ -6,7 +6,7 @@ Zhu and Parker (J. Sound Vib. 279, 2005) put a stiff spring in the place of c x.
 """
 
 from collections.abc import Mapping
-from typing import Any, Literal
+from typing import Any, Literal, Self
 
 import numpy as np
 from pydantic import Field
@@ -102,6 +102,10 @@ class OneWayClutch(HubLink):
         "forward",
         description="the driving sense of the rim; forward is the turning sense of the pulley by an advancing belt",
     )
+
+    def reversed(self) -> Self:
+        """As in the base, driving in the other sense."""
+        return self.replace(drives="backward" if self.drives == "forward" else "forward")
 
     def values(self, turning: int) -> Mapping[str, Any]:
         """Its constants, with the driving sense."""

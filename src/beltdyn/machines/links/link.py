@@ -1,7 +1,7 @@
 """The contract of a link of a hub chain: keys, constants, and torque with exact derivatives."""
 
 from collections.abc import Callable, Mapping
-from typing import TYPE_CHECKING, Any, ClassVar, NamedTuple
+from typing import TYPE_CHECKING, Any, ClassVar, NamedTuple, Self
 
 import numpy as np
 from pydantic import Field
@@ -51,6 +51,10 @@ class HubLink(Part):
     def values(self, _turning: int) -> Mapping[str, Any]:
         """Its constants on a pulley turned counter-clockwise (1) or clockwise (-1) by the advancing belt."""
         return {name: getattr(self, name) for name in self.constants.names or ()}
+
+    def reversed(self) -> Self:
+        """The coupling in a drive that runs in the opposite sense; by default the same."""
+        return self
 
     @property
     def factor(self) -> Profile | None:

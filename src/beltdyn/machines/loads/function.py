@@ -1,10 +1,10 @@
 """A torque as a Python function of time, angle and speed; derivatives given or by central differences."""
 
 from collections.abc import Callable, Mapping, Sequence
-from typing import Any, Literal
+from typing import Any, Literal, Self
 
 import numpy as np
-from pydantic import Field, field_serializer, field_validator
+from pydantic import Field, PrivateAttr, field_serializer, field_validator
 
 from beltdyn.arrays import FloatArray
 from beltdyn.errors import ModelError
@@ -19,6 +19,7 @@ FUNCTION = record(
     torque="i8",  # address of the torque
     by_angle="i8",  # of its derivatives, zero without
     by_speed="i8",
+    sense="f8",  # of positive angles, speeds and torques of the function: 1 counter-clockwise, -1 clockwise
 )
 
 _STEP = 1e-5
@@ -36,8 +37,8 @@ def torque_of_function(constants: np.record, _numbers: FloatArray, shaft: ShaftS
     shaft
         Its time, angle and speed count.
     """
-    time, angle, speed = shaft.time, shaft.angle, shaft.speed
-    torque = call_at(constants.torque, time, angle, speed)
+    time, angle, speed = shaft.time, constants.sense * shaft.angle, constants.sense * shaft.speed
+    torque = constants.sense * call_at(constants.torque, time, angle, speed)
     if constants.by_angle != 0:
         by_angle = call_at(constants.by_angle, time, angle, speed)
         return LoadTorque(torque, by_angle, call_at(constants.by_speed, time, angle, speed), 0.0)
@@ -68,6 +69,7 @@ class FunctionLoad(Load):
 
     constants = FUNCTION
     torque_at = torque_of_function
+    signed = ("drives_to",)
 
     kind: Literal["function"] = Field("function", description="the kind of load")
     function: Any = Field(description="the torque as a function of time, angle and speed, in N*m")
@@ -82,6 +84,8 @@ class FunctionLoad(Load):
     drives_to: AngularSpeed = Field(
         0.0, description="the speed up to which it drives the shaft, in rad/s; 0 for a load"
     )
+
+    _sense: float = PrivateAttr(1.0)
 
     @field_validator("function")
     @classmethod
@@ -110,8 +114,14 @@ class FunctionLoad(Load):
         """Whether it comes from a file, which keeps only the name of the function."""
         return isinstance(self.function, str)
 
+    def reversed(self) -> Self:
+        """As in the base: the function is called with the opposite angle and speed."""
+        other = super().reversed()
+        other._sense = -self._sense
+        return other
+
     def values(self) -> Mapping[str, Any]:
-        """Addresses of the functions."""
+        """Addresses of the functions, and their sense."""
         if self.only_named:
             raise ModelError(
                 f'the function "{self.function}" of a load is not in the file, which holds only its name. In Python, '
@@ -119,7 +129,7 @@ class FunctionLoad(Load):
             )
         functions: list[Callable[[float, float, float], float]] = [self.function, *(self.derivatives or ())]
         addresses = [address_of(one) for one in functions]
-        return dict(zip(self.constants.names or (), addresses, strict=False))
+        return {**dict(zip(self.constants.names or (), addresses, strict=False)), "sense": self._sense}
 
     @property
     def orders(self) -> Sequence[float]:

@@ -123,12 +123,13 @@ class InductionMotor(Load):
     """
 
     constants = INDUCTION_MOTOR
+    signed = ("rated_speed",)
     torque_at = induction_torque
     next_kink = limit_reached
 
     kind: Literal["induction_motor"] = Field(description="the kind of load")
     rated_power: Power = Field(gt=0, description="the mechanical power at the rated speed, in W")
-    rated_speed: AngularSpeed = Field(description="the speed at rated power, in rad/s, negative for clockwise rotation")
+    rated_speed: AngularSpeed = Field(description="the speed at rated power, in rad/s, of either sign")
     frequency: Frequency = Field(
         50.0, gt=0, description="the rated frequency of the supply, in Hz; it gives the number of poles"
     )

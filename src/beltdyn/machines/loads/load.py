@@ -1,7 +1,7 @@
 """The contract of a load or motor: keys, constants, torque with exact derivatives, and kinks."""
 
 from collections.abc import Callable, Mapping, Sequence
-from typing import TYPE_CHECKING, Any, ClassVar, NamedTuple
+from typing import TYPE_CHECKING, Any, ClassVar, NamedTuple, Self
 
 import numpy as np
 from pydantic import Field
@@ -104,6 +104,9 @@ class Load(Part):
     rate_at: ClassVar[Callable[[np.record, FloatArray, ShaftState], StateRate]] = no_state
     """Kernel: the rate of the state of its controller, from constants, numbers and the state of the shaft."""
 
+    signed: ClassVar[tuple[str, ...]] = ()
+    """Fields whose sign is that of the sense of rotation: a number or a profile each."""
+
     if TYPE_CHECKING:
         kind: str
 
@@ -113,6 +116,12 @@ class Load(Part):
     def values(self) -> Mapping[str, Any]:
         """Values of its constants."""
         return {name: getattr(self, name) for name in self.constants.names or ()}
+
+    def reversed(self) -> Self:
+        """The load in the opposite sense of rotation: its torque changes sign with angle and speed."""
+        given = {name: getattr(self, name) for name in self.signed}
+        changed = {name: one.reversed() if isinstance(one, Profile) else -one for name, one in given.items()}
+        return self.replace(**changed, harmonics=tuple(wave.reversed() for wave in self.harmonics))
 
     @property
     def numbers(self) -> Sequence[float] | FloatArray:

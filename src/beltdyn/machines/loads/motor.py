@@ -65,12 +65,13 @@ class Motor(Load):
     """
 
     constants = MOTOR
+    signed = ("synchronous_speed",)
     torque_at = kloss
 
     kind: Literal["motor"] = Field(description="the kind of load")
     breakdown_torque: Torque = Field(gt=0, description="the largest torque, in N*m")
     breakdown_slip: Ratio = Field(gt=0, le=1, description="the slip at the largest torque, 0 to 1")
-    synchronous_speed: AngularSpeed = Field(description="the no-load speed, in rad/s, negative for clockwise rotation")
+    synchronous_speed: AngularSpeed = Field(description="the no-load speed, in rad/s, of either sign")
 
     @model_validator(mode="after")
     def _turns(self) -> Self:
@@ -143,6 +144,7 @@ class ServoMotor(Load):
     """
 
     constants = SERVO_MOTOR
+    signed = ("speed",)
     torque_at = servo_torque
     rate_at = servo_rate
 

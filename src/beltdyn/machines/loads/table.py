@@ -99,6 +99,10 @@ class LoadTable(Load):
         check_points("speeds", self.speeds, "torques", self.torques)
         return self
 
+    def reversed(self) -> Self:
+        """As in the base: the table turned about the origin."""
+        return super().reversed().replace(speeds=_negative(self.speeds), torques=_negative(self.torques))
+
     def values(self) -> Mapping[str, Any]:
         """The number of its points."""
         return {"count": len(self.speeds)}
@@ -107,6 +111,11 @@ class LoadTable(Load):
     def numbers(self) -> Sequence[float]:
         """Speeds, rad/s, then torques, N m."""
         return (*self.speeds, *self.torques)
+
+
+def _negative(ascending: Sequence[float]) -> tuple[float, ...]:
+    """Numbers with the opposite sign in the opposite order."""
+    return tuple(-one for one in ascending[::-1])
 
 
 # A power over speed, as sheets of accessories give it
@@ -369,6 +378,10 @@ class AngleTable(_OverAngle):
         self._check_cycle()
         return self
 
+    def reversed(self) -> Self:
+        """As in the base: the table turned about the origin."""
+        return super().reversed().replace(angles=_negative(self.angles), torques=_negative(self.torques))
+
     @property
     def grid(self) -> tuple[Sequence[float], FloatArray]:
         """One speed, and a column of torques."""
@@ -417,6 +430,11 @@ class AngleSpeedTable(_OverAngle):
             check_points("speeds", self.speeds, "torques", line)
         self._check_cycle()
         return self
+
+    def reversed(self) -> Self:
+        """As in the base: the table turned about the origin."""
+        torques = tuple(_negative(line) for line in self.torques[::-1])
+        return super().reversed().replace(angles=_negative(self.angles), speeds=_negative(self.speeds), torques=torques)
 
     @property
     def grid(self) -> tuple[Sequence[float], FloatArray]:

@@ -35,6 +35,10 @@ class Harmonic(Part):
     amplitude: Ratio = Field(description="the amplitude over the value without harmonics")
     phase: Angle = Field(0.0, description="the phase at angle zero, in rad")
 
+    def reversed(self) -> Self:
+        """The same wave over the opposite angle."""
+        return self.replace(phase=-self.phase)
+
 
 def harmonic_rows(groups: Sequence[Sequence[Harmonic]]) -> tuple[IntArray, Records]:
     """Harmonics of n speeds or torques, concatenated: the first row of each, shape (n + 1,), and rows of `HARMONIC`."""

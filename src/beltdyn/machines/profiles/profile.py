@@ -3,7 +3,7 @@
 from abc import abstractmethod
 from functools import cached_property
 from math import sin
-from typing import Any, ClassVar, Generic
+from typing import Any, ClassVar, Generic, Self
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -35,6 +35,9 @@ class Profile(Part, Generic[Value]):
     multiplies: ClassVar[bool] = True
     """Whether it may be a schedule."""
 
+    proportional: ClassVar[tuple[str, ...]] = ("value",)
+    """Fields to which its values are proportional."""
+
     @classmethod
     def model_parametrized_name(cls, params: tuple[Any, ...]) -> str:
         """Name a profile of any quantity by its kind."""
@@ -63,6 +66,16 @@ class Profile(Part, Generic[Value]):
         zero = max(int(np.searchsorted(segments.start, 0.0, side="left")) - 1, 0)
         segments.integral -= segments.integral[zero] + integral(segments[zero], begins[zero], 0.0)
         return segments
+
+    def reversed(self) -> Self:
+        """The profile with the opposite sign."""
+        given = {name: getattr(self, name) for name in self.proportional}
+        return self.replace(
+            **{
+                name: tuple(-one for one in value) if isinstance(value, tuple) else -value
+                for name, value in given.items()
+            }
+        )
 
     def breakpoints(self) -> tuple[float, ...]:
         """Instants of kinks and jumps that a time integrator must step onto, s; by default none."""

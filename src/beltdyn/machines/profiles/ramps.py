@@ -87,6 +87,8 @@ class Step(Profile[Value], Generic[Value]):
     array([0., 2.])
     """
 
+    proportional = ("before", "value")
+
     kind: Literal["step"] = Field("step", description="the kind of profile")
     time: Time = Field(description="the instant of the step, in s")
     before: Value = Field(cast(Value, 0.0), description="the value before the step")

@@ -29,6 +29,8 @@ class Table(Profile[Value], Generic[Value]):
         json_schema_extra=lambda schema: describe_file(schema, ("times", "values"), "two columns, times and values")
     )
 
+    proportional = ("values",)
+
     kind: Literal["table"] = Field("table", description="the kind of profile")
     times: tuple[Time, ...] = Field(min_length=2, description="the instants of the points, in s")
     values: tuple[Value, ...] = Field(min_length=2, description="the values at these instants")

@@ -101,7 +101,7 @@ def driving_loads(evidence: Evidence) -> Iterator[Finding]:
             f"Efficiency, slip and tensions are those of a drive with {sum(one.power for one in driving):.4g} W input "
             "there.",
             "If the load should absorb power, change its sign: a load is negative on a shaft that turns "
-            "counter-clockwise and positive on one that turns clockwise.",
+            f"{prepared.drive.rotation} and positive on one that turns the other way.",
         )
 
 

@@ -216,7 +216,7 @@ def _operating_point(run: Run) -> str:
     with run.recorded() as recorded:
         over = mean_window(recorded, run.prepared)
         power = over.product(recorded, "shaft_torque", "shaft_speed")
-        speed = RPM * over.mean(recorded, "pulley_speed")
+        speed = run.drive.positive_sense * RPM * over.mean(recorded, "pulley_speed")
         put_in = power_balance(recorded, over).power_in
     first = int(power.argmax()) if put_in > 0.0 else 0
     given = f", {_power(put_in)} input" if put_in > 0.0 else ""

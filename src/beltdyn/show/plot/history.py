@@ -59,8 +59,8 @@ def speeds(run: Run, ax: Axes | None = None) -> Axes:
     >>> bd.plot.speeds(run).get_ylabel()
     'Pulley speed [rad/s]'
     """
-    ax = lines(run.dataset["pulley_speed"], axes_or_new(ax))
-    shafts = run.dataset["shaft_speed"]
+    ax = lines(_in_positive_sense(run, "pulley_speed"), axes_or_new(ax))
+    shafts = _in_positive_sense(run, "shaft_speed")
     for number, pulley in enumerate(run.drive.pulleys):
         if pulley.hub:
             name = f"shaft of {pulley.name}"
@@ -70,6 +70,12 @@ def speeds(run: Run, ax: Axes | None = None) -> Axes:
         scale.set_ylabel("[rpm]")
     name_lines(ax)
     return mark_incidents(run, ax, (GROSS_SLIP,))
+
+
+def _in_positive_sense(run: Run, name: str) -> xr.DataArray:
+    """Speeds or torques of pulleys, positive in the sense in which they are so in the drive file."""
+    values = run.dataset[name]
+    return values.copy(data=run.drive.positive_sense * values.values)
 
 
 @figure(over_time, compares=True)
@@ -93,7 +99,7 @@ def torques(run: Run, ax: Axes | None = None) -> Axes:
     >>> bd.plot.torques(run).get_ylabel()
     'Torque of the belt on the pulley [N·m]'
     """
-    return lines(run.dataset["pulley_torque"], axes_or_new(ax))
+    return lines(_in_positive_sense(run, "pulley_torque"), axes_or_new(ax))
 
 
 @figure(over_time, compares=True)
