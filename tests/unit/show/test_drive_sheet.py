@@ -10,8 +10,8 @@ def test_tables_say_what_suppliers_say() -> None:
     titles = [part.title for part in sheet(result).parts if isinstance(part, Table)]
     assert titles == [
         *("Pulleys", "Spans at rest", "Tensioner of tensioner", "Operating points"),
-        "Hub load N (peak), direction, slip safety",
         "Tension N (peak, with acceleration and vibration)",
+        "Hub load N (peak), direction, slip safety",
         "First modes, at the largest power, with sliding tensioners",
         "Belts of standard length",
     ]
