@@ -28,6 +28,8 @@ _ANGLES = 64
 """Angles over which the torque of a load is averaged."""
 _OFF_NOMINAL = 0.2
 """Change of a spring's force from its preload, over it, from which the given center is not the nominal position."""
+_LIGHT = 0.2
+"""Tension by a preload over that of the measured length below which the preload is doubtful."""
 _HEAVIER = 0.9
 """Inertia of a tensioner without its pulley, over that with it, below which the mass of the pulley counts."""
 _SLACK_SHARE = 0.6
@@ -45,6 +47,7 @@ def judge_plausibility(drive: Drive, installation: Installation) -> Iterator[Fin
     yield from _sides(drive)
     yield from _tight_side(drive, installation)
     yield from _off_nominal(drive, installation)
+    yield from _light_preload(drive, installation)
     yield from _massless(drive)
     yield from _sudden_start(drive, installation)
     yield from _few_teeth(drive, installation)
@@ -244,6 +247,21 @@ def _off_nominal(drive: Drive, installation: Installation) -> Iterator[Finding]:
             "Give center and preload of the same position, for an arm by free_angle; or omit the length of the belt, "
             "which then sets the tensioner to its nominal position.",
         )
+
+
+def _light_preload(drive: Drive, installation: Installation) -> Iterator[Finding]:
+    """A preload that sets the tension far below that under which such belts are measured."""
+    name, force = drive.layout.nominal, drive.belt.value_of("measuring_force")
+    if name is None or force is None or not installation.tension < _LIGHT * 0.5 * force:
+        return
+    one = next(one for one in drive.moving_tensioners if one.pulley == name)
+    unit, usual = "N m" if one.turns else "N", 0.5 * force
+    yield Finding(
+        f"preload = {one.preload:.4g} {unit} of the tensioner of {name} gives {installation.tension:.4g} N, but the "
+        f"length of this belt is measured under {usual:.4g} N.",
+        f"That tension takes {one.preload * usual / installation.tension:.4g} {unit}; a light belt slips under load.",
+        'Check the preload and its unit: "12 N m" is 12,000 N mm.',
+    )
 
 
 def _massless(drive: Drive) -> Iterator[Finding]:

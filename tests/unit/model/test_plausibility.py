@@ -148,6 +148,18 @@ def test_a_center_that_is_not_that_of_the_preload() -> None:
     assert f"not {there.tension:.4g} N at rest" in text
 
 
+def test_a_preload_that_is_a_tenth_of_what_the_belt_needs() -> None:
+    """A spring torque is proportional to the tension at its nominal position: 300 N are half of 100 N a rib."""
+    drive = EXAMPLES["alternator_drive"].with_({"belt.installed_tension": None, "tensioner[1].preload": "14.2 N m"})
+    assert not [one for one in told(drive) if "preload" in one]
+    light = drive.with_({"tensioner[1].preload": "1.42 N m"})
+    tension = install(light).tension
+    (text,) = [one for one in told(light) if "preload" in one]
+    assert f"preload = 1.42 N m of the tensioner of tensioner gives {tension:.4g} N" in text
+    assert "measured under 300 N" in text
+    assert f"takes {1.42 * 300.0 / tension:.4g} N m" in text
+
+
 def test_a_tensioner_without_the_mass_of_its_pulley() -> None:
     """A rim of the moment of inertia J and the radius R has a mass of J / R^2 or more."""
     drive = EXAMPLES["accessory_drive"].with_({"pulley[tensioner].mass": 0.0, "pulley[tensioner].inertia": "6 kg cm^2"})
