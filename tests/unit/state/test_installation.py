@@ -137,20 +137,23 @@ def test_take_up_for_a_tension() -> None:
     np.testing.assert_array_equal(again.centers, rest.drive.centers)
 
 
-@pytest.mark.parametrize(
-    ("tension", "said"),
-    [
-        (600.0, "its spring gives 1700 N, that tension needs 1200 N"),
-        pytest.param(850.0, "the tensioner force gives 8.* N at any belt length", marks=pytest.mark.slow),
-    ],
-)
-def test_a_take_up_of_constant_force_sets_the_tension(tension: float, said: str) -> None:
-    """Far from it there is no balance by hand; near to it no length of the belt has that tension."""
+def conveyor_under(tension: float) -> Drive:
     conveyor = load(str(files("beltdyn").joinpath("examples", "conveyor.toml")))
-    coarse = conveyor.belt.replace(length=None, installed_tension=tension, elements=120)
-    with pytest.raises((ConvergenceError, ModelError), match=said) as error:
-        bring_to_rest(conveyor.replace(belt=coarse))
+    return conveyor.replace(belt=conveyor.belt.replace(length=None, installed_tension=tension, elements=120))
+
+
+def test_a_take_up_of_constant_force_sets_the_tension() -> None:
+    """Far from it there is no balance."""
+    said = "its spring gives 1700 N, that tension needs 1200 N"
+    with pytest.raises(ModelError, match=said) as error:
+        bring_to_rest(conveyor_under(600.0))
     assert "belt.length instead" in str(error.value)
+
+
+@pytest.mark.slow
+def test_a_take_up_of_constant_force_may_miss_the_tension() -> None:
+    """By half a per cent, which bending and contact take."""
+    assert bring_to_rest(conveyor_under(850.0)).tension == pytest.approx(850.0, rel=5e-3)
 
 
 def test_a_run_and_its_file_have_the_length_that_was_found(tmp_path: Any) -> None:
