@@ -3,6 +3,8 @@
 from collections.abc import Callable
 from pathlib import Path
 
+import pytest
+
 from beltdyn.kernel import compiles_quickly, kernel_cache
 from beltdyn.model import example, load
 from beltdyn.state.installation import is_compiled
@@ -17,6 +19,7 @@ def test_kernels_of_usual_drives_are_compiled(run_main: RunMain) -> None:
     assert is_compiled(example("alternator_drive")) or not compiles_quickly()
 
 
+@pytest.mark.slow
 def test_those_of_a_drive_file_are(run_main: RunMain, tmp_path: Path) -> None:
     file = tmp_path / "drive.toml"
     assert run_main(["new", str(file)])[0] == 0
