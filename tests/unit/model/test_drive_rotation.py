@@ -5,6 +5,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+from matplotlib.figure import Figure
 
 import beltdyn as bd
 from beltdyn.machines import Load
@@ -193,7 +194,7 @@ def test_positive_numbers_in_what_is_told_of_a_run() -> None:
     run = bd.steady_state(drive)
     speed = run.dataset["pulley_speed"].sel(pulley="driver")[-1].item()
     assert speed == pytest.approx(-12.0)
-    assert np.asarray(bd.plot.speeds(run).lines[0].get_ydata())[-1] == pytest.approx(12.0)
+    assert np.asarray(bd.plot.speeds(run, Figure().add_subplot()).lines[0].get_ydata())[-1] == pytest.approx(12.0)
     table = run_sheet(run).parts[0]
     assert isinstance(table, Table)
     assert float(table.rows[0][1]) == pytest.approx(12.0 * 30 / np.pi, rel=1e-4)
