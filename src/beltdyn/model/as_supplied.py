@@ -5,11 +5,12 @@ from math import atan2, cos, degrees, pi, remainder, sin
 from typing import Any, Literal
 
 import numpy as np
-from pydantic import ValidationInfo
+from pydantic import Field, ValidationInfo
 
 from beltdyn.machines.tensioners.rotary import ArmAsSupplied, Sense
 from beltdyn.model.belt import Belt, read_side
 from beltdyn.model.pulley import ON_THE_BELT, Diameter, Pulley
+from beltdyn.model.toothing import FEWEST_TEETH, LARGEST_PITCH_ERROR, MOST_TEETH
 from beltdyn.parts.messages import listing
 from beltdyn.parts.part import Part
 from beltdyn.parts.quantity import (
@@ -86,6 +87,10 @@ def _with_radius(pulley: Any, belt: Any, info: ValidationInfo) -> Any:
             f'the {kind} diameter of "{pulley.get("name")}", {1e3 * diameter:.4g} mm, leaves no radius for its '
             "surface. Increase it"
         )
+    return _with_radius(pulley, radius)
+
+
+def _on_radius(pulley: Mapping[str, Any], radius: float) -> dict[str, Any]:
     return {key: value for key, value in pulley.items() if key != "diameter"} | {"radius": radius}
 
 
@@ -114,8 +119,8 @@ _SAME_RADIUS = 1e-6
 
 
 class _Teeth(Part):
-    teeth: Count
-    pitch_error: Ratio = 0.0
+    teeth: Count = Field(ge=FEWEST_TEETH, le=MOST_TEETH)
+    pitch_error: Ratio = Field(0.0, gt=-LARGEST_PITCH_ERROR, lt=LARGEST_PITCH_ERROR)
     radius: Length | None = None
     diameter: Length | None = None
 
@@ -137,7 +142,7 @@ def _with_toothed_radius(pulley: Any, belt: Belt | None) -> Any:
     try:
         own = _Teeth.model_validate({key: given for key in keys if (given := _value(pulley, key)) is not None})
     except ValueError:  # told where the pulley is read
-        return {**pulley, "radius": 1.0} if isinstance(pulley, Mapping) else pulley
+        return _with_radius(pulley, 1.0) if isinstance(pulley, Mapping) else pulley
     if belt is None:
         return {"radius": 1.0, **pulley} if isinstance(pulley, Mapping) else pulley
     if belt.toothing is None:
@@ -159,6 +164,10 @@ def _with_toothed_radius(pulley: Any, belt: Belt | None) -> Any:
             f"{1e3 * pitch:.5g} mm, but the belt has a pitch of {1e3 * belt.toothing.pitch:.5g} mm. Omit radius and "
             "diameter, which follow from the teeth, or give its pitch_error"
         )
+    return _with_radius(pulley, radius)
+
+
+def _with_radius(pulley: Mapping[str, Any], radius: float) -> dict[str, Any]:
     return {key: value for key, value in pulley.items() if key != "diameter"} | {"radius": radius}
 
 

@@ -41,7 +41,7 @@ from beltdyn.model.catalogue import Entry, read_catalogue
 from beltdyn.model.fatigue import CordFatigue, RibFatigue
 from beltdyn.model.rating import RatedBelt
 from beltdyn.model.stretch_curve import StretchCurve
-from beltdyn.model.toothing import MOST_OFF, Toothing
+from beltdyn.model.toothing import FEWEST_TEETH, MOST_OFF, MOST_TEETH, Toothing
 from beltdyn.parts.kind_fields import LawKeys, NameOf
 from beltdyn.parts.part import Part
 from beltdyn.parts.quantity import (
@@ -117,8 +117,8 @@ class Belt(Part):
     )
     teeth: Count | None = Field(
         None,
-        ge=4,
-        le=10_000,
+        ge=FEWEST_TEETH,
+        le=MOST_TEETH,
         description="the number of teeth of a toothed belt, which is as long as so many pitches, under measuring_force "
         "if that is given",
     )

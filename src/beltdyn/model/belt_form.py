@@ -15,7 +15,7 @@ from pydantic import Field
 
 from beltdyn.model.catalogue import Entry, find_entry, read_catalogue
 from beltdyn.model.stretch_curve import with_initial_slope
-from beltdyn.model.toothing import Toothing
+from beltdyn.model.toothing import FEWEST_TEETH, MOST_TEETH, Toothing
 from beltdyn.parts.part import Part
 from beltdyn.parts.quantity import AxialStiffness, BendingStiffness, Count, Length, MassPerLength
 from beltdyn.stretch import LAWS
@@ -136,7 +136,7 @@ def _length_of_teeth(values: Mapping[str, Any]) -> dict[str, float]:
 
 
 class _Teeth(Part):
-    teeth: Count
+    teeth: Count = Field(ge=FEWEST_TEETH, le=MOST_TEETH)
 
 
 class _Offset(Part):

@@ -19,6 +19,7 @@ from beltdyn.machines.profiles.profile import Profile
 from beltdyn.machines.profiles.registry import SpeedProfile, TorqueProfile
 from beltdyn.model.belt import Belt, Side, read_side
 from beltdyn.model.contact import Contact
+from beltdyn.model.toothing import FEWEST_TEETH, LARGEST_PITCH_ERROR, MOST_TEETH
 from beltdyn.parts.kind_fields import OneOf, key_field
 from beltdyn.parts.part import Part
 from beltdyn.parts.quantity import Angle, Coordinate, Count, Inertia, Length, Mass, Name, Ratio
@@ -114,12 +115,15 @@ class Pulley(Part):
     )
     teeth: Count | None = Field(
         None,
-        ge=4,
-        le=10_000,
+        ge=FEWEST_TEETH,
+        le=MOST_TEETH,
         description="the number of teeth for a toothed belt, from which the radius follows; none of a smooth pulley",
     )
     pitch_error: Ratio = Field(
-        0.0, gt=-0.02, lt=0.02, description="the pitch of its teeth over that of the belt, less 1"
+        0.0,
+        gt=-LARGEST_PITCH_ERROR,
+        lt=LARGEST_PITCH_ERROR,
+        description="the pitch of its teeth over that of the belt, less 1",
     )
     surface: AnySurface | None = Field(
         None, description="the surface, a group [pulley.surface], by default a smooth circle of this radius"

@@ -8,6 +8,10 @@ from pydantic import Field
 from beltdyn.parts.part import Part
 from beltdyn.parts.quantity import Angle, Damping, Force, Length, Ratio, Stiffness, Words
 
+FEWEST_TEETH, MOST_TEETH = 4, 10_000
+"""Of a belt or pulley."""
+LARGEST_PITCH_ERROR = 0.02
+"""Of a pulley, relative."""
 MOST_OFF = 0.01
 """Largest difference of a length from a whole number of pitches, relative, that strain and pitch errors explain."""
 

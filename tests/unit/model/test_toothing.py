@@ -63,6 +63,7 @@ def test_a_smooth_pulley_on_the_inside_touches_the_tops_of_teeth() -> None:
     ("changes", "message"),
     [
         ({"teeth": 100.5}, "belt.teeth = 100.5 must be a whole number"),
+        ({"teeth": 10**400}, "must be at most 10000"),
         ({"teeth": None}, "teeth is missing: the belt has teeth of a pitch of 8 mm"),
         ({"length": 0.85}, "length = 850 mm is 106.25 pitches of 8 mm, but teeth = 100"),
         ({"crossed": True}, "crossed = true is incompatible with teeth"),
@@ -80,6 +81,8 @@ def test_belts_that_do_not_fit_their_teeth(changes: dict[str, Any], message: str
     ("driver", "message"),
     [
         ({"teeth": 24.5}, "teeth = 24.5 must be a whole number"),
+        ({"teeth": 10**400}, "must be at most 10000"),
+        ({"teeth": 24, "pitch_error": -1.0, "diameter": 0.06}, "pitch_error = -1.0 must be greater than -0.02"),
         ({"side": "outside"}, 'incompatible with side = "outside": the back of the belt has no teeth'),
         (
             {"diameter": "50 mm"},
