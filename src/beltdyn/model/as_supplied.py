@@ -87,7 +87,7 @@ def _with_radius(pulley: Any, belt: Any, info: ValidationInfo) -> Any:
             f'the {kind} diameter of "{pulley.get("name")}", {1e3 * diameter:.4g} mm, leaves no radius for its '
             "surface. Increase it"
         )
-    return _with_radius(pulley, radius)
+    return _on_radius(pulley, radius)
 
 
 def _on_radius(pulley: Mapping[str, Any], radius: float) -> dict[str, Any]:
@@ -142,7 +142,7 @@ def _with_toothed_radius(pulley: Any, belt: Belt | None) -> Any:
     try:
         own = _Teeth.model_validate({key: given for key in keys if (given := _value(pulley, key)) is not None})
     except ValueError:  # told where the pulley is read
-        return _with_radius(pulley, 1.0) if isinstance(pulley, Mapping) else pulley
+        return _on_radius(pulley, 1.0) if isinstance(pulley, Mapping) else pulley
     if belt is None:
         return {"radius": 1.0, **pulley} if isinstance(pulley, Mapping) else pulley
     if belt.toothing is None:
@@ -164,11 +164,7 @@ def _with_toothed_radius(pulley: Any, belt: Belt | None) -> Any:
             f"{1e3 * pitch:.5g} mm, but the belt has a pitch of {1e3 * belt.toothing.pitch:.5g} mm. Omit radius and "
             "diameter, which follow from the teeth, or give its pitch_error"
         )
-    return _with_radius(pulley, radius)
-
-
-def _with_radius(pulley: Mapping[str, Any], radius: float) -> dict[str, Any]:
-    return {key: value for key, value in pulley.items() if key != "diameter"} | {"radius": radius}
+    return _on_radius(pulley, radius)
 
 
 # Arms of rotary tensioners
