@@ -85,7 +85,7 @@ def layout(drive: Drive, installation: Installation | None = None, ax: Axes | No
         write_pulley(ax, path, number, text, float(np.ptp(extent, axis=0).max()))
     _write_spans(ax, path)
     ax.set(xlabel="x [m]", ylabel="y [m]")
-    name = f"{drive.name}: " if drive.name else ""
+    name = f"{drive.name}\n" if drive.name else ""
     ax.set_title(
         f"{name}belt {drive.belt_length:.5g} m on a path of {path.length:.5g} m, {installation.tension:.4g} N at rest"
     )
