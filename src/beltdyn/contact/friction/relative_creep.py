@@ -5,7 +5,7 @@ creep is a fraction of the belt's speed too, so that one creep ratio s serves fr
 """
 
 from math import sqrt
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -34,6 +34,13 @@ class RelativeCreep(NamedTuple):
         return RelativeCreep(self.creep_ratio * factor, self.standstill_creep * factor)
 
 
+@kernel(inline=True)
+def creep_velocity(law: Any, rim: float) -> float:
+    """The velocity v_c of a law with both keys at a speed of the rim, m/s."""
+    scaled = law.creep_ratio * rim
+    return sqrt(scaled * scaled + law.standstill_creep * law.standstill_creep)
+
+
 @kernel
 def relative_creep(
     law: RelativeCreep, slip: float, normal: float, friction: float, rim: float
@@ -58,15 +65,14 @@ def relative_creep(
     tuple of 4 floats
         f_t (N/m), df_t/dv_t (N s/m^2), df_t/df_n, df_t/dv_r (N s/m^2).
     """
-    scaled = law.creep_ratio * rim
-    creep = sqrt(scaled * scaled + law.standstill_creep * law.standstill_creep)
+    creep = creep_velocity(law, rim)
     if slip > creep:
         return -friction * normal, 0.0, -friction, 0.0
     if slip < -creep:
         return friction * normal, 0.0, friction, 0.0
     share = friction / creep
     force = -share * slip * normal
-    return force, -share * normal, -share * slip, -force * law.creep_ratio * scaled / (creep * creep)
+    return force, -share * normal, -share * slip, -force * law.creep_ratio * (law.creep_ratio * rim) / (creep * creep)
 
 
 CREEP_KEYS = (

@@ -7,14 +7,14 @@ f_t = -mu f_n v_t / v_c up to the creep velocity v_c = sqrt((s v_r)^2 + v_0^2), 
 The negative slope on sliding arcs drives stick-slip and squeal; a ratio r above 1 gives the rising friction of rubber.
 """
 
-from math import exp, sqrt
+from math import exp
 from typing import NamedTuple
 
 from numpy.typing import ArrayLike
 
 from beltdyn.arrays import FloatArray
 from beltdyn.contact.friction.law import FrictionLaw
-from beltdyn.contact.friction.relative_creep import CREEP_KEYS, RelativeCreep
+from beltdyn.contact.friction.relative_creep import CREEP_KEYS, RelativeCreep, creep_velocity, relative_creep
 from beltdyn.kernel import kernel
 from beltdyn.kinds import Parameter, register
 
@@ -69,18 +69,14 @@ def stribeck(
     tuple of 4 floats
         f_t (N/m), df_t/dv_t (N s/m^2), df_t/df_n, df_t/dv_r (N s/m^2).
     """
-    scaled = law.creep_ratio * rim
-    creep = sqrt(scaled * scaled + law.standstill_creep * law.standstill_creep)
-    creep_by_rim = law.creep_ratio * scaled / creep
+    creep = creep_velocity(law, rim)
     if abs(slip) <= creep:
-        share = friction / creep
-        force = -share * slip * normal
-        return force, -share * normal, -share * slip, -force * creep_by_rim / creep
+        return relative_creep(RelativeCreep(law.creep_ratio, law.standstill_creep), slip, normal, friction, rim)
     sign = 1.0 if slip > 0.0 else -1.0
     fall = (1.0 - law.kinetic_ratio) * exp(-(abs(slip) - creep) / law.stribeck_velocity)
     by_normal = -sign * friction * (law.kinetic_ratio + fall)
     by_slip = friction * normal * fall / law.stribeck_velocity
-    return by_normal * normal, by_slip, by_normal, -sign * by_slip * creep_by_rim
+    return by_normal * normal, by_slip, by_normal, -sign * by_slip * law.creep_ratio * (law.creep_ratio * rim) / creep
 
 
 _KEYS = (
