@@ -10,7 +10,7 @@ up to whole grooves, with psi the direction of the tooth from the shaft.  The si
 belt runs around the pulley.
 """
 
-from typing import Final, NamedTuple
+from typing import Any, Final, NamedTuple
 
 from beltdyn.arrays import FloatArray, IntArray
 from beltdyn.kernel import kernel
@@ -83,13 +83,12 @@ class Toothed(NamedTuple):
     """Whether its speed is unknown: 1, or 0 where the phase is in its place."""
 
 
-@kernel
-def toothed_at(rims: ToothedRims, pulley: int, angle: float, passed: float = 0.0) -> Toothed:
-    """A pulley at an angle (rad), when a length of belt (m) has passed the mesh."""
-    row = rims.table[pulley]
-    phase = row.phase + angle - row.rate * passed
+@kernel(inline=True)
+def _toothed(rims: Any, pulley: int, phase: float, by_flow: float, by_speed: float) -> Toothed:
+    """A pulley with its row of the table."""
+    row, radius = rims.table[pulley], rims.radius[pulley]
     return Toothed(
-        rims.radius[pulley],
+        radius,
         row.stiffness,
         row.damping,
         row.half_gap,
@@ -97,25 +96,20 @@ def toothed_at(rims: ToothedRims, pulley: int, angle: float, passed: float = 0.0
         row.rate,
         row.groove,
         phase,
-        1.0,
-        1.0,
+        by_flow,
+        by_speed,
     )
+
+
+@kernel
+def toothed_at(rims: ToothedRims, pulley: int, angle: float, passed: float = 0.0) -> Toothed:
+    """A pulley at an angle (rad), when a length of belt (m) has passed the mesh."""
+    row = rims.table[pulley]
+    return _toothed(rims, pulley, row.phase + angle - row.rate * passed, 1.0, 1.0)
 
 
 @kernel
 def meshing_at(rims: MeshingRims, pulley: int, angle: float, passed: float = 0.0) -> Toothed:
     """A pulley in steady running, at the phase that it has."""
-    row = rims.table[pulley]
-    known = 0.0 if row.stiffness > 0.0 else 1.0
-    return Toothed(
-        rims.radius[pulley],
-        row.stiffness,
-        row.damping,
-        row.half_gap,
-        row.pitch_radius,
-        row.rate,
-        row.groove,
-        rims.phase[pulley],
-        0.0,
-        known,
-    )
+    by_speed = 0.0 if rims.table[pulley].stiffness > 0.0 else 1.0
+    return _toothed(rims, pulley, rims.phase[pulley], 0.0, by_speed)
