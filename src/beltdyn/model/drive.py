@@ -215,7 +215,11 @@ class Drive(Part):
     @cached_property
     def counter_clockwise_pulleys(self) -> tuple[Pulley, ...]:
         """The pulleys with speeds and torques counter-clockwise positive, as equations of motion have them."""
-        return self.pulleys if self.positive_sense > 0 else tuple(one.reversed() for one in self.pulleys)
+        return self.with_counter_clockwise_positive(self.pulleys)
+
+    def with_counter_clockwise_positive(self, pulleys: tuple[Pulley, ...]) -> tuple[Pulley, ...]:
+        """Pulleys of the drive, which may have moved, with speeds and torques counter-clockwise positive."""
+        return pulleys if self.positive_sense > 0 else tuple(one.reversed() for one in pulleys)
 
     @property
     def running_sense(self) -> int:

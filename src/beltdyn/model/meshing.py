@@ -2,7 +2,11 @@
 
 from collections.abc import Sequence
 
+import numpy as np
+
+from beltdyn.arrays import FloatArray
 from beltdyn.model.belt import Belt
+from beltdyn.model.path import Path
 from beltdyn.model.pulley import Pulley
 
 
@@ -26,3 +30,8 @@ def check_teeth(belt: Belt, pulleys: Sequence[Pulley], path_length: float | None
             f"belt.teeth = {belt.teeth} is too short to mesh: the path around the pulleys has {pitches:.2f} pitches of "
             f"{1e3 * belt.toothing.pitch:.5g} mm. Give {round(pitches)} teeth, or move the pulleys closer together"
         )
+
+
+def teeth_in_mesh(belt: Belt, path: Path) -> FloatArray:
+    """Pitches of the belt on the arc of each pulley, shape (pulleys,)."""
+    return np.asarray(np.abs(path.radii) * path.wrap_angles / belt.given_pitch)

@@ -11,6 +11,7 @@ from beltdyn.machines.loads.load import Load
 from beltdyn.model.alignment import judge_alignment
 from beltdyn.model.drive import Drive
 from beltdyn.model.installation import Installation
+from beltdyn.model.meshing import teeth_in_mesh
 from beltdyn.model.prepared import install, prepare
 from beltdyn.model.pulley import Pulley, fastest_rim
 from beltdyn.parts.messages import Finding, listing
@@ -201,8 +202,7 @@ def _few_teeth(drive: Drive, installation: Installation) -> Iterator[Finding]:
     """Pulleys with few teeth in mesh."""
     if drive.belt.teeth is None:
         return
-    path, pitch = installation.path, drive.belt.given_pitch
-    meshes = (np.abs(path.radii) * path.wrap_angles / pitch).tolist()
+    meshes = teeth_in_mesh(drive.belt, installation.path).tolist()
     few = {one.name: mesh for one, mesh in zip(drive.pulleys, meshes, strict=True) if one.teeth and mesh < _FEW_TEETH}
     if few:
         yield Finding(

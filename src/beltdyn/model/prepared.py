@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from beltdyn.arrays import FloatArray
+from beltdyn.arrays import BoolArray, FloatArray
 from beltdyn.contact.friction import FrictionParameters
 from beltdyn.elements import ElementKind
 from beltdyn.errors import ModelError
@@ -206,6 +206,11 @@ class Prepared:
         return layer_length(*layer_lengths(self, tension))
 
     @cached_property
+    def toothed(self) -> BoolArray:
+        """Which pulleys hold the belt by its teeth, shape (pulleys,)."""
+        return np.array([pulley.teeth is not None for pulley in self.pulleys])
+
+    @cached_property
     def laid(self) -> Laid:
         """The belt on its path, with the tensioners as they are at rest."""
         return self.laid_on(self.installation.path)
@@ -279,7 +284,7 @@ def prepare(drive: Drive) -> Prepared:
         drive=drive,
         frame=drive.frame,
         belt=completed.belt,
-        pulleys=completed.pulleys if drive.positive_sense > 0 else tuple(one.reversed() for one in completed.pulleys),
+        pulleys=drive.with_counter_clockwise_positive(completed.pulleys),
         contact=completed.contact,
         tensioners=completed.tensioners,
         path=completed.path,

@@ -80,11 +80,6 @@ def recorded_kind(dataset: "xr.Dataset", prepared: Prepared) -> ElementKind:
     return next(kind for kind in (given, *ELEMENTS.values()) if kind.coordinates == names)
 
 
-def has_teeth(prepared: Prepared) -> BoolArray:
-    """Which pulleys hold a belt by its teeth, shape (pulleys,)."""
-    return np.array([pulley.teeth is not None for pulley in prepared.pulleys])
-
-
 def sliding_velocity(
     slip_velocity: FloatArray, normal: FloatArray, touched: IntArray, pulley_speed: FloatArray, prepared: Prepared
 ) -> FloatArray:
@@ -93,7 +88,7 @@ def sliding_velocity(
     It is sign(v_t) max(abs(v_t) - v_c, 0), with v_c the slip velocity at which friction reaches mu f_n; zero where
     teeth hold the belt. `touched` has pulley numbers, -1 where free.
     """
-    smooth = ~has_teeth(prepared)[touched]
+    smooth = ~prepared.toothed[touched]
     rim = np.take_along_axis(pulley_speed * prepared.radii, touched, axis=-1)
     creep = prepared.friction_parameters.saturation(normal, prepared.frictions[touched], rim)
     beyond = slip_velocity - np.clip(slip_velocity, -creep, creep)

@@ -23,7 +23,7 @@ from numpy.typing import NDArray
 from beltdyn.arrays import BoolArray, FloatArray, IntArray
 from beltdyn.model import Prepared
 from beltdyn.model.path import span_directions, wrap_angles
-from beltdyn.results.mechanics import across, has_teeth
+from beltdyn.results.mechanics import across
 from beltdyn.results.tension_balance import Condition, TensionBalance
 
 STATE = ("span_tension", "belt_speed", "pulley_center")
@@ -62,7 +62,7 @@ def slip_safety_of_states(
     with np.errstate(invalid="ignore", divide="ignore", over="ignore"):
         rough = None if frictions is None else frictions.reshape(-1, pulleys)
         balance = TensionBalance(prepared, *flat, centers.reshape(-1, pulleys, 2), rough)
-        safeties = np.where(has_teeth(prepared), np.nan, _safeties(balance))
+        safeties = np.where(prepared.toothed, np.nan, _safeties(balance))
         return safeties.reshape(*shape, pulleys)
 
 
@@ -75,7 +75,7 @@ def friction_used(tension: FloatArray, belt_speed: FloatArray, centers: FloatArr
     before, after = across(tension - prepared.belt.mass_per_length * belt_speed**2, prepared)
     with np.errstate(invalid="ignore", divide="ignore"):
         ratio = np.log(np.maximum(before, after) / np.maximum(np.minimum(before, after), 0.0))
-        return np.where(has_teeth(prepared), 0.0, ratio / (prepared.frictions * wrap))
+        return np.where(prepared.toothed, 0.0, ratio / (prepared.frictions * wrap))
 
 
 def _safeties(balance: TensionBalance) -> FloatArray:

@@ -10,7 +10,6 @@ from beltdyn.results.mechanics import (
     across,
     cells,
     gross_sliding,
-    has_teeth,
     pressing,
     relative_loss,
     sliding_shares,
@@ -76,7 +75,7 @@ def slip_parts(
     reaching = np.where(rim[..., driver, None] > 0.0, before, after)
     reached, lost = law.stretch(reaching), _entry_loss(reaching, prepared)
     total, sliding = relative_loss(-rim, rim, driver), relative_loss(gross, rim, driver)
-    creeps = ~(has_teeth(prepared) & has_teeth(prepared)[driver])
+    creeps = ~(prepared.toothed & prepared.toothed[driver])
     elastic = np.where(runs[..., None], creeps * (1.0 - reached / reached[..., driver, None]), np.nan)
     bending = np.where(runs[..., None], creeps * (lost - lost[..., driver, None]), np.nan)
     return SlipParts(total, elastic, bending, total - elastic - bending - sliding, sliding)

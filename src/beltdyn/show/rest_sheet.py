@@ -5,6 +5,7 @@ import math
 from beltdyn.model import Drive, Installation, Path, alignment, describe_time, prepare, tensioner_balances
 from beltdyn.model.alignment import is_given
 from beltdyn.model.hysteresis import bending_resistance, compression_losses
+from beltdyn.model.meshing import teeth_in_mesh
 from beltdyn.model.plausibility import other_diameters
 from beltdyn.model.simulation import unused_settings
 from beltdyn.parts.messages import aligned
@@ -173,12 +174,12 @@ def _angle(force: list[float]) -> float:
 def _teeth(drive: Drive, installation: Installation) -> list[tuple[str, ...]]:
     """Rows of pulleys with teeth; their ratio is exact."""
     path, toothed = installation.path, [p for p, one in enumerate(drive.pulleys) if one.teeth]
-    pitch, first = drive.belt.given_pitch, drive.pulleys[toothed[0]].teeth
+    meshes, first = teeth_in_mesh(drive.belt, path), drive.pulleys[toothed[0]].teeth
     return [
         (
             drive.pulleys[p].name,
             f"{drive.pulleys[p].teeth}",
-            f"{abs(path.radii[p]) * path.wrap_angles[p] / pitch:.1f}",
+            f"{meshes[p]:.1f}",
             f"{2e3 * abs(path.radii[p]):.5g}",
             f"{first}/{drive.pulleys[p].teeth}",
         )

@@ -128,7 +128,7 @@ class SteadySearch:
     def _leader(self, held: int | None) -> int:
         """The pulley whose known speed gives that of a belt with teeth, -1 without one."""
         known = [held] if held is not None else np.flatnonzero(self._prescribed).tolist()
-        return next((p for p in known if self.prepared.pulleys[p].teeth), -1)
+        return next((p for p in known if self.prepared.toothed[p]), -1)
 
     def running(self) -> State:
         """The state that was found last, with the twists of hub chains."""
@@ -239,8 +239,7 @@ class SteadySearch:
         here = (self._passed or [self._here()])[-1]
         seen = observe(self.constant, np.zeros(1), here.state.position[None], here.state.velocity[None])
         pulls = np.abs(seen.pulley_torque[0]) / self.prepared.radii
-        held = np.array([one.teeth is not None for one in self.prepared.pulleys])
-        worst = int(np.argmax(np.where(held, pulls, 0.0)))
+        worst = int(np.argmax(np.where(self.prepared.toothed, pulls, 0.0)))
         return (
             f"the search ends at {here.setting.load:.1%} of the loads, where "
             f"`{self.prepared.pulleys[worst].name}` takes {abs(float(seen.pulley_torque[0, worst])):.4g} N m and spans "

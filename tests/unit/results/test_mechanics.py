@@ -28,7 +28,8 @@ CENTERS = np.array([[0.0, 0.0], [0.4, 0.0], [0.2, 0.06]])
 def serpentine(friction: FrictionParameters | None = None) -> Any:
     """Three pulleys of which the belt's back touches the last, with as much of a drive as the formulas ask for."""
     return SimpleNamespace(
-        pulleys=[SimpleNamespace(turning=turning, teeth=None) for turning in (1, 1, -1)],
+        toothed=np.zeros(3, dtype=bool),
+        pulleys=[SimpleNamespace(turning=turning) for turning in (1, 1, -1)],
         radii=np.array([0.1, 0.05, 0.02]),
         rolling_radii=np.array([0.1, 0.05, 0.02]),
         frictions=np.array([0.5, 1.0, 0.3]),

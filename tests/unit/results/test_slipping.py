@@ -23,7 +23,8 @@ BELT: Any = SimpleNamespace(
 DRIVE: Any = SimpleNamespace(
     belt=BELT,
     belt_length=LENGTH,
-    pulleys=[SimpleNamespace(teeth=None)] * 3,
+    pulleys=[SimpleNamespace()] * 3,
+    toothed=np.zeros(3, dtype=bool),
     reference=0,
     radii=RADII,
     contact_stiffness=1e9,
@@ -111,7 +112,7 @@ def test_bending_is_by_the_stretch_that_is_lost_before_the_belt_touches() -> Non
 
 
 def test_teeth_do_not_creep() -> None:
-    toothed: Any = SimpleNamespace(**vars(DRIVE) | {"pulleys": [SimpleNamespace(teeth=20)] * 3})
+    toothed: Any = SimpleNamespace(**vars(DRIVE) | {"toothed": np.ones(3, dtype=bool)})
     parts = slip_parts(RIM, TENSION, NOTHING, 1.0, toothed)
     np.testing.assert_array_equal(parts.elastic_creep, NOTHING)
     np.testing.assert_array_equal(parts.bending, NOTHING)
