@@ -144,3 +144,33 @@ def test_modes_of_a_run_are_those_of_steady_running(over_time: Run) -> None:
     one = bd.modes(bd.steady_state(over_time.drive)).dataset.frequency.values[:6]
     other = bd.modes(over_time, at=0.05).dataset.frequency.values[:6]
     np.testing.assert_allclose(other, one, rtol=2e-3)  # the meshes differ
+
+
+@pytest.fixture(scope="module")
+def travelling() -> Run:
+    given = drive(-10.0)
+    settings = given.simulation.replace(duration=0.02, start="steady", frame="travelling")
+    return bd.simulate(given.replace(simulation=settings, contact={"friction": 0.0}))
+
+
+@pytest.mark.slow  # kernels of a mesh that travels with teeth
+def test_a_mesh_that_travels_runs_as_one_that_stays(travelling: Run, over_time: Run) -> None:
+    seen, other = travelling.dataset, over_time.dataset
+    tension = other.span_tension.isel(time=-1).values
+    # the default mesh resolves tensions to half a per cent of that at rest
+    np.testing.assert_allclose(seen.span_tension.mean("time").values, tension, atol=5e-3 * 100.0)
+    np.testing.assert_allclose(seen.pulley_speed.mean("time").values, [10.0, 10.0], rtol=1e-3)
+    assert float(abs(seen.energy_closure).max()) < 1e-5
+
+
+@pytest.mark.slow
+def test_a_belt_at_rest_on_a_mesh_that_travels_turns_no_pulley() -> None:
+    given = drive(0.0, pitch_error=2e-3)
+    settings = given.simulation.replace(duration=1e-3, frame="travelling")
+    parked = given.pulleys[0].merged({"speed": 0.0})
+    run = bd.simulate(given.replace(simulation=settings, pulley=[parked, given.pulleys[1]], contact={"friction": 0.0}))
+    start = run.dataset.isel(time=0)
+    held, free = np.abs(start.pulley_torque.values)
+    assert free < 1e-9 * 100.0 * RADIUS
+    assert held < 1e-4 * 100.0 * RADIUS  # the mesh, which has no teeth, rests on the pulley that does not turn
+    np.testing.assert_allclose(start.span_tension.values, 100.0, rtol=1e-4)

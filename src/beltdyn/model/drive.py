@@ -157,11 +157,6 @@ class Drive(Part):
                 f"simulation.force_tolerance = {tolerance:g} is incompatible with a travelling mesh, which is not "
                 f"refined; the mesh of this drive travels, {frame.reason}. Remove one of the two"
             )
-        if self.belt.teeth is not None and not frame.stays:
-            raise ValueError(
-                f"belt.teeth = {self.belt.teeth} needs a mesh that stays, through which the belt flows with its teeth; "
-                f"the mesh of this drive travels, {frame.reason}. Remove that setting"
-            )
         if self.ends and frame.stays:
             raise ValueError(
                 'simulation.frame = "staying" is incompatible with an open belt: no belt flows past its ends. Set '

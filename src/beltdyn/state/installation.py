@@ -21,6 +21,7 @@ from beltdyn.solvers.progress import Phase, Progress, Report
 from beltdyn.state.static import find_equilibrium, standing, tensioner_compliance
 from beltdyn.system.arrays import System
 from beltdyn.system.build import drive_system
+from beltdyn.system.meshing import at_phases, fit_phases, has_teeth, without_teeth
 from beltdyn.system.observations import Observations
 from beltdyn.system.observe import observe
 from beltdyn.system.state import State, laid
@@ -288,7 +289,8 @@ def _at_rest(prepared: Prepared) -> Rest:
 
     Where Newton's method does not get there from the laid belt, it follows the equilibria of stiffer or softer contact.
     """
-    system = drive_system(prepared)
+    given = drive_system(prepared)
+    system = without_teeth(given)
 
     def begun(start: float) -> Rest:
         state, failures = _lying(prepared, system, start), list[ConvergenceError]()
@@ -304,9 +306,18 @@ def _at_rest(prepared: Prepared) -> Rest:
 
         if not follow(start, balance):
             raise failures[0]
-        return looked_at(prepared, system, state)
+        return looked_at(prepared, *_in_grooves(given, state))
 
     return from_starts(prepared, begun)
+
+
+def _in_grooves(system: System, state: State) -> tuple[System, State]:
+    """A belt that has found its place on smooth pulleys in their grooves, if it has teeth."""
+    if not has_teeth(system):
+        return system, state
+    fit_phases(system, state)
+    found = find_equilibrium(system, state)
+    return at_phases(system, found.phases), found.state
 
 
 def from_starts(prepared: Prepared, begun: Callable[[float], Found]) -> Found:

@@ -8,7 +8,6 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from beltdyn.arrays import FloatArray
-from beltdyn.contact.surface import ToothedRims
 from beltdyn.kernel import interpreted
 from beltdyn.machines.profiles.functions import go_on, profile_integral
 from beltdyn.model import Drive, Prepared, Pulley
@@ -25,7 +24,7 @@ from beltdyn.state.staying import FINER, Standing, anchor_at, bring_to_stand, st
 from beltdyn.system.arrays import System
 from beltdyn.system.build_machines import profile_arrays
 from beltdyn.system.build_staying import flowing_system, on_other_mesh
-from beltdyn.system.meshing import TOOTH_PHASES, turning
+from beltdyn.system.meshing import tooth_phases, turning
 from beltdyn.system.observe import observe_motion
 from beltdyn.system.state import State
 
@@ -212,8 +211,7 @@ def begin_flowing(prepared: Prepared, progress: Report | None) -> Beginning:
     flowing = with_angles(meshed.rest.prepared, flowing_system(toothed, direction))
     errors = meshed.errors or {"peak pressure": float("nan")}  # not known
     said = {mesh_error_attribute(name): error for name, error in errors.items()} | {DIRECTION: direction}
-    if isinstance(toothed.rims, ToothedRims):
-        said[TOOTH_PHASES] = toothed.rims.table.phase.copy()
+    said |= tooth_phases(toothed)
     return Beginning(meshed.rest.prepared, flowing, with_passage(system, meshed.state, meshed.speed), attributes=said)
 
 

@@ -18,6 +18,7 @@ from beltdyn.errors import ConvergenceError
 from beltdyn.records import Records
 from beltdyn.solvers.engine import correct, linearise
 from beltdyn.system.arrays import Equations, Motion, System, TangentFactors
+from beltdyn.system.meshing import phases, toothed_pulleys, unloaded
 from beltdyn.system.motion import new_equations, no_multipliers
 from beltdyn.system.state import State
 
@@ -38,6 +39,8 @@ class Equilibrium:
     state: State
     iterates: FloatArray
     norms: FloatArray
+    phases: FloatArray
+    """Phases of the grooves of pulleys, rad, of a belt with teeth, or none."""
 
     @property
     def iterations(self) -> int:
@@ -55,7 +58,8 @@ def find_equilibrium(
     """Find a static equilibrium of a belt from a resting initial state; "newton" is the plain iteration of the paper.
 
     Pulleys do not turn: the belt slides on them without friction, unless `start` gives them speeds, with which they rub
-    on the resting belt. Tensioners move. `tensioner_compliance` shows whether the equilibrium is stable.
+    on the resting belt. Grooves of toothed pulleys turn to where teeth do not turn the pulley. Tensioners move.
+    `tensioner_compliance` shows whether the equilibrium is stable.
     """
     search = _Search(system, start)
     shift = 0.0
@@ -74,7 +78,7 @@ def find_equilibrium(
         norms.append(norm)
         if converged:
             state = State(search.position.copy(), start.velocity.copy(), np.zeros_like(search.position))
-            return Equilibrium(state, np.array(iterates), np.array(norms))
+            return Equilibrium(state, np.array(iterates), np.array(norms), search.phases)
         shift = 0.1 * shift if shift > _SMALLEST_SHIFT else 0.0
     last = f"relative movement {norms[-1]:.1e} after {len(norms)} iterations" if norms else "the search diverges"
     raise ConvergenceError(
@@ -107,7 +111,8 @@ class _Search:
     """Belt and tensioners on their way to equilibrium, with the linearized equations where they stand."""
 
     def __init__(self, system: System, start: State) -> None:
-        self._system = system._replace(bodies=only_tensioners(system))
+        self._system = unloaded(system._replace(bodies=only_tensioners(system)))
+        self._grooves = toothed_pulleys(system)[1:]
         self.position, self._velocity = start.position.copy(), start.velocity
         self._multipliers = no_multipliers(system)
         self._here: Equations = new_equations(self._system)
@@ -115,7 +120,9 @@ class _Search:
         self._length = float(np.sum(system.length))
         self._time_scale = self._length**2 * system.element.section.mass / system.element.section.axial
         self._scale = system.scale
-        self._reach = system.bodies.reach[system.bodies.size - system.tensioners.size :]
+        self._count = system.tensioners.size
+        tensioners = np.arange(system.bodies.size - self._count, system.bodies.size)
+        self._reach = system.bodies.reach[np.append(tensioners, self._grooves)]
 
     @property
     def nodes(self) -> FloatArray:
@@ -123,11 +130,16 @@ class _Search:
         return self.position[: self._system.first_body].reshape(self._system.nodes, -1)
 
     @property
+    def phases(self) -> FloatArray:
+        """Phases of grooves, rad, shape (P,), or none."""
+        return phases(self._system).copy()
+
+    @property
     def force(self) -> float:
         """Largest force out of balance where the equations were linearized last, over E A alpha1."""
         nodes = np.abs(self._here.matrix.node_side / self._scale)
-        tensioners = np.abs(self._here.matrix.border_side[: self._reach.size] / self._reach)
-        return max(float(np.max(nodes)), float(np.max(tensioners, initial=0.0))) / self._system.element.section.axial
+        bodies = np.abs(self._here.matrix.border_side[: self._reach.size] / self._reach)
+        return max(float(np.max(nodes)), float(np.max(bodies, initial=0.0))) / self._system.element.section.axial
 
     def linearise(self, shift: float) -> float:
         """Linearize where the belt stands, with an inertial shift relative to axial waves; energy norm of the step.
@@ -144,11 +156,13 @@ class _Search:
 
     def step(self, length: float) -> None:
         """Take the step, or a part of it."""
-        nodes, border, count = self._system.first_body, self._here.border_part, self._reach.size
+        nodes, border, bodies = self._system.first_body, self._here.border_part, self._reach.size
         self.position[:nodes] -= length * self._here.node_part.ravel()
-        self.position[self.position.size - count :] -= length * border[:count]
+        self.position[self.position.size - self._count :] -= length * border[: self._count]
+        if self._grooves.size:
+            phases(self._system)[self._grooves] -= length * border[self._count : bodies]
         if self._system.joint:
-            self._multipliers -= length * border[count:]
+            self._multipliers -= length * border[bodies:]
 
     def step_naturally(self) -> bool:
         """Take the longest of halved steps that passes the natural monotonicity test; False if there is none."""
@@ -175,10 +189,10 @@ class _Search:
         return Motion(0.0, self.position, self._velocity, np.zeros_like(self.position))
 
     def _size(self, equations: Equations) -> float:
-        """Root mean square of a step of the nodes, or the largest step of a tensioner, m."""
+        """Root mean square of a step of the nodes, or the largest step of a tensioner or groove, m."""
         nodes = float(np.sqrt(np.mean((equations.node_part * self._scale) ** 2)))
-        tensioners = np.abs(equations.border_part[: self._reach.size] * self._reach)
-        return float(np.max(tensioners, initial=nodes))
+        bodies = np.abs(equations.border_part[: self._reach.size] * self._reach)
+        return float(np.max(bodies, initial=nodes))
 
 
 def _with_sides_of_its_own(equations: Equations) -> Equations:

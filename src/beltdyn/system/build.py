@@ -23,6 +23,7 @@ from beltdyn.system.build_machines import body_arrays, machine_arrays, pulley_ar
 from beltdyn.system.discretization import Discretization, discretize
 from beltdyn.system.frame import Travelling
 from beltdyn.system.hysteresis import hysteresis_rows
+from beltdyn.system.meshing import with_teeth
 
 # Weight of the belt as nodal forces (gravity is not in the paper)
 
@@ -50,7 +51,7 @@ Closure = Literal["shared_node", "multipliers", "open"]
 def drive_system(prepared: Prepared) -> System:
     """Arrays of a drive."""
     closure: Closure = "open" if prepared.ends else prepared.simulation.joint
-    return system_of(prepared, prepared.belt, prepared.contact, closure, **_at_ends(prepared))
+    return with_teeth(prepared, system_of(prepared, prepared.belt, prepared.contact, closure, **_at_ends(prepared)))
 
 
 def system_of(prepared: Prepared, belt: Belt, contact: Contact, closure: Closure, **more: Any) -> System:

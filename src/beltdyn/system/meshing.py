@@ -9,7 +9,7 @@ from typing import Any
 
 import numpy as np
 
-from beltdyn.arrays import FloatArray
+from beltdyn.arrays import FloatArray, IntArray
 from beltdyn.contact.surface import TEETH, MeshingRims, RoundRims, ShapedRims, ToothedRims
 from beltdyn.contact.surface.toothed import FOLLOWS, PHASE, SPEED
 from beltdyn.kernel import by_type, kernel
@@ -47,6 +47,16 @@ def tooth_rows(prepared: Prepared) -> Records:
         rate=np.where(held, sense * groove / pitch, 0.0),
         groove=groove,
     )
+
+
+def with_teeth(prepared: Prepared, system: System) -> System:
+    """The arrays of a drive on a mesh that travels, with the teeth of its belt, if it has any."""
+    return turned_by(prepared, system, np.zeros(system.pulleys.size))
+
+
+def without_teeth(system: System) -> System:
+    """The same arrays of a belt that slides on smooth pulleys."""
+    return system._replace(rims=RoundRims(system.rims.radius)) if has_teeth(system) else system
 
 
 def starts_of(lengths: FloatArray) -> FloatArray:
@@ -105,51 +115,65 @@ def mesh_speeds(system: System, velocity: FloatArray) -> None:
 
 
 def unloaded(system: System) -> System:
-    """The same system without loads, with grooves that turn to where teeth do not turn the pulley, if it has teeth."""
+    """The same system without loads, with grooves that turn to where teeth do not turn the pulley, if it has teeth.
+
+    On a mesh that travels, which nothing else holds along the belt, the grooves of the first pulley with teeth stay.
+    """
     rims = system.rims
-    if not isinstance(rims, MeshingRims):
+    if not has_teeth(system):
         return system
     held = constant_drive(system, 0.0)
     held.profiles.segment.offset[:] = 0.0
-    bodies = held.bodies.copy()
-    number = int(np.max(bodies.unknown, initial=-1)) + 1
-    for p in np.flatnonzero(rims.table.stiffness > 0.0):
-        bodies["unknown"][p] = number
-        number += 1
+    turning, bodies = toothed_pulleys(system), held.bodies.copy()
+    if isinstance(rims, ToothedRims):
+        held, turning = held._replace(rims=rims._replace(table=rims.table.copy())), turning[1:]
+    bodies["unknown"][turning] = int(np.max(bodies.unknown, initial=-1)) + 1 + np.arange(turning.size)
     return led_by(held._replace(bodies=bodies, tensioners=system.tensioners), -1)
+
+
+def toothed_pulleys(system: System) -> IntArray:
+    """Numbers of the pulleys with teeth."""
+    rims = system.rims
+    if isinstance(rims, MeshingRims | ToothedRims):
+        return np.flatnonzero(rims.table.stiffness > 0.0)
+    return np.zeros(0, dtype=np.int64)
 
 
 def with_softer_teeth(system: System, factor: float) -> System:
     """The same system with the stiffness of its teeth times a factor; phases are those of the given one."""
     rims = system.rims
-    assert isinstance(rims, MeshingRims)
+    assert isinstance(rims, MeshingRims | ToothedRims)
     table = rims.table.copy()
     table["stiffness"] *= factor
     return system._replace(rims=rims._replace(table=table))
 
 
 def phases(system: System) -> FloatArray:
-    """Phases of grooves that are unknown, rad: of every pulley of a belt with teeth, or none."""
-    return system.rims.phase if isinstance(system.rims, MeshingRims) else np.zeros(0)
+    """Phases of grooves, rad: of every pulley of a belt with teeth, or none; unknown in steady running and at rest."""
+    rims = system.rims
+    if isinstance(rims, ToothedRims):
+        return np.asarray(rims.table.phase)
+    return rims.phase if isinstance(rims, MeshingRims) else np.zeros(0)
 
 
 def fit_phases(system: System, state: State) -> None:
-    """Turn the grooves of each toothed pulley under the teeth of its arc, on average."""
+    """Turn the grooves of each toothed pulley under the teeth of its arc, on average; pulleys have the angle zero."""
     rims = system.rims
-    if not isinstance(rims, MeshingRims):
+    if not isinstance(rims, MeshingRims | ToothedRims):
         return
+    phase = phases(system)
     parts = (np.arange(_SAMPLES) + 0.5) / _SAMPLES
     along = (rims.start[:, None] + system.length[:, None] * parts).ravel()
     share = np.repeat(system.length / _SAMPLES, _SAMPLES)
     places = centreline_places(system, state.position, along)
-    for p in np.flatnonzero(rims.table.stiffness > 0.0):
+    for p in toothed_pulleys(system):
         x, y = (places - np.array(pulley_center(system, int(p), state.position))).T
         touching = np.hypot(x, y) <= rims.radius[p]
         if touching.any():
             row = rims.table[p]
             ahead = (np.arctan2(y, x) - row.rate * along)[touching] / row.groove
             turned = np.angle(np.sum(share[touching] * np.exp(2j * np.pi * ahead)))
-            rims.phase[p] = row.groove * turned / (2.0 * np.pi)
+            phase[p] = row.groove * turned / (2.0 * np.pi)
 
 
 # From steady running to equations over time, and back
@@ -172,10 +196,27 @@ def turned_by(prepared: Prepared, system: System, phase: FloatArray | None) -> S
     """The arrays of a drive with grooves at phases (rad), over time; those given of a belt without teeth."""
     if phase is None or prepared.belt.teeth is None:
         return system
-    phase = np.atleast_1d(phase)
-    table = tooth_rows(prepared)
-    table["phase"] = phase
-    return system._replace(rims=ToothedRims(system.rims.radius, table, starts_of(system.length)))
+    rims = ToothedRims(system.rims.radius, tooth_rows(prepared), starts_of(system.length))
+    return at_phases(system._replace(rims=rims), phase)
+
+
+def turned_as(system: System, other: System) -> System:
+    """The same arrays over time with grooves at the phases of those on another mesh, if the belt has teeth."""
+    return at_phases(system, phases(other)) if has_teeth(system) else system
+
+
+def tooth_phases(system: System) -> dict[str, FloatArray]:
+    """The phases of grooves as an attribute of results; nothing of a belt without teeth."""
+    return {TOOTH_PHASES: phases(system).copy()} if has_teeth(system) else {}
+
+
+def at_phases(system: System, phase: FloatArray) -> System:
+    """The same arrays over time, of a belt with teeth, with grooves at other phases (rad)."""
+    rims = system.rims
+    assert isinstance(rims, ToothedRims)
+    table = rims.table.copy()
+    table["phase"] = np.atleast_1d(phase)
+    return system._replace(rims=rims._replace(table=table))
 
 
 def stopped(system: System, angles: FloatArray, passed: float) -> System:

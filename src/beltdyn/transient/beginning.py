@@ -24,7 +24,7 @@ from beltdyn.system.build_staying import flowing_system, staying_system
 from beltdyn.system.constant_drive import constant_drive
 from beltdyn.system.discretization import curve_lengths, nodal_coordinates, point_coordinates
 from beltdyn.system.frame import centreline_points
-from beltdyn.system.meshing import turning
+from beltdyn.system.meshing import fit_phases, tooth_phases, turned_as, turning
 from beltdyn.system.state import State, at_rest, laid
 from beltdyn.transient.earlier_run import begin_from, with_instant
 
@@ -38,12 +38,13 @@ _TURNS = 5
 """Longest way on which the belt settles, in turns of it."""
 
 
-def steady_state_on(rest: Rest) -> State:
-    """Steady running at the beginning of a run, as near as the travelling mesh comes to it."""
+def steady_state_on(rest: Rest) -> tuple[System, State]:
+    """Steady running at the beginning of a run, as near as the travelling mesh comes to it, with its grooves."""
     standing = stand(rest.prepared)
     search = SteadySearch(rest.prepared, standing.system, standing.state, rest.prepared.simulation.begin)
     search.run(standing)
-    return taken_over(search, rest.system)
+    state = taken_over(search, rest.system)
+    return turned_as(rest.system, turning(search.constant, search.running())), state
 
 
 def taken_over(search: SteadySearch, system: System) -> State:
@@ -133,7 +134,7 @@ def mesh_of(prepared: Prepared, integrator: Integrator, progress: Report | None 
     if staying:
         return begin_flowing(prepared, progress)
     system = drive_system(prepared)
-    return Beginning(prepared, system, laid(system, prepared.path))
+    return Beginning(prepared, system, _laid(prepared, system), attributes=tooth_phases(system))
 
 
 def begin_on(
@@ -158,8 +159,16 @@ def _travelling(mesh: Beginning, progress: Report | None) -> Beginning:
     if mesh.prepared.installed_tension is None and start == "laid":
         return mesh
     rest = rest_of(mesh.prepared, progress)
+    system, state = rest.system, rest.state
     if start == "steady":
-        state = steady_state_on(rest)
-    else:
-        state = rest.state if start == "equilibrium" else laid(rest.system, rest.prepared.path)
-    return Beginning(rest.prepared, rest.system, state, rest.unstable)
+        system, state = steady_state_on(rest)
+    elif start == "laid":
+        state = _laid(rest.prepared, system)
+    return Beginning(rest.prepared, system, state, rest.unstable, tooth_phases(system))
+
+
+def _laid(prepared: Prepared, system: System) -> State:
+    """The belt laid on its path, with grooves under its teeth, if it has any."""
+    state = laid(system, prepared.path)
+    fit_phases(system, state)
+    return state

@@ -86,15 +86,14 @@ def begin_from(drive: Drive) -> Beginning:
     assert start.time is not None
     with _opened(start) as run:
         prepared = prepare(_as_installed(drive, run))
-        attributes: dict[str, Any] = {}
+        attributes: dict[str, Any] = {
+            name: run.dataset.attrs[name] for name in (DIRECTION, TOOTH_PHASES) if name in run.dataset.attrs
+        }
         if prepared.frame.stays:
             direction = np.array(run.dataset.attrs[DIRECTION], dtype=float)
-            attributes = {
-                name: run.dataset.attrs[name] for name in (DIRECTION, TOOTH_PHASES) if name in run.dataset.attrs
-            }
             system = flowing_system(staying_mesh(prepared, run), direction)
         else:
-            system = drive_system(prepared)
+            system = turned_by(prepared, drive_system(prepared), attributes.get(TOOTH_PHASES))
         _require_same_mesh(system, run)
         state = recorded_state(run, start.time, system)
     shafts = [number for number, pulley in enumerate(drive.pulleys) if pulley.prescribed]

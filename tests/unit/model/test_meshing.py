@@ -18,8 +18,3 @@ def test_a_belt_whose_teeth_nothing_holds() -> None:
     smooth = [{"name": n, "center": [x, 0.0], "radius": 0.04, "speed": 1.0} for n, x in (("a", 0.0), ("b", 0.28))]
     with pytest.raises(ModelError, match="the belt has 100 teeth, but no pulley has any"):
         bd.Drive(belt=BELT, pulley=smooth, contact={"friction": 0.3}, simulation={"duration": 1.0})
-
-
-def test_a_travelling_mesh_has_no_teeth() -> None:
-    with pytest.raises(ModelError, match=r"belt.teeth = 100 needs a mesh that stays"):
-        drive().replace(simulation={"duration": 1.0, "frame": "travelling"})

@@ -7,12 +7,30 @@ import beltdyn as bd
 from beltdyn.contact.surface import MeshingRims, RoundRims, ToothedRims
 from beltdyn.contact.surface.toothed import PHASE, SPEED
 from beltdyn.model import Prepared, prepare
+from beltdyn.state.static import only_tensioners
 from beltdyn.state.staying import laid_state
 from beltdyn.system.arrays import System
+from beltdyn.system.build import drive_system
 from beltdyn.system.build_staying import staying_system
 from beltdyn.system.constant_drive import with_speeds_unknown
-from beltdyn.system.meshing import fit_phases, has_teeth, led_by, mesh_speeds, on_lengths, phases, stopped, turning
+from beltdyn.system.meshing import (
+    TOOTH_PHASES,
+    fit_phases,
+    has_teeth,
+    led_by,
+    mesh_speeds,
+    on_lengths,
+    phases,
+    stopped,
+    tooth_phases,
+    toothed_pulleys,
+    turned_as,
+    turning,
+    unloaded,
+    without_teeth,
+)
 from beltdyn.system.state import State
+from beltdyn.system.state import laid as laid_on_path
 
 BELT = {"profile": "HTD 8M", "width": "20 mm", "teeth": 100}
 
@@ -77,3 +95,39 @@ def test_phases_turn_with_pulleys(laid: tuple[System, State]) -> None:
     turned = state.position[system.first_body :] + np.array([2.0 * np.pi, 0.0, 0.0])
     later = stopped(over_time, turned, passed)
     assert phases(later)[0] == pytest.approx(phases(system)[0], abs=1e-12)
+
+
+def travelling(prepared: Prepared) -> System:
+    settings = prepared.simulation.replace(frame="travelling")
+    return drive_system(prepare(prepared.drive.replace(simulation=settings)))
+
+
+def test_teeth_travel_with_the_belt(prepared: Prepared) -> None:
+    system = travelling(prepared)
+    assert isinstance(system.rims, ToothedRims)
+    assert toothed_pulleys(system).tolist() == [0, 1]
+    assert isinstance(without_teeth(system).rims, RoundRims)
+    np.testing.assert_allclose(system.rims.start, np.cumsum(system.length) - system.length)
+
+
+def test_teeth_stand_alike_in_grooves_on_both_meshes(prepared: Prepared, laid: tuple[System, State]) -> None:
+    system, state = travelling(prepared), laid_on_path(travelling(prepared), prepared.path)
+    fit_phases(system, state)
+    fit_phases(*laid)
+    found, other = (np.asarray(one)[:2] for one in (tooth_phases(system)[TOOTH_PHASES], phases(laid[0])))
+    ahead = (found - other) / (2.0 * np.pi / np.array([24, 36]))  # pitches between the first nodes of both
+    assert abs(ahead[1] - ahead[0] - np.round(ahead[1] - ahead[0])) < 1e-3  # belts are laid on arcs a little apart
+
+
+def test_grooves_are_taken_over_from_another_mesh(prepared: Prepared, laid: tuple[System, State]) -> None:
+    fit_phases(*laid)
+    taken = turned_as(travelling(prepared), turning(*laid))
+    np.testing.assert_allclose(tooth_phases(taken)[TOOTH_PHASES], phases(laid[0]))
+
+
+def test_grooves_of_the_first_pulley_hold_a_mesh_that_travels(prepared: Prepared) -> None:
+    system = travelling(prepared)
+    free = unloaded(system._replace(bodies=only_tensioners(system)))
+    assert free.bodies.unknown.tolist() == [-1, 0, -1]
+    phases(free)[:] = 1.0
+    assert not np.any(phases(system))  # they turn without those of the system

@@ -47,7 +47,7 @@ def test_both_meshes_begin_in_the_same_state(drive: Drive) -> None:
 def test_nodes_move_along_the_belt_with_it(drive: Drive) -> None:
     """On spans the rate of a node is the way to the next one over the time in which an element passes."""
     rest = bring_to_rest(drive)
-    state = steady_state_on(rest)
+    _, state = steady_state_on(rest)
     nodes = state.nodes(rest.system)[:, :2]
     rates = state.velocity[: rest.system.first_body].reshape(rest.system.nodes, -1)[:, :2]
     way = 0.5 * (np.roll(nodes, -1, axis=0) - np.roll(nodes, 1, axis=0))
