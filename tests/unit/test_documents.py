@@ -27,6 +27,7 @@ from beltdyn.model.catalogue import Entry, read_catalogue
 from beltdyn.model.pulley import Diameter
 from beltdyn.model.study import CalibrationStudy, OptimizationStudy
 from beltdyn.model.toml_reader import example
+from beltdyn.model.tooth_rating import ToothRating
 from beltdyn.parts.part import Part
 from beltdyn.show.plot import FIGURES
 from beltdyn.show.plot.registry import on_request
@@ -139,12 +140,18 @@ def test_every_key_of_a_profile_is_documented(profile: type[Part]) -> None:
 
 
 def test_the_catalogue_of_the_document_has_every_key(new_drive: str, tmp_path: Path) -> None:
-    machine, own, catalogue, rating, curve, fatigue, teeth = blocks(CATALOGUE, "toml")
+    machine, own, catalogue, rating, curve, fatigue, teeth, rated_teeth = blocks(CATALOGUE, "toml")
     (entry,) = tomllib.loads(catalogue).values()
-    others = [tomllib.loads(one)["my-belt"] for one in (rating, curve, fatigue, teeth)]
+    others = [tomllib.loads(one)["my-belt"] for one in (rating, curve, fatigue, teeth, rated_teeth)]
     assert entry.keys() | {key for one in others for key in one} == Entry.model_fields.keys()
     assert others[0]["rating"].keys() == Rating.model_fields.keys()
     assert others[3]["toothing"].keys() == Toothing.model_fields.keys()
+    assert others[4]["tooth_rating"].keys() == ToothRating.model_fields.keys()
+    counts, of_teeth = rated_teeth.split("\n\n")
+    (tmp_path / "rated.toml").write_text(
+        catalogue + counts.replace("[my-belt]", "") + teeth + of_teeth, encoding="utf-8"
+    )
+    assert read_catalogue("rated.toml", tmp_path)["my-belt"].lengths == pytest.approx((0.8, 0.88, 0.96))
     (tmp_path / "toothed.toml").write_text(catalogue + teeth, encoding="utf-8")
     assert read_catalogue("toothed.toml", tmp_path)["my-belt"].toothing is not None
     without = "".join(line for line in catalogue.splitlines(keepends=True) if not line.startswith("axial_stiffness"))

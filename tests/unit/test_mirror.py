@@ -37,6 +37,7 @@ ELSEWHERE = {
     "designs/optimization_history.py": "unit/designs/test_optimize.py",
     "designs/goals.py": "unit/designs/test_optimize.py",
     "designs/residuals.py": "unit/designs/test_calibrate.py",
+    "designs/proposal.py": "unit/designs/test_selection.py",
     "designs/named_results.py": "unit/designs/test_sensitivity.py",
     "state/newton.py": "unit/state/test_steady.py",
     "state/refinement.py": "unit/state/test_steady.py",

@@ -115,7 +115,10 @@ def _show(profile: str, entry: "Entry") -> None:
     teeth = "" if entry.toothing is None else "  teeth = 100\n"
     show(f'\nIn a drive file\n  [belt]\n  profile = "{profile}"\n  {size}\n{teeth}\nSources')
     show_paragraphs(entry.source.strip().splitlines())
-    data_of = ("Teeth", entry.toothing), ("Cord fatigue", entry.cord_fatigue), ("Rib fatigue", entry.rib_fatigue)
+    data_of = (
+        *(("Teeth", entry.toothing), ("Rating of teeth", entry.tooth_rating)),
+        *(("Cord fatigue", entry.cord_fatigue), ("Rib fatigue", entry.rib_fatigue)),
+    )
     for name, data in data_of:
         if data is not None and data.source is not None:
             show_paragraphs([f"{name}: {data.source.strip()}"])
@@ -151,6 +154,11 @@ def _values(entry: "Entry") -> Iterator[tuple[str, str]]:
             yield "toothing.tooth_height", f"{1e3 * teeth.tooth_height:.3g} mm"
         if teeth.largest_tooth_load is not None:
             yield "toothing.largest_tooth_load", f"{teeth.largest_tooth_load:.3g} N"
+    if (rating := entry.tooth_rating) is not None:
+        widths = ", ".join(f"{1e3 * one:.4g}" for one in rating.widths)
+        yield "tooth_rating", f"{rating.counted_teeth:g} teeth in mesh count; standard widths {widths or 'any'} mm"
+    if entry.tooth_counts:
+        yield "tooth_counts", f"{len(entry.tooth_counts)} from {entry.tooth_counts[0]} to {entry.tooth_counts[-1]}"
     if entry.largest_fleeting_angle is not None:
         yield "largest_fleeting_angle", f"{degrees(entry.largest_fleeting_angle):.3g}°"
     if line := entry.cord_fatigue:

@@ -13,7 +13,7 @@ if TYPE_CHECKING:
 
 _HEADINGS = (
     "profile",
-    "belts\nor ribs",
+    "belts, ribs\nor teeth",
     "driver\nmm",
     "driven\nmm",
     "length\nmm",
@@ -41,11 +41,12 @@ def select(
     profiles: str | None = None,
     ratio_tolerance: float = 0.03,
     most_belts: int = 12,
+    toothed: Annotated[bool, Parameter(negative="")] = False,
     count: int = 5,
     file: Path | None = None,
     output: Annotated[Path | None, Parameter(alias="-o")] = None,
 ) -> None:
-    """Select V-belt and V-ribbed drives for a power, best first, each as a drive file.
+    """Select V-belt, V-ribbed or toothed drives for a power, best first, each as a drive file.
 
     Parameters
     ----------
@@ -64,11 +65,13 @@ def select(
     largest_driven
         The largest diameter of the driven pulley.
     profiles
-        Names of profiles with commas between; by default all with a rating.
+        Names of profiles with commas between; by default all V- and V-ribbed belts with a rating.
     ratio_tolerance
         The largest deviation of the speed ratio, relative.
     most_belts
         The most V-belts side by side; V-ribbed belts may have four times as many ribs.
+    toothed
+        Choose among toothed belts, if no profiles are named.
     count
         The number of proposals, at most two of a profile.
     file
@@ -89,10 +92,14 @@ def select(
         profiles=profiles,
         ratio_tolerance=ratio_tolerance,
         most_belts=most_belts,
+        toothed=toothed,
         count=count,
         catalogue=None if file is None else file.resolve(),
     )
-    files = [(output or Path()) / f"select-{number}-{one.profile}.toml" for number, one in enumerate(found, 1)]
+    files = [
+        (output or Path()) / f"select-{number}-{one.profile.replace(' ', '-')}.toml"
+        for number, one in enumerate(found, 1)
+    ]
     for target in files:
         refuse_existing(target)
     for target, one in zip(files, found, strict=True):
@@ -109,7 +116,7 @@ def _row(one: "Proposal") -> tuple[str, ...]:
 
     return (
         one.profile,
-        f"{one.belts}",
+        f"{one.belts}" if one.teeth is None else f"z {' '.join(map(str, one.teeth))}",
         *(f"{1e3 * value:.5g}" for value in (one.driver_diameter, one.driven_diameter, one.nominal_length)),
         f"{1e3 * one.distance:.4g}",
         f"{RPM * one.driven_speed:.4g}",

@@ -1,24 +1,24 @@
-"""Selection of V-belt and V-ribbed drives: standard pulleys, lengths and belts that carry a power, best first."""
+"""Selection of belt drives: standard pulleys, lengths and V-, V-ribbed or toothed belts that carry a power."""
 
-from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
-from functools import cached_property
-from math import cos, hypot, pi, sin
+from collections.abc import Callable, Iterator, Sequence
+from math import hypot, pi, sin
 from pathlib import Path
 from typing import NamedTuple
 
 import numpy as np
-import tomlkit
 
+from beltdyn.designs.proposal import Proposal as Proposal
+from beltdyn.designs.proposal import Task
+from beltdyn.designs.toothed_selection import of_toothed_profile
 from beltdyn.errors import ModelError
-from beltdyn.model import Drive, Entry, loads, read_catalogue
+from beltdyn.model import Entry, read_catalogue
 from beltdyn.model.catalogue import find_entry
 from beltdyn.model.rating import RatedBelt, Rating
 from beltdyn.model.tensioning import RUN_IN
 from beltdyn.parts.messages import reason
 from beltdyn.parts.quantity import RPM, number_in, numbers_in
 from beltdyn.theory.belt_rating import least_tension
-from beltdyn.theory.path import OpenBelt, open_belt
+from beltdyn.theory.path import OpenBelt, center_distance, open_belt
 from beltdyn.theory.span import lowest_frequency
 
 DIAMETERS = tuple(
@@ -31,99 +31,8 @@ DIAMETERS = tuple(
 )
 """Preferred diameters of pulleys, m (BS 3790:2006, table 8)."""
 
-_NEAREST, _FARTHEST = 0.7, 2.0
-"""Usual center distance over the sum of the diameters (GB/T 13575.1)."""
-_CLEAR = 1.05
-"""Least center distance over that of touching pulleys."""
 _OF_A_PROFILE = 2
 """Most proposals of a profile."""
-_RIM_DENSITY, _RIM_SHARE = 7200.0, 0.5
-"""Of cast iron, kg/m^3, and inertia of a pulley over that of a full disc of its face width: an estimate."""
-
-
-class Task(NamedTuple):
-    """What a drive has to do, in SI units."""
-
-    power: float
-    speed: float
-    """Of the driver, rad/s."""
-    driven_speed: float
-    service_factor: float
-    distances: tuple[float, float] | None
-    """Least and largest center distance, m."""
-    largest: tuple[float, float]
-    """Largest diameters of driver and driven pulley, m."""
-    tolerance: float
-    """Of the ratio."""
-    most_belts: int
-
-    @property
-    def design_power(self) -> float:
-        """W."""
-        return self.power * self.service_factor
-
-    @property
-    def ratio(self) -> float:
-        """Faster over slower speed."""
-        return max(self.speed / self.driven_speed, self.driven_speed / self.speed)
-
-    @property
-    def slows(self) -> bool:
-        """Whether the driver is the faster, smaller pulley."""
-        return self.speed >= self.driven_speed
-
-
-@dataclass(frozen=True)
-class Proposal:
-    """A drive that carries the power.
-
-    Examples
-    --------
-    >>> best = bd.select(power="7.5 kW", speed="1450 rpm", driven_speed="700 rpm", service_factor=1.2)[0]
-    >>> best.drive.belt.value_of("profile") == best.profile
-    True
-    """
-
-    profile: str
-    """Name in the catalogue."""
-    belts: int
-    """Ribs, or V-belts side by side."""
-    driver_diameter: float
-    """Diameter of the driver as sold, m."""
-    driven_diameter: float
-    """Diameter of the driven pulley as sold, m."""
-    nominal_length: float
-    """Standard length of the belt, m."""
-    distance: float
-    """Center distance, m."""
-    driven_speed: float
-    """rad/s, without slip."""
-    belt_speed: float
-    """m/s."""
-    rated_power: float
-    """Of all belts, W."""
-    utilization: float
-    """Design power over rated power."""
-    tension: float
-    """At rest, of all belts, run in, N; `RUN_IN` times the least one."""
-    hub_load: float
-    """At rest, N."""
-    frequency: float
-    """First frequency of a span at rest, Hz."""
-    face_width: float
-    """Ribs times width, the measure of the price, m."""
-    task: Task
-    catalogue: str | None = None
-
-    @property
-    def text(self) -> str:
-        """The drive file."""
-        return _drive_file(self)
-
-    @cached_property
-    def drive(self) -> Drive:
-        """The drive of the file."""
-        return loads(self.text)
 
 
 def select(
@@ -138,13 +47,15 @@ def select(
     profiles: str | Sequence[str] | None = None,
     ratio_tolerance: float = 0.03,
     most_belts: int = 12,
+    toothed: bool = False,
     count: int = 5,
     catalogue: str | Path | None = None,
 ) -> tuple[Proposal, ...]:
-    """Select V-belt and V-ribbed drives for a power: profile, pulleys, number of belts, length and tension.
+    """Select V-belt, V-ribbed or toothed drives for a power: profile, pulleys, belts or width, length and tension.
 
     All pairs of standard pulleys and standard lengths of the rated profiles are tried. The best need the least face
-    width, ribs times width; of equal ones those with smaller pulleys.
+    width, ribs times width; of equal ones those with smaller pulleys. Toothed belts have the next standard width in
+    which their teeth in mesh and their cords carry the power.
 
     Parameters
     ----------
@@ -163,11 +74,13 @@ def select(
     largest_driven
         Largest diameter of the driven pulley.
     profiles
-        Names of profiles, also as text with commas; by default all with a rating.
+        Names of profiles, also as text with commas; by default all V- and V-ribbed belts with a rating.
     ratio_tolerance
         Largest deviation of the speed ratio, relative.
     most_belts
         Most V-belts side by side; ribs of a V-ribbed belt are limited to four times as many.
+    toothed
+        Whether to choose among toothed belts, if no profiles are named.
     count
         Number of proposals, at most two of a profile.
     catalogue
@@ -199,10 +112,10 @@ def select(
         tolerance=_above_zero("ratio_tolerance", ratio_tolerance, ""),
         most_belts=most_belts,
     )
-    entries = _rated_entries(profiles, catalogue)
+    entries = _rated_entries(profiles, catalogue, toothed)
     path = None if catalogue is None else str(catalogue)
     found = sorted(
-        (one for name, entry in entries.items() for one in _of_profile(name, entry, task, path)),
+        (one for name, entry in entries.items() for one in _kind_of(entry)(name, entry, task, path)),
         key=lambda one: (round(one.face_width, 6), one.driver_diameter + one.driven_diameter, one.hub_load),
     )
     if not found:
@@ -236,23 +149,30 @@ def _range_of(text: str) -> tuple[float, float]:
     return least, largest
 
 
-def _rated_entries(profiles: str | Sequence[str] | None, catalogue: str | Path | None) -> dict[str, Entry]:
+def _rated_entries(
+    profiles: str | Sequence[str] | None, catalogue: str | Path | None, toothed: bool
+) -> dict[str, Entry]:
     """The profiles to choose from."""
     try:
         known = read_catalogue(catalogue)
         wanted = profiles.split(",") if isinstance(profiles, str) else profiles
         if wanted is None:
-            return {name: one for name, one in known.items() if one.rating is not None and one.lengths}
+            wanted = [name for name, one in known.items() if _is_rated(one) and (one.toothing is not None) == toothed]
         chosen = {name.strip(): find_entry(known, name.strip()) for name in wanted}
     except (LookupError, ValueError) as error:
         raise ModelError(f"{reason(error).rstrip('.')}.") from None
     for name, one in chosen.items():
-        if one.rating is None or not one.lengths:
+        if not _is_rated(one):
+            missing = "standard lengths" if one.rating or one.tooth_rating else "rating"
             raise ModelError(
-                f'profile "{name}" has no {"rating" if one.rating is None else "standard lengths"}. Choose another '
-                "one, or add them in a catalogue of your own."
+                f'profile "{name}" has no {missing}. Choose another one, or add them in a catalogue of your own.'
             )
     return chosen
+
+
+def _is_rated(entry: Entry) -> bool:
+    """Whether a profile has a rating and standard lengths."""
+    return bool((entry.rating or entry.tooth_rating) and entry.lengths)
 
 
 def _varied(found: Sequence[Proposal], count: int) -> Iterator[Proposal]:
@@ -283,19 +203,13 @@ class _Pair(NamedTuple):
         return None if distance is None else open_belt(distance, self.radii)
 
     def distance(self, nominal_length: float) -> float | None:
-        """Center distance, m, by Newton's method: the path grows by twice the cosine of the tilt."""
-        length, (small, large) = nominal_length + 2.0 * pi * self.entry.pitch_offset, self.radii
-        least = _CLEAR * (small + large)
-        if open_belt(least, self.radii).length > length:
-            return None
-        distance = 0.5 * (length - pi * (small + large))
-        for _ in range(20):
-            path = open_belt(max(distance, least), self.radii)
-            step = (length - path.length) / (2.0 * cos(path.tilt))
-            distance = max(distance, least) + step
-            if abs(step) < 1e-12:
-                break
-        return distance
+        """Center distance, m."""
+        return center_distance(nominal_length + 2.0 * pi * self.entry.pitch_offset, self.radii)
+
+
+def _kind_of(entry: Entry) -> Callable[[str, Entry, Task, str | None], Iterator[Proposal]]:
+    """What proposes drives of a profile."""
+    return of_toothed_profile if entry.tooth_rating is not None else _of_profile
 
 
 def _of_profile(name: str, entry: Entry, task: Task, catalogue: str | None) -> Iterator[Proposal]:
@@ -344,7 +258,7 @@ def _fit(pair: _Pair, rating: Rating, length: float, speed: float, task: Task) -
     """The belts of a length that carry the power; None where they do not fit."""
     path = pair.at(length)
     total = pair.small + pair.large
-    least, largest = task.distances or (_NEAREST * total, _FARTHEST * total)
+    least, largest = task.distances_for(total)
     if path is None:
         return None
     distance = hypot(path.span, pair.radii[1] - pair.radii[0])
@@ -386,53 +300,3 @@ def _proposal(name: str, pair: _Pair, fit: _Fit, task: Task, catalogue: str | No
         task=task,
         catalogue=catalogue,
     )
-
-
-def _quoted(text: str) -> str:
-    """A text as a drive file has it."""
-    return tomlkit.string(text).as_string()
-
-
-def _drive_file(one: Proposal) -> str:
-    """The drive file of a proposal."""
-    task, radius = one.task, 0.5 * one.driven_diameter
-    inertia = _RIM_SHARE * 0.5 * pi * _RIM_DENSITY * max(one.face_width, 0.02) * radius**4
-    torque = task.power / one.driven_speed
-    own = "" if one.catalogue is None else f"catalogue = {_quoted(Path(one.catalogue).as_posix())}"
-    return f"""\
-# {1e-3 * task.power:.4g} kW at {RPM * task.speed:.4g} rpm, {RPM * one.driven_speed:.4g} rpm driven; service factor \
-{task.service_factor:.3g}.
-# Rated power {1e-3 * one.rated_power:.4g} kW, {one.utilization:.0%} used; belt speed {one.belt_speed:.3g} m/s.
-
-[belt]
-profile = {_quoted(one.profile)}
-ribs = {one.belts}
-nominal_length = "{1e3 * one.nominal_length:.6g} mm"
-installed_tension = "{one.tension:.4g} N"      # of a run-in belt; the take-up of the driven pulley gives it
-{own}
-[[pulley]]
-name = "driver"
-center = [0.0, 0.0]
-diameter = "{1e3 * one.driver_diameter:.6g} mm"
-speed = "{RPM * task.speed:.6g} rpm"
-
-[[pulley]]
-name = "driven"
-center = ["{1e3 * one.distance:.5g} mm", 0.0]
-diameter = "{1e3 * one.driven_diameter:.6g} mm"
-inertia = "{inertia:.3g} kg m^2"               # estimate of the pulley alone
-torque = {{ kind = "constant", value = "{-torque:.5g} N m" }}
-
-[[tensioner]]
-kind = "fixed"
-pulley = "driven"
-direction = [1, 0]
-
-[simulation]
-duration = 1.0
-start = "steady"
-
-[limits]
-service_factor = {task.service_factor:.4g}
-largest_utilization = 1.0
-"""

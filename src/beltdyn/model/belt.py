@@ -41,6 +41,7 @@ from beltdyn.model.catalogue import Entry, read_catalogue
 from beltdyn.model.fatigue import CordFatigue, RibFatigue
 from beltdyn.model.rating import RatedBelt
 from beltdyn.model.stretch_curve import StretchCurve
+from beltdyn.model.tooth_rating import RatedTeeth
 from beltdyn.model.toothing import FEWEST_TEETH, MOST_OFF, MOST_TEETH, Toothing
 from beltdyn.parts.kind_fields import LawKeys, NameOf
 from beltdyn.parts.part import Part
@@ -425,9 +426,11 @@ class Belt(Part):
         entry, section = self.entry, self._section
         return section["ribs"] if section and entry and entry.pulley_diameter == "datum" else 1
 
-    def rated(self, length: float) -> RatedBelt | None:
+    def rated(self, length: float) -> RatedBelt | RatedTeeth | None:
         """The belt as its profile is rated, with an unstretched length in m; None without a rating."""
         entry = self.entry
+        if entry is not None and entry.tooth_rating is not None and self.toothing is not None:
+            return RatedTeeth(entry.tooth_rating, self.toothing, self.width, self.mass_per_length, self.largest_tension)
         if entry is None or entry.rating is None or self._section is None:
             return None
         in_set = entry.pulley_diameter == "datum"

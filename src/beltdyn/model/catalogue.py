@@ -7,13 +7,14 @@ from functools import cache
 from importlib.resources import files
 from math import pi
 from pathlib import Path
-from typing import Any, Literal
+from typing import Any, Literal, Self
 
 from pydantic import Field, ValidationError, ValidationInfo, model_validator
 
 from beltdyn.model.fatigue import CordFatigue, RibFatigue
 from beltdyn.model.rating import Rating
 from beltdyn.model.stretch_curve import StretchCurve, with_initial_slope
+from beltdyn.model.tooth_rating import ToothRating
 from beltdyn.model.toothing import Toothing
 from beltdyn.parts.messages import explain, reason
 from beltdyn.parts.part import Part
@@ -21,6 +22,7 @@ from beltdyn.parts.quantity import (
     Angle,
     AxialStiffness,
     BendingStiffness,
+    Count,
     Force,
     Length,
     LineStiffness,
@@ -100,8 +102,12 @@ class Entry(Part):
     cord_fatigue: CordFatigue | None = Field(None, description="the S-N line of the cords")
     rib_fatigue: RibFatigue | None = Field(None, description="the law of rib fatigue")
     lengths: tuple[Length, ...] = Field((), description="the standard nominal lengths, in m")
+    tooth_counts: tuple[Count, ...] = Field((), description="the standard numbers of teeth of a toothed belt")
     rating: Rating | None = Field(
         None, description="the power rating of a rib or V-belt, by the small pulley and speed"
+    )
+    tooth_rating: ToothRating | None = Field(
+        None, description="the rating of a toothed belt, by its teeth in mesh and the pulley speed"
     )
     generic: bool = Field(False, description="whether the values are typical of a profile, not of a product")
     source: str = Field(min_length=1, description="the source of the values, as text")
@@ -112,6 +118,16 @@ class Entry(Part):
         curve = self.stretch_curve
         law = Linear(self.axial_stiffness) if curve is None else curve.parameters
         return float(law.stretch(0.5 * (self.measuring_force or 0.0)))
+
+    @model_validator(mode="after")
+    def _is_as_long_as_its_teeth(self) -> Self:
+        if self.tooth_counts:
+            if self.toothing is None:
+                raise ValueError("tooth_counts need the pitch of the teeth. Give a group toothing, or give lengths")
+            object.__setattr__(self, "lengths", tuple(one * self.toothing.pitch for one in self.tooth_counts))
+        if self.tooth_rating is not None and (self.toothing is None or not self.toothing.largest_tooth_load):
+            raise ValueError("tooth_rating needs toothing.largest_tooth_load. Give it, or omit tooth_rating")
+        return self
 
     @model_validator(mode="before")
     @classmethod

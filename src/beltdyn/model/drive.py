@@ -28,6 +28,7 @@ from beltdyn.model.pulley import Pulley, friction_on
 from beltdyn.model.rating import RatedBelt
 from beltdyn.model.routing import radii, span_names
 from beltdyn.model.simulation import Frame, Limits, Simulation, Steady, choose_frame, element_of
+from beltdyn.model.tooth_rating import RatedTeeth
 from beltdyn.parts.change import changed_arguments
 from beltdyn.parts.kind_fields import Chosen, chosen_kinds
 from beltdyn.parts.part import Part
@@ -280,7 +281,7 @@ class Drive(Part):
         return self.completed.belt.given_length
 
     @cached_property
-    def rated_belt(self) -> RatedBelt | None:
+    def rated_belt(self) -> RatedBelt | RatedTeeth | None:
         """The belt as its profile is rated; None without a rating."""
         return None if self.ends else self.belt.rated(self.belt_length)
 

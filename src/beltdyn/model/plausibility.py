@@ -14,8 +14,10 @@ from beltdyn.model.installation import Installation
 from beltdyn.model.meshing import teeth_in_mesh
 from beltdyn.model.prepared import install, prepare
 from beltdyn.model.pulley import Pulley, fastest_rim
+from beltdyn.model.tooth_rating import RatedTeeth
 from beltdyn.parts.messages import Finding, listing
 from beltdyn.parts.quantity import RPM
+from beltdyn.theory.tooth_rating import REST_SHARE
 
 _DIAMETER_POWER = 5.6
 """Exponent of belt life over pulley diameter: published fits have 5.6 and 5.65."""
@@ -33,8 +35,6 @@ _LIGHT = 0.2
 """Tension by a preload over that of the measured length below which the preload is doubtful."""
 _HEAVIER = 0.9
 """Inertia of a tensioner without its pulley, over that with it, below which the mass of the pulley counts."""
-_SLACK_SHARE = 0.6
-"""Tension at rest over the pull of the loads, at least, so that a tenth of it is left on the slack side of teeth."""
 _FEW_TEETH = 6.0
 """Teeth in mesh from which on a pulley carries all that the profile allows, by the rules of makers."""
 _TAKES = 1e-3
@@ -53,6 +53,7 @@ def judge_plausibility(drive: Drive, installation: Installation) -> Iterator[Fin
     yield from _sudden_start(drive, installation)
     yield from _few_teeth(drive, installation)
     yield from _slack_teeth(drive, installation)
+    yield from _narrow_teeth(drive, installation)
     yield from judge_alignment(drive, installation.path)
 
 
@@ -220,13 +221,40 @@ def _slack_teeth(drive: Drive, installation: Installation) -> Iterator[Finding]:
         return
     powers, speed = _powers(drive, driver, installation)
     pull = float(powers[powers > 0.0].sum()) / speed if speed > 0.0 else 0.0
-    least = _SLACK_SHARE * pull
+    least = REST_SHARE * pull
     if not installation.tension < least:
         return
     yield Finding(
         f"the tension at rest is {installation.tension:.4g} N, but the loads pull by {pull:.4g} N.",
         "The slack side loses its tension, teeth are no longer pressed into their grooves, and the belt may jump.",
         f"Raise the tension to at least {least:.4g} N, half of the pull and a tenth more.",
+    )
+
+
+def _narrow_teeth(drive: Drive, installation: Installation) -> Iterator[Finding]:
+    """Toothed belts whose teeth in mesh are not rated for the pull of a pulley."""
+    driver, belt = drive.driver, drive.rated_belt
+    if driver is None or not isinstance(belt, RatedTeeth):
+        return
+    powers, speed = _powers(drive, driver, installation)
+    if not speed > 0.0:
+        return
+    powers[driver] = -powers.sum()
+    path, toothed = installation.path, np.array([bool(one.teeth) for one in drive.pulleys])
+    rated = belt.on(2.0 * np.abs(path.radii), path.wrap_angles, speed, toothed).on(toothed)
+    pulls = (drive.limits.service_factor or 1.0) * np.abs(powers) / speed
+    used = np.divide(pulls, rated.pull, out=np.where(pulls > 0.0, np.inf, 0.0), where=rated.pull > 0.0)
+    used[~toothed] = 0.0
+    worst = int(np.argmax(used))
+    if not used[worst] > 1.0:
+        return
+    wanted = belt.rating.next_width(used[worst] * belt.width)
+    width = f"a belt of {1e3 * wanted:.4g} mm, the next standard width" if np.isfinite(wanted) else "a larger profile"
+    yield Finding(
+        f"the pull of {drive.pulleys[worst].name} is {pulls[worst]:.4g} N with the service factor, but "
+        f"{rated.in_mesh[worst]:.1f} teeth in mesh are rated for {rated.pull[worst]:.4g} N.",
+        f"The belt of {1e3 * belt.width:.4g} mm is used by {used[worst]:.0%}, and its teeth or cords fail early.",
+        f"Use {width}, or pulleys with more teeth.",
     )
 
 

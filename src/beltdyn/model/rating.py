@@ -106,6 +106,11 @@ class PowerRating(NamedTuple):
     power: FloatArray
     """Of the whole belt, with all factors, W."""
 
+    def on(self, pulleys: BoolArray) -> "PowerRating":
+        """That of some pulleys; NaN for others."""
+        basic, ratio, power = (np.where(pulleys, one, np.nan) for one in (self.basic, self.ratio, self.power))
+        return self._replace(basic=basic, ratio=ratio, power=power)
+
 
 class RatedBelt(NamedTuple):
     """A belt as it is rated."""

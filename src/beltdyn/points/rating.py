@@ -1,13 +1,15 @@
-"""Power rating of the belt of a drive: rated power, utilization and number of belts needed at each pulley."""
+"""Power rating of the belt of a drive: rated power, utilization, and number or width of belts needed at each pulley."""
 
 from collections.abc import Iterator
 from typing import Any
 
 import numpy as np
 
+from beltdyn.arrays import FloatArray
 from beltdyn.errors import ModelError
 from beltdyn.model import Drive, prepare
 from beltdyn.model.rating import PowerRating, RatedBelt
+from beltdyn.model.tooth_rating import MeshRating, RatedTeeth
 from beltdyn.parts.messages import listing
 from beltdyn.points.changed_drive import held_at
 from beltdyn.results import Result, Variable, build_result
@@ -32,6 +34,27 @@ COLUMNS = {
     "belts_needed": Variable(_PULLEY, "1", "Belts or ribs needed"),
 }
 """What a rating tells of each pulley."""
+COLUMNS_OF_TEETH = {
+    "diameter": Variable(_PULLEY, "m", "Diameter of the tension line"),
+    "wrap_angle": Variable(_PULLEY, "rad", "Wrap angle"),
+    "power": Variable(_PULLEY, "W", "Power into the drive"),
+    "teeth_in_mesh": Variable(_PULLEY, "1", "Pitches of the belt on the arc"),
+    "mesh_factor": Variable(_PULLEY, "1", "Whole teeth in mesh over the number that counts, at most 1"),
+    "allowed_tooth_load": Variable(_PULLEY, "N", "Allowed load of a tooth at the speed of the pulley"),
+    "allowed_pull": Variable(_PULLEY, "N", "Allowed pull of the belt"),
+    "rated_power": Variable(_PULLEY, "W", "Rated power of the belt"),
+    "utilization": Variable(_PULLEY, "1", "Utilization: design power over rated power"),
+    "width_needed": Variable(_PULLEY, "m", "Belt width needed"),
+}
+"""What the rating of a toothed belt tells of each pulley."""
+SCALARS_OF_TEETH = {
+    "width": Variable((), "m", "Belt width"),
+    "largest_utilization": Variable((), "1", "Largest utilization"),
+    "standard_width": Variable((), "m", "Next standard width that carries the power"),
+    "belt_speed": Variable((), "m/s", "Belt speed"),
+    "service_factor": Variable((), "1", "Service factor"),
+    "counted_teeth": Variable((), "1", "Largest number of teeth in mesh that counts"),
+}
 SCALARS = {
     "belts": Variable((), "1", "Belts or ribs"),
     "largest_utilization": Variable((), "1", "Largest utilization"),
@@ -51,10 +74,11 @@ def rating(
     at: float | str | None = None,
     progress: Report | None = None,
 ) -> Result:
-    """Rate the belt in steady running: rated power, utilization and number of belts or ribs needed at each pulley.
+    """Rate the belt in steady running: rated power, utilization, and belts, ribs or width needed at each pulley.
 
     The rated power is that of the belt's profile in the catalogue, by the law of `beltdyn.theory.belt_rating` with the
-    wrap, length, belts and pulleys factors. The design power is the power of a pulley times the service factor.
+    wrap, length, belts and pulleys factors. That of a toothed belt is by the law of `beltdyn.theory.tooth_rating`, with
+    the teeth in mesh and the speed of the pulley. The design power is the power of a pulley times the service factor.
 
     Parameters
     ----------
@@ -94,8 +118,24 @@ def rating(
     found = rate(prepare(held), speeds, powers, centers)
     assert found is not None
     used = utilization(held, found.power, powers)
-    pulleys = len(held.pulleys)
-    needed = [belt.belts_needed(one, pulleys) if np.isfinite(one) else np.nan for one in used.tolist()]
+    speed = float(abs(speeds[held.reference] * held.radii[held.reference]))
+    if isinstance(found, MeshRating):
+        assert isinstance(belt, RatedTeeth)
+        values = _of_teeth(belt, found, powers, used) | _scalars_of_teeth(belt, used, speed, held)
+    else:
+        assert isinstance(belt, RatedBelt)
+        values = _of_belts(belt, found, powers, used) | _scalars_of_belts(belt, used, speed, held)
+    names = {"pulley": (COORDINATES["pulley"], [pulley.name for pulley in held.pulleys])}
+    result = build_result("rating", held, values, names, list(_doubts(held, belt, found, speed)))
+    result.dataset.attrs |= {"drive_as_given": drive.text, "rating_source": belt.rating.source}
+    return result
+
+
+Values = dict[str, tuple[Variable, Any]]
+
+
+def _of_belts(belt: RatedBelt, found: PowerRating, powers: FloatArray, used: FloatArray) -> Values:
+    """What the rating of V-belts or ribs tells of each pulley."""
     columns: tuple[Any, ...] = (
         found.diameter,
         found.wrap,
@@ -105,20 +145,42 @@ def rating(
         found.wrap_factor,
         found.power,
         used,
-        needed,
+        _belts_needed(belt, used),
     )
-    speed = float(abs(speeds[held.reference] * held.radii[held.reference]))
+    return {name: (one, value) for (name, one), value in zip(COLUMNS.items(), columns, strict=True)}
+
+
+def _belts_needed(belt: RatedBelt, used: FloatArray) -> list[float]:
+    return [belt.belts_needed(one, used.size) if np.isfinite(one) else np.nan for one in used.tolist()]
+
+
+def _scalars_of_belts(belt: RatedBelt, used: FloatArray, speed: float, drive: Drive) -> Values:
+    """Factors of V-belts or ribs, and the worst pulley."""
     scalars: tuple[Any, ...] = (
-        *(belt.belts, np.nanmax(used), np.nanmax(needed), speed, held.limits.service_factor or 1.0),
+        *(belt.belts, np.nanmax(used), np.nanmax(_belts_needed(belt, used)), speed, drive.limits.service_factor or 1.0),
         *(belt.rating.length_factor(belt.nominal_length), belts_factor(belt.belts) if belt.in_set else 1.0),
-        pulleys_factor(pulleys),
+        pulleys_factor(used.size),
     )
-    values = {name: (one, value) for (name, one), value in zip(COLUMNS.items(), columns, strict=True)}
-    values |= {name: (one, value) for (name, one), value in zip(SCALARS.items(), scalars, strict=True)}
-    names = {"pulley": (COORDINATES["pulley"], [pulley.name for pulley in held.pulleys])}
-    result = build_result("rating", held, values, names, list(_doubts(held, belt, found, speed)))
-    result.dataset.attrs |= {"drive_as_given": drive.text, "rating_source": belt.rating.source}
-    return result
+    return {name: (one, value) for (name, one), value in zip(SCALARS.items(), scalars, strict=True)}
+
+
+def _of_teeth(belt: RatedTeeth, found: MeshRating, powers: FloatArray, used: FloatArray) -> Values:
+    """What the rating of a toothed belt tells of each pulley."""
+    columns: tuple[Any, ...] = (
+        *(found.diameter, found.wrap, powers, found.in_mesh, found.mesh_factor, found.load, found.pull, found.power),
+        *(used, belt.width * used),
+    )
+    return {name: (one, value) for (name, one), value in zip(COLUMNS_OF_TEETH.items(), columns, strict=True)}
+
+
+def _scalars_of_teeth(belt: RatedTeeth, used: FloatArray, speed: float, drive: Drive) -> Values:
+    """Width and the worst pulley."""
+    largest = float(np.nanmax(used))
+    scalars: tuple[Any, ...] = (
+        *(belt.width, largest, belt.rating.next_width(belt.width * largest), speed),
+        *(drive.limits.service_factor or 1.0, belt.rating.counted_teeth),
+    )
+    return {name: (one, value) for (name, one), value in zip(SCALARS_OF_TEETH.items(), scalars, strict=True)}
 
 
 def _served(drive: Drive, service_factor: float | None) -> Drive:
@@ -128,7 +190,7 @@ def _served(drive: Drive, service_factor: float | None) -> Drive:
     return drive.replace(limits=drive.limits.replace(service_factor=service_factor))
 
 
-def _rated(drive: Drive) -> RatedBelt:
+def _rated(drive: Drive) -> RatedBelt | RatedTeeth:
     """The belt as its profile is rated."""
     if drive.rated_belt is None:
         profile = drive.belt.value_of("profile")
@@ -140,7 +202,7 @@ def _rated(drive: Drive) -> RatedBelt:
     return drive.rated_belt
 
 
-def _doubts(drive: Drive, belt: RatedBelt, found: PowerRating, speed: float) -> Iterator[str]:
+def _doubts(drive: Drive, belt: RatedBelt | RatedTeeth, found: PowerRating | MeshRating, speed: float) -> Iterator[str]:
     """What is outside the range of the rating."""
     largest = belt.rating.largest_speed
     if speed > largest:
@@ -149,7 +211,7 @@ def _doubts(drive: Drive, belt: RatedBelt, found: PowerRating, speed: float) -> 
             "power is extrapolated. Use smaller pulleys, or ask the manufacturer."
         )
     smallest = drive.belt.smallest_diameter
-    grooved = [one for one in drive.pulleys if one.side == "inside"]
+    grooved = [one for one in drive.pulleys if one.side == "inside" and (one.teeth or drive.belt.teeth is None)]
     small = [one.name for one in grooved if smallest is not None and 2.0 * one.radius < smallest * (1.0 - 1e-9)]
     if small and smallest is not None:
         yield (
@@ -158,7 +220,9 @@ def _doubts(drive: Drive, belt: RatedBelt, found: PowerRating, speed: float) -> 
         )
     if np.any(found.power == 0.0):
         none = [one.name for one, power in zip(drive.pulleys, found.power.tolist(), strict=True) if power == 0.0]
+        causes = "no tooth is in mesh, or centrifugal force takes", "bending and centrifugal force take"
+        cause = causes[drive.belt.teeth is None]
         yield (
-            f"{listing(none)}: the rated power is zero, since bending and centrifugal force take all of the rated "
+            f"{listing(none)}: the rated power is zero, since {cause} all of the rated "
             "pull. Use a larger pulley, a smaller speed or another profile."
         )

@@ -6,16 +6,19 @@ from beltdyn.arrays import FloatArray
 from beltdyn.model import Drive, Prepared
 from beltdyn.model.path import span_directions, wrap_angles
 from beltdyn.model.rating import PowerRating
+from beltdyn.model.tooth_rating import MeshRating
 
 _LOADED = 0.01
 """Share of the largest power from which a pulley transmits power; idlers take less by friction."""
 
 
-def rate(prepared: Prepared, speeds: FloatArray, powers: FloatArray, centers: FloatArray) -> PowerRating | None:
+def rate(
+    prepared: Prepared, speeds: FloatArray, powers: FloatArray, centers: FloatArray
+) -> PowerRating | MeshRating | None:
     """Rate the belt of a drive; None where its profile has no rating.
 
     Wrap angles are those of straight spans, as in catalogues. NaN for pulleys on the back of the belt, for which
-    catalogues have no rating.
+    catalogues have no rating, and of a toothed belt for those without teeth.
     """
     belt = prepared.drive.rated_belt
     if belt is None:
@@ -25,9 +28,8 @@ def rate(prepared: Prepared, speeds: FloatArray, powers: FloatArray, centers: Fl
     speed = float(abs(speeds[prepared.reference] * prepared.radii[prepared.reference]))
     wraps = wrap_angles(span_directions(centers, prepared.path.radii, prepared.path.ends), prepared.path.radii)
     found = belt.on(2.0 * prepared.radii, wraps, speed, loaded)
-    grooved = np.array([pulley.side == "inside" for pulley in prepared.pulleys])
-    basic, ratio, power = (np.where(grooved, one, np.nan) for one in (found.basic, found.ratio, found.power))
-    return found._replace(basic=basic, ratio=ratio, power=power)
+    by_teeth = prepared.belt.teeth is not None
+    return found.on(np.array([bool(one.teeth) if by_teeth else one.side == "inside" for one in prepared.pulleys]))
 
 
 def utilization(drive: Drive, rated: FloatArray, powers: FloatArray) -> FloatArray:

@@ -1,6 +1,9 @@
 """The sheet of a drive at rest: facts, pulleys, spans, tensioners, and chosen values."""
 
 import math
+from bisect import bisect_left
+
+import numpy as np
 
 from beltdyn.model import Drive, Installation, Path, alignment, describe_time, prepare, tensioner_balances
 from beltdyn.model.alignment import is_given
@@ -8,6 +11,7 @@ from beltdyn.model.hysteresis import bending_resistance, compression_losses
 from beltdyn.model.meshing import teeth_in_mesh
 from beltdyn.model.plausibility import other_diameters
 from beltdyn.model.simulation import unused_settings
+from beltdyn.model.tooth_rating import RatedTeeth
 from beltdyn.parts.messages import aligned
 from beltdyn.results.layout import describe_size
 from beltdyn.show.sheet import Facts, Sheet, Table
@@ -30,6 +34,9 @@ _SPAN_HEADINGS = ("", "length\nm", "tension\nN", "first frequency\nHz")
 _TENSIONER_HEADINGS = ("", "position", "spring", "stops", "other equilibria")
 
 _TOOTH_HEADINGS = ("", "teeth", "teeth\nin mesh", "pitch\ndiameter mm", "turns over\nthose of the first")
+_PULL_HEADING = "allowed\npull N"
+_BELTS_BESIDE = 2
+"""Standard belts named on either side of the one of the drive."""
 
 _SAME_TENSION = 5e-4
 """Relative change of tension by bending and soft contact that is not mentioned."""
@@ -48,7 +55,7 @@ def rest_sheet(given: Drive, drive: Drive, installation: Installation, *, comput
         Table("Spans at rest", _SPAN_HEADINGS, tuple(_spans(drive, installation))),
     ]
     if drive.belt.teeth is not None:
-        parts.append(Table("Teeth", _TOOTH_HEADINGS, tuple(_teeth(drive, installation))))
+        parts.append(_tooth_table(drive, installation))
     if installation.tensioner_positions.size:
         parts.append(Table("Tensioners at rest", _TENSIONER_HEADINGS, tuple(_tensioners(drive, installation))))
     if drive.belt.entry is not None and (told := instruction(drive, installation)) is not None:
@@ -91,8 +98,25 @@ def _pitches(drive: Drive, installation: Installation) -> list[tuple[str, str]]:
         return []
     path = installation.path.length / drive.belt.given_pitch
     return [
-        ("teeth of the belt", f"{teeth} of a pitch of {1e3 * toothing.pitch:.5g} mm; the path has {path:.3f} pitches")
+        ("teeth of the belt", f"{teeth} of a pitch of {1e3 * toothing.pitch:.5g} mm; the path has {path:.3f} pitches"),
+        *_standard_belts(drive, teeth),
     ]
+
+
+def _standard_belts(drive: Drive, teeth: int) -> list[tuple[str, str]]:
+    """Closed belts near that of the drive, and widths, in which its profile is sold."""
+    entry = drive.belt.entry
+    counts = sorted(entry.tooth_counts) if entry is not None and not drive.ends else []
+    found = list[tuple[str, str]]()
+    if counts:
+        place = bisect_left(counts, teeth)
+        beside = counts[max(place - _BELTS_BESIDE, 0) : place + _BELTS_BESIDE + (teeth in counts)]
+        said = "a standard belt" if teeth in counts else "not a standard belt"
+        found.append(("standard teeth", f"{teeth} are {said}; there are {', '.join(map(str, beside))}"))
+    if entry is not None and entry.tooth_rating is not None and entry.tooth_rating.widths:
+        widths = ", ".join(f"{1e3 * one:.4g}" for one in entry.tooth_rating.widths)
+        found.append(("standard widths", f"{widths} mm"))
+    return found
 
 
 def _as_sold(given: Drive, drive: Drive) -> list[tuple[str, str]]:
@@ -169,6 +193,20 @@ def _angle(force: list[float]) -> float:
     """Direction of a force, above -180° up to 180°."""
     angle = math.degrees(math.atan2(force[1], force[0]))
     return angle if angle > -_HALF_TURN else angle + 360.0
+
+
+def _tooth_table(drive: Drive, installation: Installation) -> Table:
+    """Pulleys with teeth, with the pull that a belt at rest is rated for."""
+    rows, belt, path = _teeth(drive, installation), drive.rated_belt, installation.path
+    if not isinstance(belt, RatedTeeth):
+        return Table("Teeth", _TOOTH_HEADINGS, tuple(rows))
+    toothed = np.array([bool(one.teeth) for one in drive.pulleys])
+    pulls = belt.on(2.0 * np.abs(path.radii), path.wrap_angles, 0.0, toothed).pull[toothed]
+    return Table(
+        "Teeth",
+        (*_TOOTH_HEADINGS, _PULL_HEADING),
+        tuple((*row, one) for row, one in zip(rows, aligned(pulls.tolist(), 3), strict=True)),
+    )
 
 
 def _teeth(drive: Drive, installation: Installation) -> list[tuple[str, ...]]:

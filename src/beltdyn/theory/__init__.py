@@ -16,5 +16,6 @@ __getattr__, __dir__, __all__ = lazy_loader.attach(
         "sliding_flutter",
         "span",
         "static_tension",
+        "tooth_rating",
     ],
 )

@@ -1,6 +1,6 @@
 """The open belt around two pulleys: lengths and angles."""
 
-from math import asin, pi, sqrt
+from math import asin, cos, pi, sqrt
 from typing import NamedTuple
 
 
@@ -29,3 +29,30 @@ def open_belt(distance: float, radii: tuple[float, float]) -> OpenBelt:
     span = sqrt(distance**2 - (radii[1] - radii[0]) ** 2)
     wrap = (pi - 2.0 * tilt, pi + 2.0 * tilt)
     return OpenBelt(span, tilt, wrap, 2.0 * span + radii[0] * wrap[0] + radii[1] * wrap[1])
+
+
+_CLEAR = 1.05
+"""Least center distance over that of touching pulleys."""
+
+
+def center_distance(length: float, radii: tuple[float, float]) -> float | None:
+    """Center distance at which the path around two pulleys has a length, m; None if the pulleys would touch.
+
+    By Newton's method: the path grows by twice the cosine of the tilt.
+
+    Examples
+    --------
+    >>> round(bd.theory.path.center_distance(1.2775, radii=(0.05, 0.1)), 3)
+    0.4
+    """
+    least = _CLEAR * sum(radii)
+    if open_belt(least, radii).length > length:
+        return None
+    distance = 0.5 * (length - pi * sum(radii))
+    for _ in range(20):
+        path = open_belt(max(distance, least), radii)
+        step = (length - path.length) / (2.0 * cos(path.tilt))
+        distance = max(distance, least) + step
+        if abs(step) < 1e-12:
+            break
+    return distance

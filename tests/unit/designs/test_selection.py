@@ -11,6 +11,7 @@ import pytest
 from beltdyn.designs.selection import DIAMETERS, Proposal, select
 from beltdyn.errors import ModelError
 from beltdyn.model import install, loads, prepare, read_catalogue
+from beltdyn.model.rating import RatedBelt
 from beltdyn.model.tensioning import RUN_IN
 from beltdyn.results.utilization import rate
 from beltdyn.theory.path import open_belt
@@ -48,7 +49,7 @@ def test_the_narrowest_is_best_and_a_profile_comes_twice_at_most(found: tuple[Pr
 def test_one_belt_less_would_not_do(found: tuple[Proposal, ...]) -> None:
     for one in found:
         belt = one.drive.rated_belt
-        assert belt is not None
+        assert isinstance(belt, RatedBelt)
         assert one.belts == 1 or one.utilization * belt.factor(one.belts, 2) > belt.factor(one.belts - 1, 2)
 
 

@@ -7,6 +7,7 @@ import pytest
 
 from beltdyn.errors import ModelError
 from beltdyn.model import Belt, Drive, Rating, loads, read_catalogue
+from beltdyn.model.rating import RatedBelt
 
 RPM = 30.0 / pi
 WITHIN = 0.03
@@ -183,7 +184,7 @@ def rated_drive(**changes: object) -> Drive:
 def test_a_belt_on_its_pulleys() -> None:
     """P = z c_z c_L c_w (P_basic + P_ratio), on the smaller and the larger of two pulleys."""
     belt = rated_drive().rated_belt
-    assert belt is not None
+    assert isinstance(belt, RatedBelt)
     assert (belt.belts, belt.in_set) == (3, True)
     assert belt.nominal_length == pytest.approx(2.5)
     speed = 0.1 * 1450.0 / RPM
@@ -199,7 +200,7 @@ def test_a_belt_on_its_pulleys() -> None:
 
 def test_the_belts_needed_are_the_least_that_carry_it() -> None:
     belt = rated_drive().rated_belt
-    assert belt is not None
+    assert isinstance(belt, RatedBelt)
     for used in (0.1, 0.3, 0.5, 0.99, 1.0, 1.2, 3.0):
         needed = belt.belts_needed(used, 2)
         assert belt.factor(needed, 2) >= used * belt.factor(3, 2) * (1.0 - 1e-9)

@@ -1,6 +1,6 @@
 """The rating of a V-belt drive in steady running, against the hand calculation of a catalogue."""
 
-from math import asin, pi
+from math import asin, log10, pi
 
 import pytest
 
@@ -100,3 +100,57 @@ def test_what_is_outside_the_range_is_said(fan: Drive) -> None:
     fast = fan.with_({"pulley[motor].speed": "5500 rpm", "pulley[fan].torque": {"kind": "constant", "value": -10.0}})
     (warning,) = rating(fast).warnings
     assert "46.1 m/s, beyond the 35 m/s" in warning
+
+
+TOOTHED = """
+[belt]
+profile = "AT5"
+width = "16 mm"
+teeth = 120
+installed_tension = "250 N"
+[[pulley]]
+name = "motor"
+center = [0.0, 0.0]
+teeth = 20
+speed = "1500 rpm"
+[[pulley]]
+name = "shaft"
+center = [0.2, 0.0]
+teeth = 40
+inertia = 1e-3
+torque = "-8 N m"
+[[pulley]]
+name = "idler"
+center = [0.1, 0.036]
+diameter = "30 mm"
+side = "outside"
+inertia = 1e-5
+[[tensioner]]
+kind = "fixed"
+pulley = "shaft"
+direction = [1, 0]
+[simulation]
+duration = 1.0
+[limits]
+service_factor = 1.5
+"""
+
+
+def test_a_toothed_belt_is_rated_by_its_teeth_in_mesh_and_its_cords() -> None:
+    """By the cords, 896 N of 16 mm: twelve teeth of 58 N at rest would carry less on the motor at 1500 rpm."""
+    dataset = rating(loads(TOOTHED)).dataset
+    motor = dataset.sel(pulley="motor")
+    wrap = float(motor.wrap_angle)
+    assert float(motor.teeth_in_mesh) == pytest.approx(20.0 * wrap / (2.0 * pi), rel=1e-6)
+    whole = int(float(motor.teeth_in_mesh))
+    load = 1.6 * 36.4 * (1.0 - 0.28 * log10(1.0 + 1500.0 / 93.0))
+    assert float(motor.allowed_tooth_load) == pytest.approx(load, rel=1e-3)
+    speed = 20 * 5e-3 * 25.0
+    pull = min(whole, 12) * load - 1.6 * 0.03 * speed**2
+    assert float(motor.allowed_pull) == pytest.approx(pull, rel=2e-3)
+    needed = 1.5 * 8.0 / (40 * 5e-3 / (2.0 * pi)) / pull
+    assert float(motor.utilization) == pytest.approx(needed, rel=0.01)  # the idler turns on the belt
+    assert float(dataset.largest_utilization) == float(motor.utilization)
+    assert float(motor.width_needed) == pytest.approx(0.016 * float(motor.utilization))
+    assert float(dataset.standard_width) in (0.016, 0.025)
+    assert bool(dataset.utilization.sel(pulley="idler").isnull())

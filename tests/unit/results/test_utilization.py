@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 from beltdyn.model import Drive, loads, prepare
+from beltdyn.model.rating import PowerRating
 from beltdyn.results.utilization import rate, utilization
 
 RPM = 30.0 / pi
@@ -45,7 +46,7 @@ def accessory() -> Drive:
 def test_the_small_pulley_is_rated_by_its_diameter_ratio_and_wrap(accessory: Drive) -> None:
     found = rate(prepare(accessory), SPEEDS, POWERS, accessory.centers)
     entry = accessory.belt.entry
-    assert found is not None
+    assert isinstance(found, PowerRating)
     assert entry is not None
     assert entry.rating is not None
     speed = (0.075 + 0.0015) * 1500.0 / RPM
