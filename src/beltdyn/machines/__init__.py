@@ -24,7 +24,17 @@ from beltdyn.machines.loads import (
     ServoMotor,
 )
 from beltdyn.machines.loads.load import Load
-from beltdyn.machines.profiles import Constant, CosineRamp, CosineRampPublished, Ramp, Step, Table
+from beltdyn.machines.profiles import (
+    Constant,
+    CosineRamp,
+    CosineRampPublished,
+    PositionTable,
+    Ramp,
+    SCurve,
+    Step,
+    Table,
+    Trapezoid,
+)
 from beltdyn.machines.profiles.harmonic import Harmonic
 from beltdyn.machines.profiles.profile import Profile
 from beltdyn.machines.tensioners import FixedTensioner, RotaryTensioner, SlidingTensioner
@@ -52,15 +62,18 @@ __all__ = [
     "Motor",
     "MovingTensioner",
     "OneWayClutch",
+    "PositionTable",
     "PowerTable",
     "Profile",
     "Pump",
     "Ramp",
     "Resistance",
     "RotaryTensioner",
+    "SCurve",
     "ServoMotor",
     "SlidingTensioner",
     "Step",
     "Table",
     "Tensioner",
+    "Trapezoid",
 ]

@@ -91,7 +91,7 @@ def standing(system: System) -> System:
     """The same system with prescribed shafts that stand still, as static equilibrium has it."""
     segments, starts = system.profiles.segment.copy(), system.profiles.table["segment"]
     for pulley in np.flatnonzero(system.bodies["unknown"][system.pulleys.shaft] < 0):
-        for name in ("offset", "slope", "amplitude"):
+        for name in ("offset", "slope", "curvature", "amplitude"):
             segments[name][starts[pulley] : starts[pulley + 1]] = 0.0
     return system._replace(profiles=system.profiles._replace(segment=segments))
 

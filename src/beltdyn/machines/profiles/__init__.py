@@ -1,5 +1,8 @@
 """Prescribed speeds, torques and schedules over time, and harmonics over the shaft angle."""
 
+from beltdyn.machines.profiles.moves import PositionTable as PositionTable
+from beltdyn.machines.profiles.moves import SCurve as SCurve
+from beltdyn.machines.profiles.moves import Trapezoid as Trapezoid
 from beltdyn.machines.profiles.ramps import (
     Constant as Constant,
 )

@@ -66,9 +66,9 @@ def profile_value(profiles: Profiles, number: int, time: float) -> tuple[float, 
         Speed and angular acceleration (rad/s, rad/s^2), torque and its rate (N m, N m/s), or factor and rate (1/s).
     """
     segment = profiles.segment[_segment(profiles, number, time)]
-    since = time - segment.start if segment.slope != 0.0 else 0.0
+    since = time - segment.start if segment.slope != 0.0 or segment.curvature != 0.0 else 0.0
     wave_rate = segment.amplitude * segment.frequency * sin(segment.frequency * time + segment.phase)
-    return segment_value(segment, since, time), segment.slope - wave_rate
+    return segment_value(segment, since, time), segment.slope + segment.curvature * since - wave_rate
 
 
 @kernel(inline=True)

@@ -20,13 +20,15 @@ Value = TypeVar("Value", bound=float, default=float)
 SEGMENT = record(
     start="f8",  # instant after which the segment holds, s; minus infinity of the first, whose slope is zero
     offset="f8",  # value at the start, without the wave
-    slope="f8",  # change of it in a second
+    slope="f8",  # change of it in a second, at the start
+    curvature="f8",  # change of that in a second
     amplitude="f8",  # of the wave
     frequency="f8",  # angular frequency of the wave, rad/s
     phase="f8",  # of the wave at time zero, rad
     integral="f8",  # of the profile from time zero to the start (of the first: to time zero as if it held there)
 )
-"""A piece of a profile: offset + slope (t - start) + amplitude cos(frequency t + phase) for start < t <= next start."""
+"""A piece of a profile: offset + slope s + curvature s^2 / 2 + amplitude cos(frequency t + phase) with s = t - start,
+for start < t <= next start."""
 
 
 class Profile(Part, Generic[Value]):
@@ -34,6 +36,9 @@ class Profile(Part, Generic[Value]):
 
     multiplies: ClassVar[bool] = True
     """Whether it may be a schedule."""
+
+    turns: ClassVar[bool] = False
+    """Whether it is given by angles, and can be a speed alone."""
 
     proportional: ClassVar[tuple[str, ...]] = ("value",)
     """Fields to which its values are proportional."""
@@ -130,15 +135,15 @@ def segment_value(segment: Any, since: Any, time: Any) -> Any:
         s.
     """
     wave = segment.amplitude * np.cos(segment.frequency * time + segment.phase)
-    return segment.offset + segment.slope * since + wave
+    return segment.offset + (segment.slope + 0.5 * segment.curvature * since) * since + wave
 
 
 @kernel(inline=True)
 def segment_integral(segment: np.record, begin: float, end: float) -> float:
     """Integral of a profile over a part of a segment that starts where the segment does, or at time zero in the first.
 
-    (t - s) (offset + slope (t - s) / 2 + amplitude cos(omega (s + t) / 2 + phase) sin(x) / x), x = omega (t - s) / 2,
-    from s to t.
+    (t - s) (offset + slope (t - s) / 2 + curvature (t - s)^2 / 6 + amplitude cos(omega (s + t) / 2 + phase) sin(x) / x)
+    from s to t, x = omega (t - s) / 2.
 
     Parameters
     ----------
@@ -151,4 +156,5 @@ def segment_integral(segment: np.record, begin: float, end: float) -> float:
     half = 0.5 * segment.frequency * since
     wave = sin(half) / half if half != 0.0 else 1.0
     middle = np.cos(0.5 * segment.frequency * (begin + end) + segment.phase)
-    return float((segment.offset + 0.5 * segment.slope * since + segment.amplitude * wave * middle) * since)
+    straight = segment.offset + (0.5 * segment.slope + segment.curvature * since / 6.0) * since
+    return float((straight + segment.amplitude * wave * middle) * since)

@@ -19,6 +19,7 @@ def _is_value(given: object) -> bool:
 if TYPE_CHECKING:
     Schedule = Profile[float]
     SpeedProfile = Profile[float]
+    PushProfile = Profile[float]
     TorqueProfile = Profile[float]
     FrequencyProfile = Profile[float]
     BrakingProfile = Profile[float]
@@ -31,15 +32,20 @@ else:
         """A number, or text with a unit, is a constant."""
         return {"kind": "constant", "value": given} if _is_value(given) else given
 
+    def _is_no_turn(kind):
+        """Whether a kind may give any quantity."""
+        return not kind.turns
+
     def _of(value, where=lambda _: True):
         """Type of a field that takes a profile of a quantity."""
         return Annotated[Profile, OneOf(PROFILES, lambda kind: kind[value], where), BeforeValidator(_constant)]
 
-    Schedule = _of(Factor, lambda kind: kind.multiplies)
+    Schedule = _of(Factor, lambda kind: kind.multiplies and _is_no_turn(kind))
     SpeedProfile = _of(AngularSpeed)
-    TorqueProfile = _of(Torque)
-    FrequencyProfile = _of(Frequency)
-    BrakingProfile = _of(Annotated[Torque, Field(ge=0)])
-    ForceProfile = _of(Annotated[Force, Field(ge=0)])
-    PowerProfile = _of(Annotated[Power, Field(ge=0)])
-    PressureProfile = _of(Annotated[Pressure, Field(ge=0)])
+    TorqueProfile = _of(Torque, _is_no_turn)
+    PushProfile = _of(Force, _is_no_turn)
+    FrequencyProfile = _of(Frequency, _is_no_turn)
+    BrakingProfile = _of(Annotated[Torque, Field(ge=0)], _is_no_turn)
+    ForceProfile = _of(Annotated[Force, Field(ge=0)], _is_no_turn)
+    PowerProfile = _of(Annotated[Power, Field(ge=0)], _is_no_turn)
+    PressureProfile = _of(Annotated[Pressure, Field(ge=0)], _is_no_turn)
