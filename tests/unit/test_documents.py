@@ -148,9 +148,9 @@ def test_the_catalogue_of_the_document_has_every_key(new_drive: str, tmp_path: P
     assert others[3]["toothing"].keys() == Toothing.model_fields.keys()
     assert others[4]["tooth_rating"].keys() == ToothRating.model_fields.keys()
     counts, of_teeth = rated_teeth.split("\n\n")
-    (tmp_path / "rated.toml").write_text(
-        catalogue + counts.replace("[my-belt]", "") + teeth + of_teeth, encoding="utf-8"
-    )
+    without = "".join(line for line in catalogue.splitlines(keepends=True) if not line.startswith("lengths"))
+    text = without + counts.partition("\n")[2] + "\n" + teeth + of_teeth
+    (tmp_path / "rated.toml").write_text(text, encoding="utf-8")
     assert read_catalogue("rated.toml", tmp_path)["my-belt"].lengths == pytest.approx((0.8, 0.88, 0.96))
     (tmp_path / "toothed.toml").write_text(catalogue + teeth, encoding="utf-8")
     assert read_catalogue("toothed.toml", tmp_path)["my-belt"].toothing is not None
