@@ -1,18 +1,23 @@
 """Whether what a refusal of a layout at rest says is so, by geometry and statics apart from the package."""
 
 import re
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from typing import Any, NamedTuple
 
 import numpy as np
+from scipy.optimize import brentq
 
-from beltdyn.arrays import FloatArray
+from beltdyn.arrays import BoolArray, FloatArray
 from tests.lumped.lumped_balance import Route
 
 _NUMBER = r"(-?[\d.]+(?:e[-+]\d+)?)"
 _STEP, _MOST_STEPS = 0.02, 500
 """Of the way of a fixed tensioner, over the least radius."""
 _ALIKE = 1e-3
+_MOST_ROUNDS = 50
+_SAID = 0.85, 1.15
+"""Of the tension at which a belt is said to leave a pulley: it is extrapolated."""
+_MOST_WRAP = 1.8 * np.pi
 
 
 def is_true(drive: dict[str, Any], reason: str) -> bool:
@@ -45,16 +50,34 @@ class _Place(NamedTuple):
         return Route.around(self.centers, self.radii)
 
     @property
-    def route_of_force(self) -> Route:
-        """The lines of force: tangents of circles that bending makes larger, and penetration smaller."""
-        sizes, softness = np.abs(self.radii), 0.0 if self.stiffness is None else 1.0 / self.stiffness
-        depths = 0.5 * (sizes - np.sqrt(np.maximum(sizes**2 - 4.0 * self.tension * softness, 0.0)))
-        lifts = self.belt["bending_stiffness"] / (2.0 * self.tension * sizes) - 0.5 * depths
-        return Route.around(self.centers, self.radii + np.sign(self.radii) * lifts)
+    def lines(self) -> "_Lines":
+        """The lines of force of the spans, whose mean tension is the one that is asked for.
+
+        A span is an elastica about its line, from the angle a at the rim: T (1 - cos a) = EI / (2 R^2), of half the
+        wrap where a pulley is touched at one point. Its tension is T cos of its own angle, of which a layer of length
+        sqrt(EI / T) lacks 2 T (1 - cos (a / 2)) on the mean.
+        """
+        pull, lines = self.tension, _Lines.along(self, self.tension)
+        for _ in range(_MOST_ROUNDS):
+            pull, before = self.tension / (1.0 - lines.lacking), pull
+            if abs(pull / before - 1.0) < _ALIKE**2:
+                break
+            lines = _Lines.along(self, pull)
+        return lines
 
     @property
     def tension(self) -> float:
         return float(self.belt["installed_tension"])
+
+    @property
+    def bending(self) -> float:
+        """Moment over curvature of the stretched belt, N m^2.
+
+        With the strain e the energy of the belt, a solid of St. Venant and Kirchhoff, has EI (3 (1 + e)^2 - 1) / 2 for
+        EI, and the square of the turn of an unstretched meter, which is (1 + e) of the curvature.
+        """
+        strain = self.tension / float(self.belt["axial_stiffness"])
+        return float(self.belt["bending_stiffness"]) * (1.0 + 4.0 * strain)
 
     @property
     def unstretched(self) -> float:
@@ -62,6 +85,21 @@ class _Place(NamedTuple):
         stretch, route = 1.0 + self.tension / self.belt["axial_stiffness"], self.route
         depths = 0.0 if self.stiffness is None else self.tension * stretch / (np.abs(self.radii) * self.stiffness)
         return float((route.length - np.sum(route.wraps * depths)) / stretch)
+
+    @property
+    def taken_up(self) -> "_Place":
+        """Where a fixed tensioner gives the tension that is asked for with the length that is given, if both are."""
+        if "length" not in self.belt:
+            return self
+        number, way = self.carried, np.array(self.tensioner["direction"])
+        reach = _STEP * _MOST_STEPS * float(np.abs(self.radii).min())
+
+        def missing(q: float) -> float:
+            return float(self.belt["length"]) - self.moved(number, q * way).unstretched
+
+        if missing(-reach) * missing(reach) > 0.0:
+            return self
+        return self.moved(number, brentq(missing, -reach, reach) * way)
 
     @property
     def carried(self) -> int:
@@ -100,6 +138,42 @@ class _Place(NamedTuple):
         return self._replace(centers=centers)
 
 
+def _left(route: Route) -> BoolArray:
+    """Which pulleys the path leaves: their wrap angles are a little less than none, and a turn is added to these."""
+    return np.asarray(route.wraps > _MOST_WRAP)
+
+
+class _Lines(NamedTuple):
+    """Tangents of circles that bending makes larger, and penetration smaller."""
+
+    pull: float
+    """Along them, N."""
+    route: Route
+    angles: FloatArray
+    """Between the lines and the belt where it meets the rims, rad."""
+    lacking: float
+    """Part that the mean tension of the spans lacks."""
+
+    @classmethod
+    def along(cls, place: _Place, pull: float) -> "_Lines":
+        sizes, bending = np.abs(place.radii), place.bending
+        depths = np.zeros(sizes.size)
+        if place.stiffness is not None:
+            depths = 0.5 * (sizes - np.sqrt(np.maximum(sizes**2 - 4.0 * pull / place.stiffness, 0.0)))
+        layer, long = np.sqrt(bending / pull), np.arccos(np.clip(1.0 - 0.5 * bending / (pull * sizes**2), -1.0, 1.0))
+        angles, route = long, place.route
+        for _ in range(_MOST_ROUNDS):
+            lifts = 2.0 * layer * np.sin(0.5 * angles) - sizes * (1.0 - np.cos(angles)) - 0.5 * depths
+            route = Route.around(place.centers, place.radii + np.sign(place.radii) * lifts)
+            angles, before = np.minimum(long, 0.5 * np.where(_left(route), 0.0, route.wraps)), angles
+            if np.all(np.abs(angles - before) < _ALIKE**2):
+                break
+        lacks = 2.0 * layer * (1.0 - np.cos(0.5 * angles))
+        ends = sizes * np.sin(angles)
+        free = route.spans + ends + np.roll(ends, -1)
+        return cls(pull, route, angles, float(np.mean((lacks + np.roll(lacks, -1)) / free)))
+
+
 def _holds(place: _Place, reason: str) -> bool:
     for said, check in _REASONS.items():
         found = re.search(said, reason)
@@ -129,8 +203,10 @@ def _cross(place: _Place, named: list[int], _: re.Match[str]) -> bool:
 
 def _missed(place: _Place, named: list[int], _: re.Match[str]) -> bool:
     """The span of the belt around the others passes the pulley on the side that does not touch."""
-    rest = place.without(named[0])
-    start, stop = rest.span((named[0] - 1) % rest.radii.size)
+    rest, before = place.without(named[0]), (named[0] - 1) % (place.radii.size - 1)
+    for number in np.flatnonzero(_left(rest.route))[::-1].tolist():  # it misses these as well
+        rest, before = rest.without(number), before - (number <= before)
+    start, stop = rest.span(before % rest.radii.size)
     (x, y), (a, b) = (stop - start) / np.hypot(*(stop - start)), place.centers[named[0]] - start
     radius = float(place.radii[named[0]])
     return float((x * b - y * a) * np.sign(radius)) > abs(radius)
@@ -182,47 +258,72 @@ def _longer(place: _Place, pulley: int) -> float:
     return float(change if given["kind"] == "sliding" else abs(change))
 
 
-def _unbalanced(place: _Place, _: list[int], __: re.Match[str]) -> bool:
-    """Nowhere on the way of the spring, up to where its pulley meets another one, is a stable balance."""
-    pulley = place.carried
-    swung = place.swung(pulley)
-    return not any(_stable_balance(place, pulley, swung, sign) for sign in (1.0, -1.0))
+class _Travel(NamedTuple):
+    """The way of a spring with its pulley, at the tension that is asked for."""
 
+    place: _Place
+    pulley: int
+    swung: Callable[[float], FloatArray]
+    step: float
 
-def _stable_balance(place: _Place, pulley: int, swung: Callable[[float], FloatArray], sign: float) -> bool:
-    """Whether the excess of the spring over the belt changes sign, falling along its way at a constant length."""
-    given, size = place.tensioner, float(np.abs(place.radii).min())
-    step = sign * _STEP * size / (1.0 if given["kind"] == "sliding" else float(np.hypot(*(place.arm(pulley)))))
+    @classmethod
+    def of(cls, place: _Place) -> "_Travel":
+        pulley, size = place.carried, _STEP * float(np.abs(place.radii).min())
+        arm = 1.0 if place.tensioner["kind"] == "sliding" else float(np.hypot(*place.arm(pulley)))
+        return cls(place, pulley, place.swung(pulley), size / arm)
 
-    def at(q: float) -> _Place:
-        return place.moved(pulley, swung(q) - place.centers[pulley])
+    def at(self, q: float) -> _Place:
+        return self.place.moved(self.pulley, self.swung(q) - self.place.centers[self.pulley])
 
-    def longer(q: float) -> float:
-        small = 1e-4 * abs(step)
-        return float((at(q + small).route_of_force.length - at(q - small).route_of_force.length) / (2.0 * small))
+    def force(self, q: float) -> float:
+        """Of spring and weight, N or N m."""
+        small, given = 1e-4 * self.step, self.place.tensioner
+        weight = (self.swung(q + small) - self.swung(q - small)) @ self.place.weights[self.pulley]
+        return float(given["preload"] - given["rate"] * q + weight / (2.0 * small))
 
-    def excess(q: float, tension: float) -> float:
-        small = 1e-4 * abs(step)
-        weight = float((swung(q + small) - swung(q - small)) @ place.weights[pulley]) / (2.0 * small)
-        return float(given["preload"] - given["rate"] * q + weight - tension * longer(q))
+    def excess(self, q: float, pull: float) -> float:
+        """Of that force over the one of the belt."""
+        small = 1e-4 * self.step
+        ahead, behind = (_Lines.along(self.at(end), pull).route.length for end in (q + small, q - small))
+        return self.force(q) - pull * (ahead - behind) / (2.0 * small)
 
-    def is_stable(q: float) -> bool:
-        ends = (q - 0.1 * abs(step), q + 0.1 * abs(step))
-        middle, stiffness = at(q).route.length, place.belt["axial_stiffness"] / place.unstretched
-        low, high = (excess(end, place.tension + stiffness * (at(end).route.length - middle)) for end in ends)
+    def is_stable(self, q: float, pull: float) -> bool:
+        """Whether the excess falls along the way at a constant length of the belt."""
+        ends = (q - 0.1 * self.step, q + 0.1 * self.step)
+        middle, stiffness = self.at(q).route.length, self.place.belt["axial_stiffness"] / self.place.unstretched
+        low, high = (self.excess(end, pull + stiffness * (self.at(end).route.length - middle)) for end in ends)
         return high < low
 
-    before = excess(0.0, place.tension)
-    for number in range(1, _MOST_STEPS):
-        q = number * step
-        away = [_away(at(q), pulley, k) - abs(place.radii[pulley]) - abs(place.radii[k]) for k in place.others(pulley)]
-        if min(away) <= 0.0 or not 0.0 < at(q).route.wraps[pulley] < np.pi:
-            return False
-        here = excess(q, place.tension)
-        if here * before <= 0.0 and is_stable(q - 0.5 * step):
-            return True
-        before = here
-    return False
+    def balances(self) -> Iterator[float]:
+        """Stable ones on either side, the nearer ones first, up to where the pulley meets another or its force ends."""
+        for sign in (1.0, -1.0):
+            before = self.excess(0.0, self.place.lines.pull)
+            for q in sign * self.step * np.arange(1, _MOST_STEPS):
+                there, pulley = self.at(q), self.pulley
+                others, sizes = self.place.others(pulley), np.abs(self.place.radii)
+                met = any(_away(there, pulley, k) <= sizes[pulley] + sizes[k] for k in others)
+                if met or self.force(q) <= 0.0:
+                    break
+                here = self.excess(q, there.lines.pull)
+                if here * before <= 0.0 and self.is_stable(q - 0.5 * sign * self.step, there.lines.pull):
+                    yield float(q)
+                before = here
+
+    def nearest(self) -> float | None:
+        return min(self.balances(), key=abs, default=None)
+
+
+def _unbalanced(place: _Place, _: list[int], __: re.Match[str]) -> bool:
+    """Nowhere on the way of the spring is a stable balance in which the belt touches all pulleys."""
+    travel = _Travel.of(place)
+    return all(np.any(_left(travel.at(q).lines.route)) for q in travel.balances())
+
+
+def _slack(place: _Place, _: list[int], __: re.Match[str]) -> bool:
+    """Where the spring has lost its force, the belt that has its tension farther away is longer than the path."""
+    travel, given = _Travel.of(place), place.tensioner
+    q, lost = travel.nearest(), given["preload"] / given["rate"]
+    return q is not None and lost < abs(q) and travel.at(lost).route.length < travel.at(q).unstretched
 
 
 def _no_take_up(place: _Place, named: list[int], said: re.Match[str]) -> bool:
@@ -239,10 +340,19 @@ def _no_take_up(place: _Place, named: list[int], said: re.Match[str]) -> bool:
 
 
 def _leaves(place: _Place, named: list[int], _: re.Match[str]) -> bool:
-    """The lines of force about the others, which bending holds off their rims, pass beside the pulley."""
-    lifts = place.belt["bending_stiffness"] / (2.0 * place.tension * place.radii)
-    lifts[named[-1]] = 0.0
-    return float(Route.around(place.centers, place.radii + lifts).wraps[named[-1]]) > np.pi
+    """Where the belt has its tension, the lines of force about the others pass beside the pulley."""
+    there = place.taken_up
+    if there.tensioner.get("preload") is not None:
+        travel = _Travel.of(place)
+        there = travel.at(travel.nearest() or 0.0)
+    return bool(_left(there.lines.route)[named[-1]])
+
+
+def _lifts_off(place: _Place, named: list[int], said: re.Match[str]) -> bool:
+    """At that tension, but not a little before it, the belt leaves the pulley."""
+    ends = (place._replace(belt=place.belt | {"installed_tension": part * float(said[1])}) for part in _SAID)
+    before, beyond = (_leaves(one, named, said) for one in ends)
+    return before != beyond
 
 
 _REASONS: dict[str, Callable[[_Place, list[int], re.Match[str]], bool]] = {
@@ -250,6 +360,8 @@ _REASONS: dict[str, Callable[[_Place, list[int], re.Match[str]], bool]] = {
     r"the tensioners are in equilibrium only where no belt can run": _unbalanced,
     r"reaches the end of its travel without balancing": _unbalanced,
     r"pushes the tensioner of .* back without losing": _unbalanced,
+    r"the tensioner force gives \S+ N with a belt length of": _unbalanced,
+    r"the balance of the tensioner of .* ends": _unbalanced,
     r"no take-up of .* a tension of \S+ N: (.*)": _no_take_up,
     r"overlap: their centers are": _overlap,
     r"would cross itself: the span": _cross,
@@ -260,4 +372,6 @@ _REASONS: dict[str, Callable[[_Place, list[int], re.Match[str]], bool]] = {
     r"would stretch the belt and press it": _overstretched,
     rf"its spring gives {_NUMBER} N.*, that tension needs {_NUMBER} N": _not_held,
     r"at rest the belt does not touch": _leaves,
+    rf"at {_NUMBER} N the belt leaves": _lifts_off,
+    r"its tensioners let it hang slack": _slack,
 }

@@ -9,6 +9,7 @@ their ends.
 
 from dataclasses import dataclass
 from functools import cached_property
+from typing import NamedTuple
 
 import numpy as np
 
@@ -21,6 +22,8 @@ from beltdyn.theory.static_tension import ArcAtRest, Section, arc_at_rest, end_o
 
 _ROUNDING = 1e-9
 _STEP = 1e-5
+_CHANGE = 1e-3
+"""Of the tension, for the slope of tightening, relative."""
 _MOST_STEPS = 20
 
 
@@ -55,10 +58,36 @@ def estimate_at_rest(prepared: Prepared) -> tuple[Prepared, Installation]:
     if belt is None:
         return prepared, prepared.installation
     if prepared.installed_tension is not None:
-        missing = prepared.belt_length - belt.length
-        prepared = prepared.tightened(missing if prepared.drive.belt.length is None else missing * belt.stretch)
+        prepared = prepared.tightened(_distance(prepared, belt))
     depths = belt.tension * belt.stretch / (prepared.radii * prepared.contact_stiffness)
     return prepared, prepared.installed(belt.span_tensions, depths, belt.hub_loads, belt.positions)
+
+
+class Tightening(NamedTuple):
+    """How a drive gets its installed tension, in closed form."""
+
+    distance: float
+    """See `Prepared.tightened`, m."""
+    slope: float
+    """Tension over that distance, N/m: negative where a spring presses the harder the longer the belt is."""
+
+
+def tightening(prepared: Prepared, factor: float = 1.0) -> Tightening | None:
+    """Estimate by how much to tighten a drive to a multiple of its installed tension; None if none is found nearby."""
+    if prepared.installed_tension is None:
+        return None
+    tension = factor * prepared.installed_tension
+    belts = [_balanced(prepared, tension * part) for part in (1.0, 1.0 + _CHANGE)]
+    distances = [_distance(prepared, belt) for belt in belts if belt is not None]
+    if len(distances) < len(belts) or distances[0] == distances[1]:
+        return None
+    return Tightening(distances[0], _CHANGE * tension / (distances[1] - distances[0]))
+
+
+def _distance(prepared: Prepared, belt: "_Belt") -> float:
+    """By how much to tighten a drive until its belt is that one; see `Prepared.tightened`, m."""
+    missing = prepared.belt_length - belt.length
+    return missing if prepared.drive.belt.length is None else missing * belt.stretch
 
 
 @dataclass(frozen=True)
@@ -88,6 +117,11 @@ class _Belt:
             if np.all(np.abs(path.radii - before) <= _ROUNDING * np.abs(before)):
                 break
         return path
+
+    @property
+    def lies_on_rims(self) -> bool:
+        """Whether contact is stiff enough to hold it."""
+        return all(0.0 <= arc.depth < radius for arc, radius in self._rims)
 
     @property
     def stretch(self) -> float:
@@ -159,9 +193,11 @@ class _Belt:
         return moved(Path(path.centers, np.sign(path.radii) * radii, path.ends), self.prepared.carriers, self.positions)
 
 
-def _balanced(prepared: Prepared) -> _Belt | None:
-    """The belt with its tension, and its tensioners in balance, by Newton's method; None if slack or not found."""
-    first, given = prepared.installation, prepared.installed_tension or prepared.loaded_belt.installed_tension
+def _balanced(prepared: Prepared, given: float | None = None) -> _Belt | None:
+    """The belt with its tension, its tensioners in balance, by Newton's method; None if slack, sunk or not found."""
+    first = prepared.installation
+    if given is None:
+        given = prepared.installed_tension or prepared.loaded_belt.installed_tension
     if not first.tension > 0.0:
         return None
 
@@ -182,7 +218,8 @@ def _balanced(prepared: Prepared) -> _Belt | None:
         for _ in range(_MOST_STEPS):
             missing = residual(unknown)
             if np.all(np.abs(missing) < _ROUNDING):
-                return belt_at(unknown)
+                found = belt_at(unknown)
+                return found if found.lies_on_rims else None
             slopes = [(residual(unknown + _STEP * way) - missing) / _STEP for way in np.eye(len(unknown))]
             unknown = unknown - np.linalg.solve(np.transpose(slopes), missing)
     except (ValueError, np.linalg.LinAlgError):

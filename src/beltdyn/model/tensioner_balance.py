@@ -71,8 +71,10 @@ class _Situation(NamedTuple):
             raise ValueError("the belt leaves a pulley")
         if _covers_another(there.path, one.pulley):
             raise ValueError("the pulley meets another pulley")
-        leverage = there.path.gradient(one.pulley) @ one.place(position)[1]
-        return one.force(position) - there.tension * float(leverage)
+        leverage = float(there.path.gradient(one.pulley) @ one.place(position)[1])
+        if self.belt.installed_tension is not None and leverage < 0.0:
+            raise ValueError("the tensioner passes its dead centre, beyond which its spring gives the belt no tension")
+        return one.force(position) - there.tension * leverage
 
     @property
     def scale(self) -> float:

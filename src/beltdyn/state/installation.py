@@ -5,20 +5,20 @@ bending, weight and spring-loaded tensioners, without friction.
 """
 
 from collections.abc import Callable
-from typing import NamedTuple, Protocol, TypeVar
+from typing import NamedTuple, TypeVar
 
 import numpy as np
 
 from beltdyn.arrays import FloatArray
-from beltdyn.errors import ConvergenceError, ModelError
+from beltdyn.errors import ConvergenceError
 from beltdyn.model import Drive, Installation
 from beltdyn.model import Path as BeltPath
 from beltdyn.model.prepared import Prepared, prepare
-from beltdyn.model.tensioner_balance import balance_tensioners
 from beltdyn.observation.compilation import compile_for_rest, rest_is_compiled
 from beltdyn.parts.messages import listing
 from beltdyn.solvers.progress import Phase, Progress, Report
 from beltdyn.state.static import find_equilibrium, standing, tensioner_compliance
+from beltdyn.state.tightening import Tightening, begin
 from beltdyn.system.arrays import System
 from beltdyn.system.build import drive_system
 from beltdyn.system.meshing import at_phases, fit_phases, has_teeth, without_teeth
@@ -36,18 +36,6 @@ _DEEPEST = 0.5
 """Depth over radius, beyond which contact pushes a belt back the less the deeper it sinks: no balance is stable."""
 _SOUND = 0.1
 """Depth over radius up to which contact may be soft."""
-_ACCURACY = 1e-6
-"""Tolerance of the installed tension, relative."""
-_JUMP = 0.005
-"""Largest relative error of the installed tension if it jumps over the length of the belt, or a spring sets it."""
-_MOST_TRIALS = 60
-_LONGEST_CHANGE = 0.02
-"""Change of a belt's length from one trial to the next, over its length, at most."""
-_LEAST_CHANGE = 1e-7
-_LEAST_WRAP = np.radians(0.5)
-"""Wrap angle of a pulley that the belt is about to leave, rad."""
-_SHORTER = 1e-5
-"""Part of its length by which a belt is shortened for the slope of its tension."""
 
 
 class Rest(NamedTuple):
@@ -88,23 +76,6 @@ class Rest(NamedTuple):
         return self.prepared.installed(seen.span_tension[0], depths, seen.hub_force[0], positions)
 
 
-class Tightened(Protocol):
-    """A drive at rest, of whatever mesh."""
-
-    @property
-    def prepared(self) -> Prepared:
-        """The drive."""
-
-    @property
-    def tension(self) -> float:
-        """Mean of the span tensions, N."""
-
-    @property
-    def wraps(self) -> FloatArray:
-        """Wrap angles of the pulleys, rad."""
-
-
-At = TypeVar("At", bound=Tightened)
 Found = TypeVar("Found")
 
 
@@ -130,9 +101,9 @@ def rest_of(prepared: Prepared, progress: Report | None = None) -> Rest:
     _tell(prepared, progress, "compiling")
     compile_for_rest(system, laid(system, prepared.path))
     _tell(prepared, progress, "equilibrium")
-    rest, wanted = _at_rest(prepared), prepared.installed_tension
+    (rest, tighter), wanted = begin(prepared, _at_rest), prepared.installed_tension
     if wanted is not None:
-        rest = tighten(rest, wanted, _at_rest)
+        rest = Tightening(prepared, wanted, lambda ahead, _: _at_rest(ahead), rest, tighter).run()
     return rest._replace(unstable=_unstable(rest))
 
 
@@ -164,124 +135,6 @@ def _unstable(rest: Rest) -> tuple[str, ...]:
     values, ways = np.linalg.eigh(compliance * np.outer(arms, arms))
     most = [int(np.argmax(np.abs(way))) for value, way in zip(values, ways.T, strict=True) if value < 0.0]
     return tuple(rest.prepared.pulleys[rest.system.tensioners.pulley[number]].name for number in sorted(set(most)))
-
-
-def tighten(first: At, wanted: float, at_rest: Callable[[Prepared], At]) -> At:
-    """Shorten the belt, or move its fixed tensioner, until the mean tension at rest is the one that is wanted."""
-    length = first.prepared.belt_length
-    rest, done, slope = first, 0.0, _tension_over_length(first.prepared)
-    sides: dict[bool, tuple[float, At]] = {}  # the nearest trials with too much and too little tension
-    for trial in range(_MOST_TRIALS):
-        missing = wanted - rest.tension
-        if abs(missing) <= _ACCURACY * wanted:
-            return rest
-        sides[missing > 0.0] = done, rest
-        change = float(np.clip(missing / slope, -_LONGEST_CHANGE * length, _LONGEST_CHANGE * length))
-        if len(sides) == 2:
-            (low, slack), (high, tight) = sides[True], sides[False]
-            if abs(high - low) < _LEAST_CHANGE * length:
-                return _beside_jump(first.prepared, slack, tight, wanted)
-            if trial % 2 or not min(low, high) < done + change < max(low, high):
-                change = 0.5 * (low + high) - done
-        ahead, change = _shortened(first.prepared, rest, done, change, at_rest)
-        gained = ahead.tension - rest.tension
-        slope, rest, done = gained / change if gained * change > 0.0 else slope, ahead, done + change
-    if abs(rest.tension - first.tension) < abs(wanted - rest.tension):
-        if abs(wanted - rest.tension) < _JUMP * wanted:  # a spring holds the tension that bending leaves of it
-            return rest
-        raise ConvergenceError(
-            f"belt.installed_tension = {wanted:.5g} N cannot be set: the tensioner force gives "
-            f"{first.tension:.5g} N at any belt length. Give belt.length instead, near "
-            f"{length:.5g} m, and set the tension by tensioner.preload."
-        )
-    raise _out_of_reach(
-        first.prepared,
-        f"the tension at rest is {rest.tension:.5g} N with a belt length of {rest.prepared.belt_length:.6g} m and "
-        f"{first.tension:.5g} N with {length:.6g} "
-        f"m{', since tensioners hold it' if first.prepared.carriers else ''}.",
-    )
-
-
-def _beside_jump(given: Prepared, slack: At, tight: At, wanted: float) -> At:
-    """Of two states on both sides of a jump, as a node of the mesh meets a pulley, the nearer one."""
-    nearer = min(slack, tight, key=lambda one: abs(one.tension - wanted))
-    if abs(nearer.tension - wanted) > _JUMP * wanted:
-        raise _out_of_reach(
-            given,
-            f"at rest the tension jumps from {slack.tension:.5g} to {tight.tension:.5g} N at a length of "
-            f"{nearer.prepared.belt_length:.6g} m, where nodes of the mesh meet pulleys. Increase belt.elements.",
-        )
-    return nearer
-
-
-def _tension_over_length(prepared: Prepared) -> float:
-    """By how much a belt gets tighter with each meter that it is shorter by, as estimated, N/m.
-
-    Where tensioners yield, that is a small part of the belt's own stiffness over its length.
-    """
-    belt, length = prepared.loaded_belt, prepared.belt_length
-    shorter = belt.replace(length=(1.0 - _SHORTER) * length)
-    try:
-        ahead = balance_tensioners(prepared.path, shorter, prepared.contact, prepared.carriers)[0].tension
-    except ValueError:
-        ahead = prepared.tension_at_rest
-    slope = (ahead - prepared.tension_at_rest) / (_SHORTER * length)
-    return slope if slope > 0.0 else belt.axial_stiffness / length
-
-
-def _shortened(
-    prepared: Prepared, rest: At, done: float, change: float, at_rest: Callable[[Prepared], At]
-) -> tuple[At, float]:
-    """Shorten a belt some more, or by a part of it where all of it leads to no equilibrium; with what was done, m."""
-    while True:
-        try:
-            return at_rest(prepared.tightened(done + change)), change
-        except (ConvergenceError, ModelError) as error:
-            change *= 0.5
-            if abs(change) < _LEAST_CHANGE * prepared.belt_length:
-                slack = _as_long_as_its_path(rest, at_rest) if change < 0.0 else ""
-                raise _out_of_reach(prepared, slack or _lifting_off(rest) or str(error)) from error
-
-
-def _lifting_off(rest: Tightened) -> str:
-    """That the belt is about to leave a pulley, if it is."""
-    least = int(np.argmin(rest.wraps))
-    if rest.wraps[least] > _LEAST_WRAP:
-        return ""
-    name = rest.prepared.drive.pulleys[least].name
-    return (
-        f'at {rest.tension:.5g} N the belt leaves "{name}", which it must touch. Move "{name}" towards the belt, or '
-        "make the tensioner stiffer."
-    )
-
-
-def _as_long_as_its_path(rest: At, at_rest: Callable[[Prepared], At]) -> str:
-    """What tensions a belt that is as long as its path, or nothing if it is shorter.
-
-    Off the pulleys its bending stiffness spreads it, and its weight lets it sag: its own way is longer than the path.
-    """
-    prepared, path = rest.prepared, rest.prepared.installation.path
-    if prepared.belt_length < (1.0 - _SHORTER) * path.length:
-        return ""
-    cause, remedy = "bending stiffness", "reduce belt.bending_stiffness"
-    if prepared.gravity != (0.0, 0.0):
-        try:
-            bent = at_rest(prepared.replace(gravity=(0.0, 0.0))).tension
-        except (ConvergenceError, ModelError):
-            bent = 0.0  # nothing but its weight holds it against the pulleys
-        if bent < 0.5 * rest.tension:
-            cause, remedy = "weight", "take a lighter belt"
-    return (
-        f"a belt of {prepared.belt_length:.6g} m, as long as the path around the pulleys, still has "
-        f"{rest.tension:.5g} N, by its {cause}: increase the tension, or {remedy}."
-    )
-
-
-def _out_of_reach(prepared: Prepared, reason: str) -> ConvergenceError:
-    return ConvergenceError(
-        f"belt.installed_tension = {prepared.installed_tension:.5g} N cannot be reached with {prepared.elements} "
-        f"elements: {reason} Change the tension, or give belt.length instead."
-    )
 
 
 def _at_rest(prepared: Prepared) -> Rest:

@@ -9,9 +9,10 @@ from beltdyn.arrays import FloatArray
 from beltdyn.errors import ConvergenceError
 from beltdyn.model import Drive, Prepared
 from beltdyn.model.resolution import Arc, Laid
-from beltdyn.state.installation import drawn_in, follow, from_starts, looked_at, tighten, with_stiffer_contact
+from beltdyn.state.installation import drawn_in, follow, from_starts, looked_at, with_stiffer_contact
 from beltdyn.state.newton import FOUND, find_steady, steady_work
 from beltdyn.state.static import only_tensioners
+from beltdyn.state.tightening import Tightening, begin
 from beltdyn.system.arrays import System
 from beltdyn.system.build_staying import staying_system
 from beltdyn.system.constant_drive import without_motion
@@ -19,6 +20,7 @@ from beltdyn.system.discretization import nodal_coordinates, point_coordinates
 from beltdyn.system.frame import centreline_places, centreline_points
 from beltdyn.system.meshing import fit_phases, has_teeth, unloaded, with_softer_teeth
 from beltdyn.system.moving_center import pulley_center
+from beltdyn.system.observations import Observations
 from beltdyn.system.state import State, at_rest
 from beltdyn.system.steady_assembly import Anchor
 
@@ -63,9 +65,9 @@ class Standing(NamedTuple):
         return self.prepared.drive
 
     @property
-    def wraps(self) -> FloatArray:
-        """Wrap angles of the pulleys, rad."""
-        return looked_at(self.prepared, self.system, self.state).wraps
+    def seen(self) -> Observations:
+        """What is seen there, one instant."""
+        return looked_at(self.prepared, self.system, self.state).seen
 
 
 def laid_state(laid: Laid, system: System, tensioners: FloatArray) -> State:
@@ -88,17 +90,27 @@ def bring_to_stand(prepared: Prepared, elements: int | None = None) -> Standing:
 
     The length for that tension is found on a mesh that is fine enough for it.
     """
-    rest, wanted = _stand_on_some_mesh(prepared, elements), prepared.installed_tension
+    (rest, tighter), wanted = begin(prepared, partial(_on_some_mesh, elements=elements)), prepared.installed_tension
     if wanted is None:
         return rest
     change = np.inf
     while elements is None and change > _SETTLED and rest.system.nodes < MOST_ELEMENTS:
-        finer = stand(prepared, fineness=FINER * rest.fineness)
+        finer = _on_finer_mesh(rest)
         change, rest = abs(finer.tension / rest.tension - 1.0), finer
-    return tighten(rest, wanted, partial(stand_like, like=rest))
+    return Tightening(prepared, wanted, partial(_stand_like, first=rest), rest, tighter).run()
 
 
-def _stand_on_some_mesh(prepared: Prepared, elements: int | None) -> Standing:
+def _stand_like(prepared: Prepared, near: Standing, first: Standing) -> Standing:
+    """Find the equilibrium of a drive from that on the first mesh, or else from one nearer to it."""
+    try:
+        return stand_like(prepared, first)
+    except ConvergenceError:
+        if near is first:
+            raise
+        return stand_like(prepared, near)
+
+
+def _on_some_mesh(prepared: Prepared, elements: int | None) -> Standing:
     """Equilibrium on the coarsest mesh on which it is found; the reason of the finest where there is none."""
     for trial in range(_MOST_MESHES if elements is None else 1):
         try:
@@ -106,6 +118,18 @@ def _stand_on_some_mesh(prepared: Prepared, elements: int | None) -> Standing:
         except ConvergenceError as error:
             failure = error
     raise failure
+
+
+def _on_finer_mesh(rest: Standing) -> Standing:
+    """The equilibrium on a finer mesh, near that on the coarser one, or else from the laid belt."""
+    prepared, fineness = rest.prepared, FINER * rest.fineness
+    system = staying_system(prepared, prepared.graded_lengths(fineness))
+    state = transfer(rest.system, rest.state, system)
+    try:
+        state, tension = _balanced(prepared, system, state)
+    except ConvergenceError:
+        return stand(prepared, fineness=fineness)
+    return Standing(prepared, system, state, state.position.copy(), tension, prepared.layer, fineness)
 
 
 def stand(prepared: Prepared, elements: int | None = None, *, fineness: float = FIRST_FINENESS) -> Standing:
