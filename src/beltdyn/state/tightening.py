@@ -23,6 +23,8 @@ _TIGHTER = 1.0, 1.05, 1.1, 1.2
 """Tensions at which a search may begin, over the one that is asked for."""
 _JUMP = 0.005
 """Largest relative error of the installed tension if it jumps over the length of the belt, or a spring sets it."""
+_TURNED = 0.005
+"""Change of the tension away from the one that is wanted, over that one, after which it has turned."""
 _MOST_TRIALS = 60
 _LONGEST_CHANGE = 0.02
 """Change of a belt's length from one trial to the next, over its length, at most."""
@@ -112,6 +114,7 @@ class Tightening(Generic[At]):
     def _from(self, start: _Start) -> At:
         """The drive with the tension that is wanted, by the secant method from a start."""
         rest, done, slope = self._first, self._tighter, start.slope
+        self._nearest = rest
         if start.tighter != done:
             rest, change = self._ahead(rest, done, start.tighter - done)
             done += change
@@ -123,6 +126,8 @@ class Tightening(Generic[At]):
                 return rest
             if abs(missing) < abs(self._wanted - self._nearest.tension):
                 self._nearest = rest
+            elif len(sides) == 1 and (turned := self._turned(rest)):
+                raise self._out_of_reach(turned)
             sides[missing > 0.0] = done, rest
             change = float(np.clip(missing / slope, -longest, longest))
             if len(sides) == 2:
@@ -171,7 +176,9 @@ class Tightening(Generic[At]):
 
     def _held(self, rest: At) -> At:
         """The last of too many trials, if a spring holds nearly the tension that is wanted."""
-        first, wanted = self._first, self._wanted
+        first, wanted, turned = self._first, self._wanted, self._turned(rest)
+        if turned:
+            raise self._out_of_reach(turned)
         if abs(rest.tension - first.tension) < abs(wanted - rest.tension):
             if abs(wanted - rest.tension) < _JUMP * wanted:  # a spring holds the tension that bending leaves of it
                 return rest
@@ -222,7 +229,7 @@ class Tightening(Generic[At]):
     def _turned(self, rest: At) -> str:
         """That the tension turns before it is the one that is wanted, if springs let it."""
         nearest, excess = self._nearest, self._nearest.tension - self._wanted
-        if not self._given.carriers or (rest.tension - nearest.tension) * np.sign(excess) <= _ACCURACY * self._wanted:
+        if not self._given.carriers or (rest.tension - nearest.tension) * np.sign(excess) <= _TURNED * self._wanted:
             return ""
         return (
             f"the tensioner force gives {nearest.tension:.5g} N with a belt length of "
