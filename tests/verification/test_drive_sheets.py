@@ -304,7 +304,10 @@ def followed(dynamic: Callable[[complex, float], ComplexArray], root: complex) -
         for _ in range(50):
             step = 1e-6 * abs(root)
             slope = (dynamic(root + step, part) - dynamic(root - step, part)) / (2.0 * step)
-            away = 1.0 / np.trace(np.linalg.solve(dynamic(root, part), slope))
+            try:
+                away = 1.0 / np.trace(np.linalg.solve(dynamic(root, part), slope))
+            except np.linalg.LinAlgError:
+                break  # A is singular at the root itself
             root -= complex(away)
             if abs(away) < 1e-9 * abs(root):
                 break
