@@ -194,7 +194,7 @@ class _Belt:
 
 
 def _balanced(prepared: Prepared, given: float | None = None) -> _Belt | None:
-    """The belt with its tension, its tensioners in balance, by Newton's method; None if slack, sunk or not found."""
+    """The belt with its tension, tensioners in balance, by Newton's method; None if slack, sunk or not found."""
     first = prepared.installation
     if given is None:
         given = prepared.installed_tension or prepared.loaded_belt.installed_tension
@@ -219,7 +219,7 @@ def _balanced(prepared: Prepared, given: float | None = None) -> _Belt | None:
             missing = residual(unknown)
             if np.all(np.abs(missing) < _ROUNDING):
                 found = belt_at(unknown)
-                return found if found.lies_on_rims else None
+                return found if found.lies_on_rims and found.length > 0.0 else None
             slopes = [(residual(unknown + _STEP * way) - missing) / _STEP for way in np.eye(len(unknown))]
             unknown = unknown - np.linalg.solve(np.transpose(slopes), missing)
     except (ValueError, np.linalg.LinAlgError):

@@ -7,7 +7,9 @@ import pytest
 
 import beltdyn as bd
 from beltdyn.model import Drive, estimate_at_rest, install, prepare
+from beltdyn.model.rest_estimate import tightening
 from beltdyn.theory.static_tension import span_radius
+from tests.lumped.drawn_layouts import layout_at_rest
 
 
 def test_without_bending_and_with_hard_contact_it_is_the_simple_estimate() -> None:
@@ -73,3 +75,20 @@ def test_a_tensioner_balances_the_lines_of_the_spans() -> None:
     (carrier,), (position,) = prepared.carriers, found.tensioner_positions
     moment = -float(found.hub_loads[carrier.pulley] @ carrier.place(position)[1])
     assert carrier.force(position) == pytest.approx(moment, rel=1e-8)
+
+
+def test_a_drive_is_tightened_to_its_tension_along_its_slope() -> None:
+    """The slope tells the tension of a belt that is a little tighter; a tensioner that yields makes it small."""
+    prepared = prepare(bd.example("alternator_drive"))
+    found, ahead = tightening(prepared), tightening(prepared, 1.01)
+    assert found is not None
+    assert ahead is not None
+    assert estimate_at_rest(prepared)[0].belt_length == pytest.approx(prepared.belt_length - found.distance, rel=1e-12)
+    assert (ahead.distance - found.distance) * found.slope == pytest.approx(3.0, rel=0.05)
+
+
+def test_where_lines_find_no_path_there_is_no_closed_form_with_bending() -> None:
+    """Bent off its rims the belt of this layout has no common tangent between two pulleys."""
+    prepared = prepare(Drive(**layout_at_rest(325)))
+    assert tightening(prepared) is None
+    assert estimate_at_rest(prepared)[1].path.length == pytest.approx(prepared.path.length)
