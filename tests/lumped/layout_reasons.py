@@ -340,18 +340,29 @@ def _no_take_up(place: _Place, named: list[int], said: re.Match[str]) -> bool:
 
 
 def _leaves(place: _Place, named: list[int], _: re.Match[str]) -> bool:
-    """Where the belt has its tension, the lines of force about the others pass beside the pulley."""
-    there = place.taken_up
-    if there.tensioner.get("preload") is not None:
-        travel = _Travel.of(place)
-        there = travel.at(travel.nearest() or 0.0)
-    return bool(_left(there.lines.route)[named[-1]])
+    """Where the belt has its tension, the lines of force about the others pass beside the pulley.
+
+    On a pulley of small wrap beside a span of few layers the belt bends more than at a point, and at most as on an arc.
+    """
+    there = _where_balanced(place)
+    lines, arcs = there.lines, place.bending / (2.0 * there.lines.pull * place.radii)
+    arcs[named[-1]] = 0.0
+    bounds = lines.route, Route.around(there.centers, place.radii + arcs)
+    return any(bool(_left(route)[named[-1]]) for route in bounds)
+
+
+def _where_balanced(place: _Place) -> _Place:
+    """With the tensioner where it gives the tension that is asked for."""
+    if "preload" not in place.tensioner:
+        return place.taken_up
+    travel = _Travel.of(place)
+    return travel.at(travel.nearest() or 0.0)
 
 
 def _lifts_off(place: _Place, named: list[int], said: re.Match[str]) -> bool:
     """At that tension, but not a little before it, the belt leaves the pulley."""
     ends = (place._replace(belt=place.belt | {"installed_tension": part * float(said[1])}) for part in _SAID)
-    before, beyond = (_leaves(one, named, said) for one in ends)
+    before, beyond = (bool(_left(_where_balanced(one).lines.route)[named[-1]]) for one in ends)
     return before != beyond
 
 

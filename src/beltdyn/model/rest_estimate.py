@@ -72,11 +72,11 @@ class Tightening(NamedTuple):
     """Tension over that distance, N/m: negative where a spring presses the harder the longer the belt is."""
 
 
-def tightening(prepared: Prepared, factor: float = 1.0) -> Tightening | None:
-    """Estimate by how much to tighten a drive to a multiple of its installed tension; None if none is found nearby."""
-    if prepared.installed_tension is None:
+def tightening(prepared: Prepared) -> Tightening | None:
+    """Estimate by how much to tighten a drive with an installed tension; None where no balance is found nearby."""
+    tension = prepared.installed_tension
+    if tension is None:
         return None
-    tension = factor * prepared.installed_tension
     belts = [_balanced(prepared, tension * part) for part in (1.0, 1.0 + _CHANGE)]
     distances = [_distance(prepared, belt) for belt in belts if belt is not None]
     if len(distances) < len(belts) or distances[0] == distances[1]:

@@ -19,8 +19,8 @@ from beltdyn.system.observations import Observations
 
 _ACCURACY = 1e-6
 """Tolerance of the installed tension, relative."""
-_TIGHTER = 1.0, 1.05, 1.1, 1.2
-"""Tensions at which a search may begin, over the one that is asked for."""
+_TIGHTER = 0.05, -0.05, 0.1, -0.1, 0.2, -0.2, 0.4
+"""How much tighter a search may begin, by the estimate, over the tension that is asked for."""
 _JUMP = 0.005
 """Largest relative error of the installed tension if it jumps over the length of the belt, or a spring sets it."""
 _TURNED = 0.005
@@ -59,18 +59,25 @@ At = TypeVar("At", bound=Tightened)
 def begin(prepared: Prepared, at_rest: Callable[[Prepared], At]) -> tuple[At, float]:
     """The drive at rest, and by how much it is tighter than as given, m.
 
-    It has the length of its estimate, or else that of closed forms with bending for the tension that is asked for, or
-    for more: a belt bends off a pulley the less the tighter it is.
+    It has the length of its estimate; else that of closed forms with bending; else one with which it is tighter or
+    looser, so that the belt meets pulleys that it misses.
     """
     try:
         return at_rest(prepared), 0.0
     except ConvergenceError:
-        for factor in _TIGHTER:
-            bent = tightening(prepared, factor)
+        for distance in _distances(prepared):
             with suppress(ConvergenceError, ModelError):
-                if bent is not None:
-                    return at_rest(prepared.tightened(bent.distance)), bent.distance
+                return at_rest(prepared.tightened(distance)), distance
         raise
+
+
+def _distances(prepared: Prepared) -> Iterator[float]:
+    """By how much a search may begin tighter, m."""
+    tension, bent = prepared.installed_tension, tightening(prepared)
+    if bent is not None:
+        yield bent.distance
+    if tension is not None:
+        yield from (part * tension / _tension_over_length(prepared) for part in _TIGHTER)
 
 
 class _Start(NamedTuple):
