@@ -4,6 +4,7 @@ The centerline is a Bezier curve given by its control points, whatever the belt 
 vectors of which the control points are combinations (the basis): Q_b = integral of S_b (f_n n + (f_t + f_r) t) dx.
 """
 
+from math import ceil
 from typing import Any, Final, NamedTuple
 
 import numpy as np
@@ -13,7 +14,18 @@ from beltdyn.contact.bezier import Curve, combine, fill_bernstein, fill_bernstei
 from beltdyn.contact.contact_zone import touching_intervals, zone_record
 from beltdyn.contact.law import ContactLaw, PulleyState
 from beltdyn.contact.penetration import Approach, approach
-from beltdyn.contact.point_force import PointForce, PointTangent, point_force, point_tangent, point_turn
+from beltdyn.contact.point_force import (
+    NO_FORCE,
+    NO_TANGENT,
+    NO_TURN,
+    PointForce,
+    PointTangent,
+    PointTurn,
+    point_force,
+    point_tangent,
+    point_turn,
+)
+from beltdyn.contact.surface import Round, Shaped, Toothed
 from beltdyn.contact.teeth import (
     NoTeeth,
     Tooth,
@@ -23,6 +35,8 @@ from beltdyn.contact.teeth import (
     speed_unknown,
     tangent_with,
     tooth_at,
+    tooth_of,
+    tooth_traction,
     turn_with,
 )
 from beltdyn.kernel import by_type, kernel
@@ -66,6 +80,8 @@ class ContactFactors(NamedTuple):
     """Friction changes by its secant from no slip, in place of its slope."""
 
 
+_BETWEEN: Final = 1e-9
+"""Of a pitch: teeth that rounding puts on both sides of the end of a curve belong to the later one."""
 NO_CONTACT_TANGENT: Final = ContactFactors(0.0, 0.0, 0.0, 0.0, 0.0, False)
 
 
@@ -137,6 +153,7 @@ def contact_force(
     totals = ContactTotals(0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
     wanted = factors.by_position != 0.0 or factors.by_velocity != 0.0
     flowing = wanted and (factors.by_slope != 0.0 or factors.by_flow != 0.0)
+    totals = _add_single(pulley.surface, totals, curve, pulley, factors, work)
     for interval in range(count):
         start, stop = intervals[interval, 0], intervals[interval, 1]
         moving = wanted and (start > 0.0 or stop < 1.0)
@@ -172,6 +189,71 @@ def contact_force(
             if moving and 0.0 < xi < 1.0:
                 _move_end(curve, pulley, xi, end, factors.by_position, work)
     return totals
+
+
+@kernel(inline=True)
+def _no_single(
+    surface: Any, totals: ContactTotals, curve: Curve, pulley: PulleyState, factors: ContactFactors, work: np.record
+) -> ContactTotals:
+    """Leave all as it is: the belt has no teeth."""
+    return totals
+
+
+@kernel
+def tooth_numbers(surface: Any, curve: Curve) -> tuple[int, int]:
+    """First number of the single teeth on a curve, and that after the last; equal if there are none."""
+    if surface.spacing == 0.0:
+        return 0, 0
+    start, end = curve.start / surface.spacing, (curve.start + curve.length) / surface.spacing
+    return ceil(start - _BETWEEN), ceil(end - _BETWEEN)
+
+
+@kernel
+def _at_tooth(surface: Toothed, curve: Curve, pulley: PulleyState, number: int, work: np.record) -> Approach:
+    """The middle of a tooth against a pulley; its weights are in `work`."""
+    fill_bernstein((number * surface.spacing - curve.start) / curve.length, work.weights)
+    x, y = combine(curve.control, work.weights)
+    vx, vy = combine(curve.velocity, work.weights)
+    return approach(x, y, vx, vy, pulley)
+
+
+@kernel
+def tooth_force(surface: Any, curve: Curve, pulley: PulleyState, number: int, work: np.record) -> float:
+    """Force of a single tooth on the belt, N, positive along the belt."""
+    here = _at_tooth(surface, curve, pulley, number, work)
+    if here.penetration < -surface.height:
+        return 0.0
+    tooth = tooth_of(surface, here, pulley.speed, number * surface.spacing)
+    along = surface.spacing * tooth_traction(tooth, here)
+    return along if surface.rate > 0.0 else -along
+
+
+@kernel
+def _single_teeth(
+    surface: Toothed, totals: ContactTotals, curve: Curve, pulley: PulleyState, factors: ContactFactors, work: np.record
+) -> ContactTotals:
+    """Add the forces of single teeth, which act at their middles, with their tangent."""
+    pitch = surface.spacing
+    first, last = tooth_numbers(surface, curve)
+    wanted = factors.by_position != 0.0 or factors.by_velocity != 0.0
+    for number in range(first, last):
+        here = _at_tooth(surface, curve, pulley, number, work)
+        if here.penetration < -surface.height:
+            continue
+        tooth = tooth_of(surface, here, pulley.speed, number * pitch)
+        force = force_with(tooth, NO_FORCE, here)
+        fill_shape_functions(curve.basis, work.weights, work.functions)
+        _add_pairs(work.force, work.functions, pitch * force.x, pitch * force.y)
+        totals = _add_point(totals, pitch, here, force, power_taken(tooth), pulley)
+        if wanted:
+            by_turning = speed_unknown(surface) * factors.by_turning
+            tangent = tangent_with(tooth, NO_TANGENT, here, factors.by_position, factors.by_velocity)
+            turn = turn_with(tooth, NO_TURN, here, factors.by_position, by_turning)
+            _give(pitch, tangent, turn, work)
+    return totals
+
+
+_add_single = by_type({Round: _no_single, Shaped: _no_single, Toothed: _single_teeth}, "add_single")
 
 
 @kernel(inline=True)
@@ -221,11 +303,17 @@ def _spread(
     tangent = tangent_with(tooth, tangent, here, factors.by_position, factors.by_velocity)
     turn = point_turn(here, force, pulley.speed, factors.by_position, by_turning)
     turn = turn_with(tooth, turn, here, factors.by_position, by_turning)
+    _give(weight, tangent, turn, work)
+    _pass(tooth, weight * factors.by_position, here, work)
+
+
+@kernel(inline=True)
+def _give(weight: float, tangent: PointTangent, turn: PointTurn, work: np.record) -> None:
+    """Give derivatives at a point to the vectors."""
     _add_pairs(work.by_turn, work.functions, weight * turn.x, weight * turn.y)
     _add_pairs(work.moment, work.functions, weight * tangent.moment_x, weight * tangent.moment_y)
     _add_blocks(work, work.functions, tangent, weight)
     work.moment_by_turn += weight * turn.moment
-    _pass(tooth, weight * factors.by_position, here, work)
 
 
 @kernel(inline=True)

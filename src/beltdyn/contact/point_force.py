@@ -145,6 +145,13 @@ class PointTurn(NamedTuple):
     moment: float
 
 
+NO_FORCE: Final = PointForce(
+    NormalForce(0.0, 0.0, 0.0, 0.0, 0.0), 0.0, RollingResistance(0.0, 0.0, 0.0), 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0
+)
+NO_TANGENT: Final = PointTangent(0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
+NO_TURN: Final = PointTurn(0.0, 0.0, 0.0)
+
+
 @kernel
 def point_force(here: Approach, pulley: PulleyState, law: ContactLaw, secant: bool = False) -> PointForce:
     """Contact force at a point.

@@ -1,4 +1,4 @@
-"""Force of spread teeth at a point of the belt, and its variation.
+"""Force of teeth at a point of the belt, and its variation.
 
 The groove of a tooth is ahead of it by the angle a (`beltdyn.contact.surface.toothed`), reduced to the nearest groove,
 so that a tooth that is off by more than half a pitch has jumped.  With R_p the pitch radius and rho = |r - O|, misfit
@@ -10,7 +10,13 @@ and the force on the belt along t is R_p / rho times
 
     q = k (delta without the backlash) + c d(delta)/dt    per length of belt,
 
-with the moment -R_p q on the pulley: of a potential but for its damper.
+with the moment -R_p q on the pulley: of a potential but for its damper.  Flanks of the angle phi to the normal push the
+belt off by tan(phi) |q|, without what the damper adds.  Where it has lifted off the rim by z, they have z tan(phi) more
+play to both sides, and a tooth of height h has the stiffness k (1 - (z / h)^2), so that it enters and leaves its groove
+smoothly, and the force keeps a potential.
+
+Spread teeth act at every point that touches.  Single teeth act at their middles alone, a pitch apart, each with the
+force of a pitch of spread ones.
 """
 
 from collections.abc import Callable
@@ -49,6 +55,16 @@ class Tooth(NamedTuple):
     """As of `Toothed`."""
     misfit_rate: float
     """d(delta)/dt, m/s."""
+    push: float
+    """Force of the flanks on the belt along n, N/m."""
+    push_slope: float
+    """Its derivative by delta, N/m^2."""
+    lift_slope: float
+    """dq / dz of a belt that has lifted off the rim, N/m^2."""
+    push_lift: float
+    """Derivative of `push` by z there, N/m^2."""
+    lift_rate: float
+    """dz/dt, m/s."""
 
 
 @kernel(inline=True)
@@ -57,33 +73,78 @@ def _no_tooth(surface: Any, here: Approach, speed: float, along: float) -> NoTee
 
 
 @kernel
-def _tooth(surface: Toothed, here: Approach, speed: float, along: float) -> Tooth:
-    """Force of teeth at a material coordinate (m) on a pulley of a speed (rad/s)."""
-    angle = surface.phase - atan2(here.normal_y, here.normal_x) + surface.rate * along
-    angle -= surface.groove * floor(angle / surface.groove + 0.5)
-    misfit = surface.pitch_radius * angle
+def misfit_of(surface: Toothed, normal_x: float, normal_y: float, along: float) -> float:
+    """Way from a tooth at a material coordinate (m), in a direction from the shaft, to the nearest groove, m."""
+    angle = surface.phase - atan2(normal_y, normal_x) + surface.rate * along
+    return surface.pitch_radius * (angle - surface.groove * floor(angle / surface.groove + 0.5))
+
+
+@kernel
+def tooth_of(surface: Toothed, here: Approach, speed: float, along: float) -> Tooth:
+    """Force of teeth at a material coordinate (m) on a pulley of a speed (rad/s), over their pitch."""
+    misfit = misfit_of(surface, here.normal_x, here.normal_y, along)
     rate = surface.pitch_radius * (speed - here.circumferential / here.lever)
-    slope, force = surface.stiffness, surface.stiffness * misfit
-    if surface.half_gap > 0.0:
-        held = abs(misfit) > surface.half_gap
-        beyond = abs(misfit) - surface.half_gap if held else 0.0
-        force = surface.stiffness * (LOOSE * misfit + (1.0 - LOOSE) * (beyond if misfit > 0.0 else -beyond))
-        slope = surface.stiffness if held else LOOSE * surface.stiffness
+    lift, flank, stiffness = max(-here.penetration, 0.0), surface.flank, surface.stiffness
+    gap, sense = surface.half_gap + flank * lift, 1.0 if misfit > 0.0 else -1.0
+    held = abs(misfit) >= gap
+    beyond, slope, damping = 0.0, 0.0, surface.damping
+    push = push_slope = lift_slope = push_lift = 0.0
+    if held:
+        beyond, slope = abs(misfit) - gap, stiffness
+        push, push_slope = flank * stiffness * beyond, sense * flank * stiffness
+    if lift == 0.0:
+        force = (1.0 - LOOSE) * sense * stiffness * beyond + LOOSE * stiffness * misfit
+        slope += LOOSE * (stiffness - slope)
+    else:
+        left, falls = _left_of_height(lift, surface.height)
+        fades = falls * lift
+        damping *= left if held else 0.0
+        slope *= left
+        force = sense * slope * beyond
+        push = slope * beyond * flank - 0.5 * stiffness * fades * beyond * beyond
+        push_slope = sense * (slope * flank - stiffness * fades * beyond)
+        lift_slope = sense * (stiffness * fades * beyond - slope * flank)
+        push_lift = 2.0 * stiffness * fades * beyond * flank - slope * flank * flank
+        push_lift -= 0.5 * stiffness * falls * beyond * beyond
+        if held:
+            lift_slope += surface.damping * fades * rate
     return Tooth(
-        force + surface.damping * rate,
+        force + damping * rate,
         slope,
-        surface.damping,
+        damping,
         surface.pitch_radius,
         surface.rate,
         surface.by_flow,
         rate,
+        push,
+        push_slope,
+        lift_slope,
+        push_lift,
+        here.radial,
     )
+
+
+@kernel(inline=True)
+def _left_of_height(lift: float, height: float) -> tuple[float, float]:
+    """What is left of the stiffness of a lifted tooth, 1 - (z / h)^2, and its derivative by z over z, 1/m^2."""
+    if height == 0.0 or lift >= height:
+        return 0.0, 0.0
+    return 1.0 - (lift / height) ** 2, -2.0 / (height * height)
+
+
+@kernel
+def _tooth(surface: Toothed, here: Approach, speed: float, along: float) -> Tooth:
+    """Force of spread teeth; single ones leave none to the points between them."""
+    tooth = tooth_of(surface, here, speed, along)
+    if surface.spacing > 0.0:
+        return Tooth(0.0, 0.0, 0.0, tooth.pitch_radius, tooth.rate, tooth.by_flow, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
+    return tooth
 
 
 tooth_at: Callable[[Any, Approach, float, float], Any] = by_type(
     {Round: _no_tooth, Shaped: _no_tooth, Toothed: _tooth}, "tooth_at"
 )
-"""The teeth at a point: of a surface, how the point stands, speed of the pulley (rad/s), material coordinate (m)."""
+"""Spread teeth at a point: of a surface, how the point stands, speed of the pulley (rad/s), material coordinate (m)."""
 
 
 @kernel(inline=True)
@@ -103,6 +164,20 @@ tooth_traction: Callable[[Any, Approach], float] = by_type(
 
 
 @kernel(inline=True)
+def _no_push(tooth: NoTeeth) -> float:
+    return 0.0
+
+
+@kernel(inline=True)
+def _push(tooth: Tooth) -> float:
+    return tooth.push
+
+
+tooth_push: Callable[[Any], float] = by_type({NoTeeth: _no_push, Tooth: _push}, "tooth_push")
+"""Force of the flanks of teeth on the belt along n, N/m."""
+
+
+@kernel(inline=True)
 def _without(tooth: NoTeeth, force: PointForce, here: Approach) -> PointForce:
     return force
 
@@ -114,8 +189,8 @@ def _with_teeth(tooth: Tooth, force: PointForce, here: Approach) -> PointForce:
         force.normal,
         force.friction,
         force.rolling,
-        force.x - along * here.normal_y,
-        force.y + along * here.normal_x,
+        force.x + tooth.push * here.normal_x - along * here.normal_y,
+        force.y + tooth.push * here.normal_y + along * here.normal_x,
         force.by_slip,
         force.by_normal,
         force.by_speed,
@@ -144,13 +219,14 @@ def _tangent_with_teeth(
 ) -> PointTangent:
     bend, radius = here.curvature, tooth.pitch_radius
     swing = here.circumferential * bend * bend * by_position
-    across = tooth.damping * radius * swing
+    across = tooth.damping * radius * swing + tooth.lift_slope * by_position
     along = -tooth.slope * radius * bend * by_position
     along += tooth.damping * radius * bend * (here.radial * bend * by_position - by_velocity)
     tilt = by_position * bend * bend * radius * tooth.traction
-    nt, tn, tt = -tilt, radius * bend * across - tilt, radius * bend * along
+    nn, nt = tooth.push_lift * by_position, -tilt - tooth.push_slope * radius * bend * by_position
+    tn, tt = radius * bend * across - tilt, radius * bend * along + tooth.push * bend * by_position
     nx, ny = here.normal_x, here.normal_y
-    xn, xt, yn, yt = -ny * tn, nx * nt - ny * tt, nx * tn, ny * nt + nx * tt
+    xn, xt, yn, yt = nx * nn - ny * tn, nx * nt - ny * tt, ny * nn + nx * tn, ny * nt + nx * tt
     moment_n, moment_t = -radius * across, -radius * along
     return PointTangent(
         tangent.xx + xn * nx - xt * ny,
@@ -177,8 +253,11 @@ def _turn_without(tooth: NoTeeth, turn: PointTurn, here: Approach, by_angle: flo
 def _turn_with_teeth(tooth: Tooth, turn: PointTurn, here: Approach, by_angle: float, by_speed: float) -> PointTurn:
     change = tooth.pitch_radius * (by_angle * tooth.slope + by_speed * tooth.damping)
     along = change * tooth.pitch_radius / here.lever
+    off = tooth.pitch_radius * by_angle * tooth.push_slope
     return PointTurn(
-        turn.x - along * here.normal_y, turn.y + along * here.normal_x, turn.moment - tooth.pitch_radius * change
+        turn.x + off * here.normal_x - along * here.normal_y,
+        turn.y + off * here.normal_y + along * here.normal_x,
+        turn.moment - tooth.pitch_radius * change,
     )
 
 
@@ -228,7 +307,7 @@ def _none_lost(tooth: NoTeeth) -> float:
 
 @kernel(inline=True)
 def _taken(tooth: Tooth) -> float:
-    return tooth.traction * tooth.misfit_rate
+    return tooth.traction * tooth.misfit_rate - tooth.push * tooth.lift_rate
 
 
 power_taken: Callable[[Any], float] = by_type({NoTeeth: _none_lost, Tooth: _taken}, "power_taken")

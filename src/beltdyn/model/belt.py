@@ -42,7 +42,7 @@ from beltdyn.model.fatigue import CordFatigue, RibFatigue
 from beltdyn.model.rating import RatedBelt
 from beltdyn.model.stretch_curve import StretchCurve
 from beltdyn.model.tooth_rating import RatedTeeth
-from beltdyn.model.toothing import FEWEST_TEETH, MOST_OFF, MOST_TEETH, Toothing
+from beltdyn.model.toothing import DISCRETE, FEWEST_TEETH, MOST_OFF, MOST_TEETH, Toothing
 from beltdyn.parts.kind_fields import LawKeys, NameOf
 from beltdyn.parts.part import Part
 from beltdyn.parts.quantity import (
@@ -361,6 +361,11 @@ class Belt(Part):
         if self.wedge_angle is not None:
             raise ValueError("wedge_angle is incompatible with teeth: the belt is flat between them. Omit it")
         return self
+
+    @property
+    def has_single_teeth(self) -> bool:
+        """Whether teeth act one by one in runs over time."""
+        return self.toothing is not None and self.toothing.law == DISCRETE
 
     @model_validator(mode="after")
     def _one_loss_for_each_strain(self) -> Self:

@@ -140,6 +140,10 @@ def choose_elements(belt: OnPath, tension: float) -> Choice:
     )
     finer = max(elements_needed(belt, Running(tension))[name] for name in PRESSURES)
     more = f"; contact pressures need {finer}" if finer > number else ""
+    teeth = belt.belt.teeth
+    if teeth is not None and belt.belt.has_single_teeth:
+        number = teeth * math.ceil(number / teeth)
+        more = f"; a whole number of them to a tooth{more}"
     return Choice("belt.elements", number, "", reason + more)
 
 

@@ -29,6 +29,7 @@ from beltdyn.model.rating import RatedBelt
 from beltdyn.model.routing import radii, span_names
 from beltdyn.model.simulation import Frame, Limits, Simulation, Steady, choose_frame, element_of
 from beltdyn.model.tooth_rating import RatedTeeth
+from beltdyn.model.toothing import DISCRETE
 from beltdyn.parts.change import changed_arguments
 from beltdyn.parts.kind_fields import Chosen, chosen_kinds
 from beltdyn.parts.part import Part
@@ -157,6 +158,11 @@ class Drive(Part):
             raise ValueError(
                 f"simulation.force_tolerance = {tolerance:g} is incompatible with a travelling mesh, which is not "
                 f"refined; the mesh of this drive travels, {frame.reason}. Remove one of the two"
+            )
+        if self.belt.has_single_teeth and frame.stays:
+            raise ValueError(
+                f'belt.toothing.law = "{DISCRETE}" is incompatible with simulation.frame = "staying": single teeth '
+                'travel with their mesh. Omit frame, or set law = "spread"'
             )
         if self.ends and frame.stays:
             raise ValueError(

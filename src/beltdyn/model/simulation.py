@@ -15,6 +15,7 @@ from beltdyn.elements import ANCF, QUINTIC
 from beltdyn.kinds import Registry, register
 from beltdyn.model.belt import Belt
 from beltdyn.model.contact import Contact
+from beltdyn.model.toothing import DISCRETE
 from beltdyn.parts.kind_fields import NameOf
 from beltdyn.parts.messages import apart
 from beltdyn.parts.part import Part
@@ -422,6 +423,7 @@ def choose_frame(simulation: Simulation, belt: Belt, contact: Contact, is_open: 
     misfits = [("simulation", *one[:2]) for one in simulation.misfits_staying]
     reasons = [
         *["the belt is open"] * is_open,
+        *[_written("belt.toothing", "law", DISCRETE)] * belt.has_single_teeth,
         *(_written(*one) for one in (*misfits, *element_settings(belt, contact))),
     ]
     return Frame("travelling", f"since {reasons[0]}") if reasons else Frame("staying", "")

@@ -1,7 +1,7 @@
 """The teeth of a synchronous belt: pitch, stiffness and size."""
 
 from math import pi
-from typing import Self
+from typing import Final, Literal, Self
 
 from pydantic import Field
 
@@ -12,6 +12,11 @@ FEWEST_TEETH, MOST_TEETH = 4, 10_000
 """Of a belt or pulley."""
 LARGEST_PITCH_ERROR = 0.02
 """Of a pulley, relative."""
+SPREAD: Final = "spread"
+DISCRETE: Final = "discrete"
+"""Laws of teeth: those of every place on the arc, or single ones at their middles."""
+USUAL_HEIGHT = 0.4
+"""Of a tooth with flanks, over its pitch, about."""
 MOST_OFF = 0.01
 """Largest difference of a length from a whole number of pitches, relative, that strain and pitch errors explain."""
 
@@ -46,10 +51,22 @@ class Toothing(Part):
         lt=0.5 * pi,
         description="the angle of the flanks to the normal of the pulley, by which teeth push the belt off, in rad",
     )
+    law: Literal["spread", "discrete"] = Field(
+        SPREAD,
+        description="the law of teeth in runs over time: spread over the arc, or discrete, tooth by tooth on a "
+        "travelling mesh; other analyses spread them",
+    )
     largest_tooth_load: Force | None = Field(
         None, gt=0, description="the allowed force on a tooth of the whole width, in N"
     )
     source: Words | None = Field(None, description="the source of the values, as text")
+
+    @property
+    def reach(self) -> float:
+        """Lift of the belt off the rim at which a tooth is out of its groove, m."""
+        if self.tooth_height is not None:
+            return self.tooth_height
+        return USUAL_HEIGHT * self.pitch if self.flank_angle > 0.0 else 0.0
 
     def times(self, width: float) -> Self:
         """The same teeth of a belt so many times as wide."""

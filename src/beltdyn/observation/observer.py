@@ -6,11 +6,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from beltdyn.arrays import BoolArray, FloatArray
+from beltdyn.contact.surface import ToothedRims
 from beltdyn.errors import ConvergenceError, SlipError
 from beltdyn.model import Prepared
 from beltdyn.parts.quantity import RPM
 from beltdyn.results.checks.sliding import SWEEP_REMEDY
 from beltdyn.results.friction_work import FrictionWork, MaterialWork, Touch
+from beltdyn.results.jumps import JUMPS
 from beltdyn.results.mechanics import across
 from beltdyn.results.mid_span import mid_span_displacements
 from beltdyn.results.schema import FILTERED
@@ -23,6 +25,7 @@ from beltdyn.system.frame import Flowing, Travelling
 from beltdyn.system.moving_center import pulley_speeds
 from beltdyn.system.observations import OBSERVED
 from beltdyn.system.observe import observe_motion
+from beltdyn.system.single_teeth import JumpWatch, tooth_coordinates, tooth_forces
 
 # The energy account of a run: what goes in, what is stored, what is lost, and whether that adds up
 
@@ -92,6 +95,7 @@ class Observer:
         self._material_work = MaterialWork(lengths)
         self._energy = EnergyAccount()
         self._flutter = None if isinstance(system.frame, Flowing) else FlutterWatch(system)
+        self._jumps = JumpWatch(system, belt_coordinate) if isinstance(system.rims, ToothedRims) else None
 
     def see(self, states: Chunk, shown: BoolArray) -> Seen:
         """Recorded variables of the shown states, except coordinates and their rates, and spectra of every state."""
@@ -107,6 +111,8 @@ class Observer:
         _require_numbers(states.time, shown, every)
         if self._flutter:
             self._flutter.take(states.time, states.position, states.velocity, every)
+        if self._jumps:
+            self._jumps.take(states.time, states.position, centers, places)
         rows = {name: values if name in _OF_SHOWN else values[shown] for name, values in every.items()}
         at_outputs = {
             **rows,
@@ -122,8 +128,15 @@ class Observer:
             **dict(zip(ENERGY_WORKS, states.work[shown].T, strict=True)),
             "material_loss": states.work[shown][:, [STRETCH_LOSS, BENDING_LOSS]].sum(axis=1),
             "energy_closure": closure,
+            **self._teeth(states, shown),
         }
         return Seen(at_outputs, {name: values for name, values in every.items() if name in FILTERED})
+
+    def _teeth(self, states: Chunk, shown: BoolArray) -> Arrays:
+        """Forces of single teeth in the states that are shown, if there are any."""
+        if not tooth_coordinates(self._system).size:
+            return {}
+        return {"tooth_force": tooth_forces(self._system, states.position[shown], states.velocity[shown])}
 
     def _works(self, touch: Touch, states: Chunk, shown: BoolArray) -> tuple[FloatArray, FloatArray]:
         """Work of friction since the beginning by arc and by belt, in the states that are shown.
@@ -142,6 +155,12 @@ class Observer:
     def find_flutter(self) -> Flutter | None:
         """The largest growth of vibrations while the belt slid; None where none grows, or the mesh does not travel."""
         return self._flutter.find() if self._flutter else None
+
+    def find_jumps(self) -> dict[str, FloatArray]:
+        """Attributes of results that tell where the belt has jumped grooves; none where it has not."""
+        events = self._jumps.events if self._jumps else []
+        columns = [np.array(column, dtype=float) for column in zip(*events, strict=True)]
+        return dict(zip(JUMPS, columns, strict=True)) if events else {}
 
 
 def _require_numbers(time: FloatArray, shown: BoolArray, seen: Arrays) -> None:

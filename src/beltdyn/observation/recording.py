@@ -27,6 +27,7 @@ from beltdyn.solvers.trajectory import Chunk, Statistics, interpolated
 from beltdyn.system.arrays import System
 from beltdyn.system.discretization import curve_lengths, element_kind, point_coordinates
 from beltdyn.system.frame import Flowing, Travelling
+from beltdyn.system.single_teeth import tooth_coordinates
 from beltdyn.system.state import laid
 
 # What makes the steps of a simulation as short as they are
@@ -83,6 +84,7 @@ def result_layout(prepared: Prepared, system: System) -> Layout:
         coordinate_names=element_kind(system).coordinates,
         tensioners=tuple(names[pulley] for pulley in system.tensioners.pulley),
         bodies=_bodies(prepared, system),
+        tooth_coordinate=tuple(tooth_coordinates(system).tolist()),
     )
 
 
@@ -270,6 +272,7 @@ class Recording:
         self._ended, self._cpu_ended = time.perf_counter(), time.process_time()
         flutter = self._observer.find_flutter()
         self._findings |= flutter.attributes if flutter else {}
+        self._findings |= self._observer.find_jumps()
         self._findings["check_time"] = time.perf_counter() - self._ended
 
     def run(self) -> Run:

@@ -135,8 +135,8 @@ def _check_names(path: Path, dataset: "xr.Dataset") -> None:
 
 
 def _is_needed(variable: Variable, dataset: "xr.Dataset") -> bool:
-    """Whether a variable is part of the core, and of what a drive with or without tensioners has."""
-    return variable.core and (OPTIONAL.isdisjoint(variable.dims) or not OPTIONAL.isdisjoint(dataset.dims))
+    """Whether a variable is part of the core, and of what a drive with or without tensioners and single teeth has."""
+    return variable.core and OPTIONAL.intersection(variable.dims) <= set(dataset.dims)
 
 
 def _complete(dataset: "xr.Dataset") -> "xr.Dataset":

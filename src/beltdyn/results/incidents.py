@@ -1,4 +1,4 @@
-"""Events at any time of a run: gross slip, slack spans, tensioners on a stop."""
+"""Events at any time of a run: gross slip, slack spans, jumps of a toothed belt, tensioners on a stop."""
 
 from collections.abc import Iterator
 from dataclasses import dataclass
@@ -7,12 +7,13 @@ import numpy as np
 
 from beltdyn.arrays import BoolArray
 from beltdyn.model import Prepared
+from beltdyn.results.jumps import jumps_in
 from beltdyn.results.mechanics import rim_speeds
 from beltdyn.results.schema import Recorded, names
 
 SLIDING_LIMIT = 1e-3
 """Sliding speed of a whole arc, over the belt speed, above which it is gross slip."""
-GROSS_SLIP, SLACK, STOP = "gross slip", "slack", "stop"
+GROSS_SLIP, SLACK, JUMP, STOP = "gross slip", "slack", "jump", "stop"
 
 
 @dataclass(frozen=True, slots=True)
@@ -20,7 +21,7 @@ class Incident:
     """An event at any time of a run."""
 
     kind: str
-    """`GROSS_SLIP`, `SLACK` or `STOP`."""
+    """`GROSS_SLIP`, `SLACK`, `JUMP` or `STOP`."""
     name: str
     """Name of the pulley or the span."""
     periods: tuple[tuple[float, float], ...]
@@ -37,6 +38,7 @@ class Incident:
         words = {
             GROSS_SLIP: f"the belt was in gross slip on {self.name}",
             SLACK: f"{self.name} went slack",
+            JUMP: f"the belt jumped grooves of {self.name}",
             STOP: f"the tensioner of {self.name} was on its {self.side} stop",
         }[self.kind]
         if not self.periods:
@@ -58,7 +60,15 @@ def incidents(recorded: Recorded, prepared: Prepared) -> tuple[Incident, ...]:
             (STOP, name, side, on) for name, on in _each([one.pulley for one in prepared.moving_tensioners], stopped)
         ]
     time = np.asarray(recorded["time"])
-    return tuple(Incident(kind, name, _periods(time, on), side) for kind, name, side, on in found)
+    happened = [Incident(kind, name, _periods(time, on), side) for kind, name, side, on in found]
+    return (*happened, *_jumps(recorded))
+
+
+def _jumps(recorded: Recorded) -> Iterator[Incident]:
+    """Jumps of a toothed belt, those on a pulley together."""
+    events = jumps_in(recorded, names(recorded, "pulley"))
+    for name in dict.fromkeys(one.name for one in events):
+        yield Incident(JUMP, name, tuple((one.time, one.time) for one in events if one.name == name))
 
 
 def slides_through(recorded: Recorded, prepared: Prepared) -> BoolArray:

@@ -39,6 +39,8 @@ class Layout:
     """Names of the pulleys carried by tensioners, in the order of their coordinates."""
     bodies: tuple[str, ...] = ()
     """Names of all bodies other than the belt, in the order of the coordinates."""
+    tooth_coordinate: tuple[float, ...] = ()
+    """Belt coordinate of single teeth in the unstretched belt, m."""
 
     @property
     def nodes(self) -> int:
@@ -68,6 +70,7 @@ class Layout:
             "node_coordinate": self.node_coordinate,
             "element_coordinate": self.element_coordinate,
             "belt_coordinate": self.belt_coordinate,
+            "tooth_coordinate": self.tooth_coordinate,
             "arc_share": arc_shares(),
         }
         return {name: np.asarray(value, COORDINATES[name].dtype) for name, value in values.items() if len(value)}
@@ -85,6 +88,7 @@ class Layout:
             "node": self.nodes,
             "element": self.elements,
             "contact_point": self.contact_points,
+            "tooth": len(self.tooth_coordinate),
             "arc_part": ARC_PARTS,
         }
         return {name: size for name, size in sizes.items() if size}
@@ -174,6 +178,7 @@ def _sizes(prepared: Prepared) -> dict[str, int]:
         * (belt.given_elements + (bool(prepared.ends) or prepared.simulation.joint == "multipliers")),
         "element": curves,
         "contact_point": points * curves,
+        "tooth": (belt.teeth or 0) if belt.has_single_teeth and not prepared.frame.stays else 0,
         "arc_part": ARC_PARTS,
     }
 

@@ -63,6 +63,7 @@ _BODY = ("field_time", "body")
 _ELEMENT = ("field_time", "element")
 _SPAN = ("time", "span")
 _POINT = ("field_time", "contact_point")
+_TOOTH = ("field_time", "tooth")
 _ARC = ("field_time", "pulley", "arc_part")
 _TENSIONER = ("time", "tensioner")
 
@@ -81,6 +82,7 @@ COORDINATES = MappingProxyType(
         "element_coordinate": Variable(("element",), "m", "Belt coordinate of the element midpoint, unstretched"),
         "arc_share": Variable(("arc_part",), "1", "Position on the arc from the inlet", core=False),
         "belt_coordinate": Variable(("contact_point",), "m", "Belt coordinate of the contact point, unstretched"),
+        "tooth_coordinate": Variable(("tooth",), "m", "Belt coordinate of the tooth, unstretched", core=False),
     }
 )
 """Coordinates of the dataset by name; those along a dimension of size zero are omitted."""
@@ -116,6 +118,7 @@ _OUTPUTS = {
     "normal_force": Variable(_POINT, "N/m", "Normal force on the belt", SHORT, at_rest=True),
     "friction_force": Variable(_POINT, "N/m", "Friction force on the belt", SHORT),
     "slip_velocity": Variable(_POINT, "m/s", "Slip velocity", SHORT),
+    "tooth_force": Variable(_TOOTH, "N", "Force of a tooth on the belt, along it", SHORT, core=False),
     "contact_position": Variable((*_POINT, "axis"), "m", "Contact point position", SHORT, at_rest=True),
     "contact_pulley": Variable(_POINT, "1", "Number of the pulley in contact, -1 where free", "int8", at_rest=True),
     "friction_work_on_arc": Variable(
@@ -192,7 +195,7 @@ RECORDED = MappingProxyType(
 """Variables passed to a recorder, except those that `Layout.recorded` omits; `TIMES` come last, ``time`` last of "
 "all."""
 
-OPTIONAL = frozenset({"tensioner"})
+OPTIONAL = frozenset({"tensioner", "tooth"})
 """Dimensions that may have size zero; they are then omitted with their variables."""
 
 AUXILIARY_COORDINATES = MappingProxyType(

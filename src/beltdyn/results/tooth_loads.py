@@ -1,13 +1,13 @@
 """Loads of the teeth of a belt on its pulleys, and how far they are from jumping.
 
-A tooth carries the traction over a pitch of the belt.  Its flanks, at the angle phi to the normal, push the belt off by
-the force times tan(phi); the tension, less m v^2, presses it on by (T - m v^2) p / R.  A tooth that is pushed off with
-more than it is pressed on lifts, and the belt begins to jump there.
+A spread tooth carries the traction over a pitch of the belt.  Its flanks, at the angle phi to the normal, push the belt
+off by the force times tan(phi); the tension, less m v^2, presses it on by (T - m v^2) p / R.  Where flanks carry all of
+that and the lands nothing, the tooth lifts, and the belt begins to jump there.
 """
 
 from collections.abc import Iterator
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
@@ -42,14 +42,14 @@ class ToothLoads:
     in_mesh: float
     """Teeth in mesh: length of belt that touches over the pitch."""
     largest: float
-    """Largest force on a tooth along the belt, N: traction at its middle times the pitch."""
+    """Largest force on a tooth along the belt, N; of spread teeth the largest traction times the pitch."""
     allowed: float
     """Allowed force on a tooth, N; NaN if it is not known."""
     jump_margin: float
     """Least ratio of what presses a tooth on to what its flanks push it off; at 1 a tooth lifts. Infinite without a
     flank angle."""
     places: FloatArray
-    """Middles of teeth along the arc, pitches from the inlet, shape (n,)."""
+    """Middles of teeth along the arc, pitches from the inlet, shape (n,); single teeth may hold a little outside."""
     loads: FloatArray
     """Forces on these teeth along the belt, N, shape (n,); positive where they push it on."""
 
@@ -98,7 +98,8 @@ def loads_at(recorded: Recorded, prepared: Prepared, number: int) -> tuple[Tooth
     )
     along, length, pitch = np.asarray(recorded["belt_coordinate"]), prepared.belt_length, prepared.belt.given_pitch
     cell = cells(along, length)
-    mean = float(np.nanmean(np.asarray(recorded["belt_speed"])[-1]))
+    sense = -1.0 if np.nansum(np.asarray(recorded["belt_speed"])[-1]) < 0.0 else 1.0
+    flank = float(np.tan(toothing.flank_angle))
     most = np.nan if toothing.largest_tooth_load is None else toothing.largest_tooth_load
     found = list[ToothLoads]()
     for p, pulley in enumerate(prepared.pulleys):
@@ -108,22 +109,80 @@ def loads_at(recorded: Recorded, prepared: Prepared, number: int) -> tuple[Tooth
         place = np.mod(along[here] - _inlet(along, here, length), length)
         order = np.argsort(place)
         here, place = here[order], place[order]
-        arc = float(cell[here].sum())
-        count = max(1, round(arc / pitch))
-        middles = (np.arange(count) + 0.5) * arc / count
-        pressed, pushed = (_means(place, cell[here], values[here], count) for values in (pressing, traction))
+        arc = _Arc(place, cell[here], pressing[here], traction[here])
+        if "tooth_force" in recorded:
+            ahead = np.mod(np.asarray(recorded["tooth_coordinate"]) - along[here[0]] + pitch, length) - pitch
+            one = _single(arc, ahead, np.asarray(recorded["tooth_force"][number]), pitch, flank)
+        else:
+            one = _spread(arc, pitch, flank)
         found.append(
             ToothLoads(
                 name=pulley.name,
-                in_mesh=arc / pitch,
-                largest=pitch * float(np.max(np.abs(traction[here]))),
+                in_mesh=arc.length / pitch,
+                largest=one.largest,
                 allowed=most,
-                jump_margin=_margin(pressed, np.abs(pushed) * np.tan(toothing.flank_angle)),
-                places=middles / pitch,
-                loads=(-1.0 if mean < 0.0 else 1.0) * np.interp(middles, place, pitch * traction[here]),
+                jump_margin=one.margin,
+                places=one.places / pitch,
+                loads=sense * one.loads,
             )
         )
     return tuple(found)
+
+
+class _Arc(NamedTuple):
+    """Points on an arc of contact."""
+
+    place: FloatArray
+    """From the first one, m."""
+    share: FloatArray
+    """Length of belt of each, m."""
+    pressing: FloatArray
+    """Normal force, N/m."""
+    traction: FloatArray
+    """Force along the belt, N/m."""
+
+    @property
+    def length(self) -> float:
+        """Length of belt, m."""
+        return float(self.share.sum())
+
+
+class _Found(NamedTuple):
+    """Loads of the teeth on an arc."""
+
+    largest: float
+    """N."""
+    margin: float
+    places: FloatArray
+    """m."""
+    loads: FloatArray
+    """N."""
+
+
+def _spread(arc: _Arc, pitch: float, flank: float) -> _Found:
+    """Loads of teeth in the middles of equal parts of an arc on which they are spread."""
+    count = max(1, round(arc.length / pitch))
+    middles = (np.arange(count) + 0.5) * arc.length / count
+    pressed, pushed = (_means(arc.place, arc.share, values, count) for values in (arc.pressing, arc.traction))
+    largest = pitch * float(np.max(np.abs(arc.traction)))
+    margin = _margin(pressed, np.abs(pushed) * flank)
+    return _Found(largest, margin, middles, np.interp(middles, arc.place, pitch * arc.traction))
+
+
+def _single(arc: _Arc, ahead: FloatArray, force: FloatArray, pitch: float, flank: float) -> _Found:
+    """Loads of single teeth on an arc, or beside it in their grooves, from their places and forces."""
+    near = np.flatnonzero((ahead >= 0.0) & (ahead <= arc.length) | (ahead < arc.length + pitch) & (force != 0.0))
+    near = near[np.argsort(ahead[near])]
+    loads, off = force[near], np.abs(force[near]) * flank
+    inside = np.abs(arc.place - ahead[near, None]) <= 0.5 * pitch
+    weight = inside @ arc.share
+    mean = np.divide(inside @ (arc.share * arc.pressing), weight, out=np.zeros(near.size), where=weight > 0.0)
+    seated = weight > 0.5 * pitch  # others enter or leave
+    if seated.any():
+        margin = _margin((pitch * mean + off)[seated], off[seated])
+    else:
+        margin = 1.0 if np.any(off > 0.0) else np.inf
+    return _Found(float(np.abs(loads).max(initial=0.0)), margin, ahead[near], loads)
 
 
 def loads_over_time(recorded: Recorded, prepared: Prepared) -> Iterator[tuple[float, tuple[ToothLoads, ...]]]:

@@ -203,6 +203,11 @@ passed_length: Callable[[Any, FloatArray], float] = by_type(
 """Length of unstretched belt that has passed the mesh, m, at a position of shape (n N + D,)."""
 
 
+def passed_lengths(frame: Any, positions: FloatArray) -> FloatArray:
+    """Lengths of unstretched belt that have passed the mesh in k states, m, shape (k,); `positions` are theirs."""
+    return positions[:, frame.place] if isinstance(frame, Flowing) else np.zeros(len(positions))
+
+
 @kernel(inline=True)
 def _no_flow(
     frame: Travelling, element: int, vectors: tuple[int, ...], speed: float, position: FloatArray, velocity: FloatArray

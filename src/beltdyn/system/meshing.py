@@ -14,11 +14,12 @@ from beltdyn.contact.surface import TEETH, MeshingRims, RoundRims, ShapedRims, T
 from beltdyn.contact.surface.toothed import FOLLOWS, PHASE, SPEED
 from beltdyn.kernel import by_type, kernel
 from beltdyn.model import Prepared
+from beltdyn.model.toothing import DISCRETE
 from beltdyn.records import Records, records
 from beltdyn.system.arrays import BodyForces, Motion, RingMatrix, System, TangentFactors
 from beltdyn.system.body_forces import add_machines
 from beltdyn.system.constant_drive import constant_drive
-from beltdyn.system.frame import centreline_places
+from beltdyn.system.frame import Travelling, centreline_places
 from beltdyn.system.moving_center import pulley_center
 from beltdyn.system.state import State
 
@@ -31,8 +32,8 @@ def has_teeth(system: System) -> bool:
     return isinstance(system.rims, ToothedRims | MeshingRims)
 
 
-def tooth_rows(prepared: Prepared) -> Records:
-    """Rows of `TEETH` of the pulleys of a drive, shape (P,)."""
+def tooth_rows(prepared: Prepared, single: bool = False) -> Records:
+    """Rows of `TEETH` of the pulleys of a drive, shape (P,), of spread teeth or of single ones."""
     belt, teeth = prepared.belt, np.array([float(one.teeth or 0) for one in prepared.pulleys])
     toothing, pitch = belt.toothing, belt.given_pitch
     assert toothing is not None
@@ -46,6 +47,9 @@ def tooth_rows(prepared: Prepared) -> Records:
         pitch_radius=prepared.radii,
         rate=np.where(held, sense * groove / pitch, 0.0),
         groove=groove,
+        flank=np.full(teeth.size, np.tan(toothing.flank_angle)),
+        spacing=np.full(teeth.size, pitch if single else 0.0),
+        height=np.full(teeth.size, toothing.reach),
     )
 
 
@@ -196,7 +200,9 @@ def turned_by(prepared: Prepared, system: System, phase: FloatArray | None) -> S
     """The arrays of a drive with grooves at phases (rad), over time; those given of a belt without teeth."""
     if phase is None or prepared.belt.teeth is None:
         return system
-    rims = ToothedRims(system.rims.radius, tooth_rows(prepared), starts_of(system.length))
+    toothing, travels = prepared.belt.toothing, isinstance(system.frame, Travelling)
+    rows = tooth_rows(prepared, travels and toothing is not None and toothing.law == DISCRETE)
+    rims = ToothedRims(system.rims.radius, rows, starts_of(system.length))
     return at_phases(system._replace(rims=rims), phase)
 
 

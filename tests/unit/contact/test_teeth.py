@@ -1,4 +1,4 @@
-"""Force of spread teeth: derivatives against differences, potential, nearest groove, backlash."""
+"""Force of teeth, spread and single: derivatives against differences, potential, nearest groove, backlash."""
 
 from typing import Any
 
@@ -13,17 +13,28 @@ from beltdyn.contact.law import ContactLaw, PulleyState
 from beltdyn.contact.normal import NoPull
 from beltdyn.contact.penetration import approach
 from beltdyn.contact.surface import Toothed
-from beltdyn.contact.teeth import LOOSE, tooth_at, tooth_traction
+from beltdyn.contact.teeth import LOOSE, Tooth, tooth_at, tooth_of, tooth_traction
 from beltdyn.quadrature import gauss_points
 
 LENGTH, RULE = 0.06, gauss_points(6)
 GROOVE = 2.0 * np.pi / 40
+SPACINGS = pytest.mark.parametrize("spacing", [0.0, 0.0157], ids=["spread", "single"])
+RIM = 0.1 - 1e-6
+"""Distance from the shaft of a belt that touches the rim, m."""
 
 
-def pulley(phase: float = 0.01, damping: float = 0.0, half_gap: float = 0.0, speed: float = 7.0) -> PulleyState:
-    """A pulley of 40 teeth and 0.1 m."""
-    own = Toothed(0.1, 2e6, damping, half_gap, 0.1005, GROOVE / 0.0157, GROOVE, phase, 1.0, 1.0)
-    return PulleyState(0.3, -0.2, own, speed=speed, friction=0.2)
+def pulley(
+    phase: float = 0.01,
+    damping: float = 0.0,
+    half_gap: float = 0.0,
+    speed: float = 7.0,
+    *,
+    flank: float = 0.3,
+    spacing: float = 0.0,
+) -> PulleyState:
+    """A pulley of 40 teeth and 0.1 m, spread or at their middles alone."""
+    teeth = (0.1, 2e6, damping, half_gap, 0.1005, GROOVE / 0.0157, GROOVE, flank, spacing, 5e-3)
+    return PulleyState(0.3, -0.2, Toothed(*teeth, phase, 1.0, 1.0), speed=speed, friction=0.2)
 
 
 def law() -> ContactLaw:
@@ -61,9 +72,10 @@ def answer(*arguments: Any, **more: Any) -> FloatArray:
 
 @pytest.mark.parametrize("damping", [0.0, 300.0])
 @pytest.mark.parametrize("factors", [(1.0, 0.0), (0.0, 1.0), (1.0, 300.0)])
-def test_tangent(factors: tuple[float, float], damping: float) -> None:
+@SPACINGS
+def test_tangent(factors: tuple[float, float], damping: float, spacing: float) -> None:
     control, rates = sunk()
-    one, step = pulley(damping=damping), 1e-8 if factors[0] else 1e-5
+    one, step = pulley(damping=damping, spacing=spacing), 1e-8 if factors[0] else 1e-5
     work, _ = act(control, rates, one, factors)
     tangent = np.block([[work.xx, work.xy], [work.yx, work.yy]])
     columns = []
@@ -82,11 +94,13 @@ def test_tangent(factors: tuple[float, float], damping: float) -> None:
 
 
 @pytest.mark.parametrize("factors", [(1.0, 0.0), (0.0, 1.0), (1.0, 300.0)])
-def test_derivative_by_the_turning_of_the_pulley(factors: tuple[float, float]) -> None:
+@SPACINGS
+def test_derivative_by_the_turning_of_the_pulley(factors: tuple[float, float], spacing: float) -> None:
     control, rates = sunk()
-    work, _ = act(control, rates, pulley(damping=300.0), factors)
+    work, _ = act(control, rates, pulley(damping=300.0, spacing=spacing), factors)
     there, back = (
-        answer(control, rates, pulley(0.01 + s * factors[0], 300.0, speed=7.0 + s * factors[1])) for s in (1e-7, -1e-7)
+        answer(control, rates, pulley(0.01 + s * factors[0], 300.0, speed=7.0 + s * factors[1], spacing=spacing))
+        for s in (1e-7, -1e-7)
     )
     expected = (there - back) / 2e-7
     given = np.append(work.by_turn.ravel(), work.moment_by_turn)
@@ -104,14 +118,14 @@ def test_derivative_by_the_length_of_belt_that_passes() -> None:
 
 def traction(one: PulleyState, angle: float, along: float = 0.0) -> float:
     """Force of teeth at a place on the rim that stands still."""
-    x, y = 0.3 + 0.1 * np.cos(angle), -0.2 + 0.1 * np.sin(angle)
+    x, y = 0.3 + RIM * np.cos(angle), -0.2 + RIM * np.sin(angle)
     here = approach(x, y, 0.0, 0.0, one)
     return float(tooth_traction(tooth_at(one.surface, here, 0.0, along), here))
 
 
 def test_a_groove_ahead_pulls_and_the_nearest_one_holds() -> None:
     one = pulley(phase=0.0, speed=0.0)
-    assert traction(one, -0.01) == pytest.approx(2e6 * 0.1005 * 0.01 * 1.005, rel=1e-12)
+    assert traction(one, -0.01) == pytest.approx(2e6 * 0.1005 * 0.01 * 0.1005 / RIM, rel=1e-12)
     assert traction(one, -0.01 + 3 * GROOVE) == pytest.approx(traction(one, -0.01), rel=1e-9)
     assert traction(one, 0.49 * GROOVE) < 0.0 < traction(one, 0.51 * GROOVE)  # more than half a pitch: a jump
     assert traction(one, -0.01, along=0.0157) == pytest.approx(traction(one, -0.01), rel=1e-9)  # the next tooth
@@ -120,18 +134,66 @@ def test_a_groove_ahead_pulls_and_the_nearest_one_holds() -> None:
 def test_backlash() -> None:
     one = pulley(phase=0.0, half_gap=5e-4, speed=0.0)
     inside, beyond = traction(one, -0.004), traction(one, -0.01)
-    assert inside == pytest.approx(LOOSE * 2e6 * 0.1005 * 0.004 * 1.005, rel=1e-9)
+    assert inside == pytest.approx(LOOSE * 2e6 * 0.1005 * 0.004 * 0.1005 / RIM, rel=1e-9)
     held = (1.0 - LOOSE) * (0.1005 * 0.01 - 5e-4) + LOOSE * 0.1005 * 0.01
-    assert beyond == pytest.approx(2e6 * held * 1.005, rel=1e-9)
+    assert beyond == pytest.approx(2e6 * held * 0.1005 / RIM, rel=1e-9)
     assert traction(one, 0.01) == pytest.approx(-beyond, rel=1e-9)
 
 
-def test_what_teeth_take_of_belt_and_pulley_is_power_on_both() -> None:
+@SPACINGS
+def test_what_teeth_take_of_belt_and_pulley_is_power_on_both(spacing: float) -> None:
     control, rates = sunk()
-    work, totals = act(control, rates, pulley())
-    surface = pulley().surface
+    one = pulley(spacing=spacing)
+    work, totals = act(control, rates, one)
+    surface = one.surface
     assert isinstance(surface, Toothed)
-    smooth = pulley()._replace(surface=surface._replace(stiffness=0.0))
+    smooth = one._replace(surface=surface._replace(stiffness=0.0))
     bare, without = act(control, rates, smooth)
     given = np.sum((work.force - bare.force) * rates) + (totals.moment - without.moment) * 7.0
     assert totals.compression_power - without.compression_power == pytest.approx(-given, rel=1e-9)
+
+
+def pushed(one: PulleyState, angle: float, distance: float) -> Tooth:
+    """A tooth at a place that stands still."""
+    here = approach(0.3 + distance * np.cos(angle), -0.2 + distance * np.sin(angle), 0.0, 0.0, one)
+    assert isinstance(one.surface, Toothed)
+    return tooth_of(one.surface, here, 0.0, 0.0)
+
+
+def test_flanks_push_the_belt_off_and_let_it_go_as_it_lifts() -> None:
+    one = pulley(phase=0.0, speed=0.0)
+    seated, lifted = pushed(one, -0.01, RIM), pushed(one, -0.01, 0.102)
+    assert seated.push == pytest.approx(0.3 * seated.traction, rel=1e-12)
+    beyond = 0.1005 * 0.01 - 0.3 * 0.002
+    assert lifted.traction == pytest.approx(2e6 * (1.0 - 0.4**2) * beyond, rel=1e-9)  # by 2 of 5 mm
+    assert lifted.push == pytest.approx(0.3 * lifted.traction + 2e6 * 0.002 / 0.005**2 * beyond**2, rel=1e-9)
+    assert pushed(one, -0.01, 0.104).traction == 0.0  # play of 1.2 mm on each side of a tooth that is off by 1 mm
+
+
+def test_a_single_tooth_has_the_force_of_a_pitch_of_spread_ones() -> None:
+    control, rates = sunk()
+    one, around = pulley(spacing=0.0157), np.arange(4) * 0.0157
+    work, totals = act(control, rates, one)
+    assert isinstance(one.surface, Toothed)
+    smooth = one._replace(surface=one.surface._replace(stiffness=0.0))
+    bare, without = act(control, rates, smooth)
+    moment = 0.0
+    for along in around:
+        xi = along / LENGTH
+        x, y = np.array([(1 - xi) ** 3, 3 * xi * (1 - xi) ** 2, 3 * xi**2 * (1 - xi), xi**3]) @ control
+        tooth = pushed(one, np.arctan2(y + 0.2, x - 0.3), np.hypot(x - 0.3, y + 0.2))
+        here = approach(x, y, 0.0, 0.0, one)
+        moment -= 0.0157 * 0.1005 * tooth_of(one.surface, here, 0.0, along).traction
+        assert tooth.pitch_radius == 0.1005
+    assert totals.moment - without.moment == pytest.approx(moment, rel=1e-9)
+    assert np.abs(work.force - bare.force).max() > 0.0
+
+
+def test_a_tooth_at_the_end_of_an_element_acts_once() -> None:
+    control, rates = sunk()
+    one = pulley(spacing=LENGTH / 3.0, speed=0.0)
+    assert isinstance(one.surface, Toothed)
+    one = one._replace(surface=one.surface._replace(rate=GROOVE / (LENGTH / 3.0)))
+    alone = act(control, 0.0 * rates, one)[1].moment
+    ahead = act(control, 0.0 * rates, one, start=LENGTH * (1.0 - 1e-15))[1].moment
+    assert alone == pytest.approx(ahead, rel=1e-6)

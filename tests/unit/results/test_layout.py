@@ -7,7 +7,7 @@ import pytest
 
 from beltdyn.results import Layout
 from beltdyn.results.friction_work import ARC_PARTS
-from beltdyn.results.schema import COORDINATES, OPTIONAL, RECORDED, TIMES
+from beltdyn.results.schema import COORDINATES, RECORDED, TIMES
 
 
 @pytest.fixture
@@ -28,8 +28,15 @@ def test_only_a_drive_with_tensioners_has_what_lies_along_them(layout: Layout, t
     assert tensioned.sizes == layout.sizes | {"tensioner": 1}
     assert tensioned.coordinates["tensioner"].tolist() == ["idler"]
     more = tensioned.recorded.keys() - layout.recorded.keys()
-    assert more == {name for name, variable in RECORDED.items() if not OPTIONAL.isdisjoint(variable.dims)}
-    assert tensioned.recorded.keys() == RECORDED.keys()
+    assert more == {name for name, variable in RECORDED.items() if "tensioner" in variable.dims}
+
+
+def test_only_a_belt_with_single_teeth_has_what_lies_along_them(tensioned: Layout) -> None:
+    toothed = replace(tensioned, tooth_coordinate=(0.0, 8e-3))
+    assert toothed.sizes == tensioned.sizes | {"tooth": 2}
+    assert toothed.coordinates["tooth_coordinate"].tolist() == [0.0, 8e-3]
+    assert toothed.recorded.keys() - tensioned.recorded.keys() == {"tooth_force"}
+    assert toothed.recorded.keys() == RECORDED.keys()
 
 
 def test_every_dimension_has_the_size_of_its_coordinate(tensioned: Layout) -> None:

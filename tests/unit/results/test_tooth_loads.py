@@ -1,11 +1,17 @@
 """Loads of teeth on pulleys: balance with torques, teeth in mesh, margin to a jump."""
 
+from dataclasses import replace
+from types import SimpleNamespace
+from typing import cast
+
 import numpy as np
 import pytest
 
 import beltdyn as bd
-from beltdyn.errors import ModelError
+from beltdyn.errors import ConvergenceError, ModelError
 from beltdyn.results import Run, tooth_loads
+from beltdyn.results.checks import Evidence, teeth
+from beltdyn.results.checks.teeth import lifted_teeth
 
 
 @pytest.fixture(scope="module")
@@ -35,8 +41,8 @@ def test_tooth_loads_make_the_torques(run: Run) -> None:
 
 def test_teeth_in_mesh(run: Run) -> None:
     wraps = run.dataset.wrap_angle.isel(time=-1).values
-    for one, wrap, teeth in zip(tooth_loads(run), wraps, (24, 36), strict=True):
-        assert one.in_mesh == pytest.approx(teeth * wrap / (2.0 * np.pi), rel=5e-3)
+    for one, wrap, count in zip(tooth_loads(run), wraps, (24, 36), strict=True):
+        assert one.in_mesh == pytest.approx(count * wrap / (2.0 * np.pi), rel=5e-3)
 
 
 def test_the_margin_falls_with_the_flank_angle(run: Run) -> None:
@@ -63,14 +69,32 @@ def test_rest_has_no_tooth_loads(run: Run) -> None:
         tooth_loads(bd.equilibrium(run.drive))
 
 
-def test_overloaded_and_lifted_teeth_are_told(run: Run) -> None:
-    assert not any("teeth" in warning for warning in run.warnings)
+def test_overloaded_teeth_are_told(run: Run) -> None:
+    assert not any("tooth" in warning for warning in run.warnings)
     toothing = run.drive.belt.toothing
     assert toothing is not None
-    weak = toothing.replace(largest_tooth_load=5.0, flank_angle=1.3)
-    told = bd.steady_state(run.drive.with_({"belt.toothing": weak})).warnings
-    assert [text.split()[:3] for text in told] == [["teeth", "lift", "off"], ["a", "tooth", "carries"]]
-    assert "the belt allows 5 N" in told[1]
+    weak = toothing.replace(largest_tooth_load=5.0)
+    (told,) = bd.steady_state(run.drive.with_({"belt.toothing": weak})).warnings
+    assert told.split()[:3] == ["a", "tooth", "carries"]
+    assert "the belt allows 5 N" in told
+
+
+def test_teeth_whose_lands_carry_nothing_lift(run: Run, monkeypatch: pytest.MonkeyPatch) -> None:
+    loads = tooth_loads(run)
+    lifted = replace(loads[0], jump_margin=1.0), *loads[1:]
+    monkeypatch.setattr(teeth, "loads_over_time", lambda *_: iter([(0.0, loads), (0.1, lifted)]))
+    assert [str(one) for one in lifted_teeth(cast(Evidence, SimpleNamespace(recorded=None, prepared=None)))] == [
+        "teeth lift off driver at 100% of the load. The belt rides up there, and jumps under a little more load. "
+        "Raise the tension, reduce the load, or increase the wrap angle."
+    ]
+
+
+def test_a_belt_that_flanks_push_off_does_not_run(run: Run) -> None:
+    toothing = run.drive.belt.toothing
+    assert toothing is not None
+    steep = run.drive.with_({"belt.toothing": toothing.replace(flank_angle=1.3)})
+    with pytest.raises(ConvergenceError, match="goes slack or jumps beyond that"):
+        bd.steady_state(steep)
 
 
 def test_a_motor_drives_teeth_at_the_speed_of_its_torque(run: Run) -> None:

@@ -124,10 +124,15 @@ def _shaped_reach(surface: Shaped) -> float:
     return surface.radius + surface.table[surface.row].reach
 
 
+@kernel
+def _toothed_reach(surface: Toothed) -> float:
+    return surface.radius + (surface.height if surface.spacing > 0.0 else 0.0)
+
+
 outer_radius: Callable[[Any], float] = by_type(
-    {Round: _circle_reach, Shaped: _shaped_reach, Toothed: _circle_reach}, "outer_radius"
+    {Round: _circle_reach, Shaped: _shaped_reach, Toothed: _toothed_reach}, "outer_radius"
 )
-"""Radius of the circle around a surface, about the shaft, m."""
+"""Radius of the circle around a surface, about the shaft, m; teeth that act alone reach out of it."""
 
 
 gap_of_kind = choice("gap_of_kind", KINDS.functions("gap"), ["x", "y", "radius"])

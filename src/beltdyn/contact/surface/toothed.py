@@ -23,6 +23,9 @@ TEETH = record(
     pitch_radius="f8",  # p z / 2 pi, m
     rate="f8",  # r, rad/m
     groove="f8",  # angle of a groove, 2 pi / z, rad
+    flank="f8",  # tangent of the angle of the flanks to the normal
+    spacing="f8",  # pitch of teeth that act at their middles alone, m; zero of spread teeth
+    height="f8",  # lift of the belt off the rim at which teeth are out of their grooves, m
     phase="f8",  # angle of the grooves where the pulley has the angle zero, rad
 )
 """Teeth of a pulley against those of the belt."""
@@ -74,6 +77,9 @@ class Toothed(NamedTuple):
     pitch_radius: float
     rate: float
     groove: float
+    flank: float
+    spacing: float
+    height: float
     """All as in `TEETH`."""
     phase: float
     """Angle of the grooves, less r times the length of belt that has passed the mesh, rad."""
@@ -95,6 +101,9 @@ def _toothed(rims: Any, pulley: int, phase: float, by_flow: float, by_speed: flo
         row.pitch_radius,
         row.rate,
         row.groove,
+        row.flank,
+        row.spacing,
+        row.height,
         phase,
         by_flow,
         by_speed,

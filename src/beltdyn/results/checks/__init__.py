@@ -30,7 +30,7 @@ from beltdyn.results.checks.power import (
     unbalanced_powers,
 )
 from beltdyn.results.checks.sliding import ended_by_slip, gross_slip, gross_slip_before, near_gross_slip
-from beltdyn.results.checks.teeth import lifted_teeth, overloaded_teeth
+from beltdyn.results.checks.teeth import jumped_teeth, lifted_teeth, overloaded_teeth
 from beltdyn.results.checks.tensioners import stopped_tensioners, unstable_tensioners
 from beltdyn.results.provenance import Resolution
 from beltdyn.results.schema import Recorded
@@ -49,6 +49,7 @@ CHECKS: tuple[Check, ...] = (
     deep_penetration,
     large_strain,
     large_tension,
+    jumped_teeth,
     lifted_teeth,
     overloaded_teeth,
     gross_slip,

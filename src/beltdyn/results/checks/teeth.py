@@ -6,21 +6,39 @@ import numpy as np
 
 from beltdyn.parts.messages import Finding, listing
 from beltdyn.results.checks.evidence import Evidence
+from beltdyn.results.jumps import jumps_in
 from beltdyn.results.tooth_loads import ToothLoads, loads_over_time
+
+_LIFTS = 1.01
+"""Margin to a jump below which lands carry next to nothing."""
 
 
 def lifted_teeth(evidence: Evidence) -> Iterator[Finding]:
-    """Teeth that flanks push off with more than presses them on, at any of some outputs."""
+    """Teeth whose flanks carry all that presses the belt on, so that they lift, at any of some outputs."""
     worst = dict[str, float]()
     for one in _examined(evidence):
         worst[one.name] = min(one.jump_margin, worst.get(one.name, np.inf))
-    lifted = {name: margin for name, margin in worst.items() if margin < 1.0}
+    lifted = {name: margin for name, margin in worst.items() if margin < _LIFTS}
     if lifted:
         yield Finding(
             f"teeth lift off {listing([f'{name} at {margin:.0%} of the load' for name, margin in lifted.items()])}.",
-            "A real belt rides up there and jumps; the model holds it as if its teeth stayed in their grooves.",
+            "The belt rides up there, and jumps under a little more load.",
             "Raise the tension, reduce the load, or increase the wrap angle.",
         )
+
+
+def jumped_teeth(evidence: Evidence) -> Iterator[Finding]:
+    """A belt that has jumped to other grooves."""
+    events = jumps_in(evidence.recorded, [pulley.name for pulley in evidence.prepared.pulleys])
+    if not events:
+        return
+    counts = {name: sum(one.name == name for one in events) for name in dict.fromkeys(one.name for one in events)}
+    teeth = [f"{count} {'tooth' if count == 1 else 'teeth'} on {name}" for name, count in counts.items()]
+    yield Finding(
+        f"the belt jumps {listing(teeth)}, first at {events[0].time:.4g} s.",
+        "Pulleys lose their angles against each other, and the belt is damaged.",
+        "Raise the tension, reduce the load or its peaks, or increase the wrap angle.",
+    )
 
 
 def overloaded_teeth(evidence: Evidence) -> Iterator[Finding]:

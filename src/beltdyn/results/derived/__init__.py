@@ -15,6 +15,7 @@ from beltdyn.results.derived.pulley import (
     turn_means,
 )
 from beltdyn.results.derived.spectrum import amplitude_spectrum, element_order, orders, overall_level, waterfall
+from beltdyn.results.derived.teeth import order_spectrum, transmission_error
 
 __all__ = [
     "amplitude_spectrum",
@@ -23,6 +24,7 @@ __all__ = [
     "element_order",
     "hub_loads",
     "mid_span_displacements",
+    "order_spectrum",
     "orders",
     "overall_level",
     "pulley_number",
@@ -32,6 +34,7 @@ __all__ = [
     "slips",
     "span_tensions",
     "tension_ratios",
+    "transmission_error",
     "turn_means",
     "waterfall",
     "wear_by_arc",

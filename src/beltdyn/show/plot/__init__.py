@@ -53,6 +53,9 @@ from beltdyn.show.plot.style import dash as dash
 from beltdyn.show.plot.style import label as label
 from beltdyn.show.plot.sweep import orders as orders
 from beltdyn.show.plot.sweep import waterfall as waterfall
+from beltdyn.show.plot.teeth import load_sharing as load_sharing
+from beltdyn.show.plot.teeth import transmission_error as transmission_error
+from beltdyn.show.plot.teeth import transmission_orders as transmission_orders
 from beltdyn.show.plot.vibration import animate_modes as animate_modes
 from beltdyn.show.plot.vibration import campbell as campbell
 from beltdyn.show.plot.vibration import mode_damping as mode_damping

@@ -1,0 +1,90 @@
+"""Single teeth of a travelling belt: their places and forces, and jumps."""
+
+import numpy as np
+import pytest
+
+from beltdyn.contact.surface import ToothedRims
+from beltdyn.model import Prepared, prepare
+from beltdyn.records import Records
+from beltdyn.system.arrays import System
+from beltdyn.system.build import drive_system
+from beltdyn.system.meshing import fit_phases
+from beltdyn.system.single_teeth import JumpWatch, tooth_coordinates, tooth_forces
+from beltdyn.system.state import State, laid
+from beltdyn.system.state_forces import body_forces_at
+from tests.unit.model.test_toothing import drive
+
+
+@pytest.fixture(scope="module")
+def prepared() -> Prepared:
+    return prepare(drive({"toothing": {"law": "discrete", "flank_angle": 0.0}}))
+
+
+@pytest.fixture(scope="module")
+def system(prepared: Prepared) -> System:
+    return drive_system(prepared)
+
+
+@pytest.fixture
+def state(prepared: Prepared, system: System) -> State:
+    made = laid(system, prepared.path)
+    fit_phases(system, made)
+    return made
+
+
+def table_of(system: System) -> Records:
+    assert isinstance(system.rims, ToothedRims)
+    return system.rims.table
+
+
+def test_a_tooth_to_a_pitch(system: System, prepared: Prepared) -> None:
+    places = tooth_coordinates(system)
+    assert places.size == 100
+    np.testing.assert_allclose(np.diff(places), prepared.belt_length / 100)
+    assert prepared.elements % 100 == 0
+    spread = drive_system(prepare(drive().replace(simulation={"duration": 1.0, "frame": "travelling"})))
+    assert tooth_coordinates(spread).size == 0
+
+
+def test_forces_of_teeth_make_the_moment_on_the_pulley(system: System, state: State) -> None:
+    position = np.tile(state.position, (2, 1))
+    position[1, system.first_body + 1] += 1e-3  # the driven pulley ahead
+    before, after = tooth_forces(system, position, np.zeros_like(position))
+    moment = body_forces_at(system, np.zeros(2), position, np.zeros_like(position)).moment[:, 1]
+    held = np.flatnonzero(after != before)
+    assert held.size >= 18  # half of its teeth, and those that reach into grooves beside the arc
+    assert np.all(after[held] > before[held])
+    # the belt lies on the pitch line; beside the arc it is up to a tooth's height farther from the shaft
+    change = float((after - before).sum()) * table_of(system)[1].pitch_radius
+    assert moment[0] - moment[1] == pytest.approx(change, rel=1e-2)
+
+
+def turned(system: System, state: State, angle: float, states: int) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Positions of states in which the driven pulley turns back under the belt, with points on its arc."""
+    position = np.tile(state.position, (states, 1))
+    position[:, system.first_body + 1] -= np.linspace(0.0, angle, states)
+    row = table_of(system)[1]
+    along = np.linspace(0.45, 0.5, 7)
+    direction = row.phase + row.rate * along
+    places = np.tile(0.0458 * np.stack([np.cos(direction), np.sin(direction)], axis=1), (states, 1, 1))
+    centers = np.tile([[0.0, 0.0], [0.28, 0.0]], (states, 1, 1))
+    return position, centers, places + centers[:, 1:]
+
+
+def test_a_groove_that_passes_is_a_jump(system: System, state: State) -> None:
+    groove = 2.0 * np.pi / 36
+    watch = JumpWatch(system, np.linspace(0.45, 0.5, 7))
+    states = turned(system, state, 2.2 * groove, 100)
+    time = np.linspace(0.0, 1.0, 100)
+    for part in (slice(50), slice(50, None)):
+        watch.take(time[part], *(one[part] for one in states))
+    assert [(pulley, teeth) for _, pulley, teeth in watch.events] == [(1, 1), (1, 1)]
+    assert watch.events[0][0] == pytest.approx(0.7 / 2.2, abs=0.02)
+
+
+def test_windup_and_a_free_belt_are_no_jumps(system: System, state: State) -> None:
+    watch = JumpWatch(system, np.linspace(0.45, 0.5, 7))
+    position, centers, places = turned(system, state, 0.4 * 2.0 * np.pi / 36, 50)
+    places[20:25] += 1.0
+    watch.take(np.linspace(0.0, 1.0, 50), position, centers, places)
+    assert watch.events == []

@@ -1,0 +1,130 @@
+"""Belts with single teeth: against spread teeth, backlash, energy.
+
+Teeth without flanks hold while the belt touches the rim, as spread ones do, so that both share a load alike. Two
+pulleys of 24 teeth have ten teeth in mesh.
+"""
+
+from typing import Any
+
+import numpy as np
+import pytest
+
+import beltdyn as bd
+from beltdyn.arrays import FloatArray
+from beltdyn.results import Run, derived, tooth_loads
+
+AXIAL, TOOTH, PITCH, TEETH = 1e5, 1e6, 8e-3, 24
+SPEED, BEGUN, TENSION = 100.0, 0.02, 200.0
+AGREED = TENSION / AXIAL
+"""Pitch error with which the pitches of belt and pulleys agree under the installed tension."""
+
+pytestmark = pytest.mark.slow  # kernels of a mesh that travels with teeth
+
+
+def drive(
+    torque: float, *, tension: float = TENSION, speed: float = SPEED, pitch_error: float = 0.0, **toothing: Any
+) -> bd.Drive:
+    """Two equal pulleys that reach their speed and torque in 20 ms."""
+
+    def ramp(value: float) -> dict[str, Any]:
+        return {"kind": "cosine_ramp", "start": 0.0, "end": BEGUN, "value": value}
+
+    teeth_of = {"teeth": TEETH, "pitch_error": pitch_error}
+    teeth = {"pitch": PITCH, "tooth_stiffness": TOOTH, "tooth_damping": 20.0, "law": "discrete"}
+    settings = {"duration": 0.06, "output_interval": 2e-5, "field_interval": 2e-4, "frame": "travelling", "rtol": 1e-3}
+    return bd.Drive(
+        belt={
+            "teeth": 74,
+            "width": 0.02,
+            "thickness": 0.004,
+            "axial_stiffness": AXIAL,
+            "bending_stiffness": 1e-2,
+            "mass_per_length": 0.1,
+            "stretch_damping_time": 2e-4,
+            "installed_tension": tension,
+            "toothing": teeth | toothing,
+        },
+        pulley=[
+            {"name": "driver", "center": [0.0, 0.0], "speed": ramp(speed) if speed else 0.0} | teeth_of,
+            {"name": "driven", "center": [0.2, 0.0], "inertia": 1e-3, "torque": ramp(torque)} | teeth_of,
+        ],
+        tensioner=[{"kind": "fixed", "pulley": "driven", "direction": [1.0, 0.0]}],
+        simulation=settings,
+    )
+
+
+@pytest.fixture(scope="module")
+def single() -> Run:
+    return bd.simulate(drive(-5.0))
+
+
+@pytest.fixture(scope="module")
+def spread() -> Run:
+    return bd.simulate(drive(-5.0, law="spread"))
+
+
+LATE = slice(0.04, None)
+"""When what the start has set off has died."""
+
+
+def windup(run: Run) -> float:
+    """Mean way by which the driven pulley is ahead of the driver, m."""
+    return float(derived.transmission_error(run).sel(pulley="driven", time=LATE).mean())
+
+
+def sharing(run: Run, number: int) -> FloatArray:
+    """Mean loads of teeth by whole pitches from the inlet, without those that enter and leave, N."""
+    instants = run.dataset["field_time"].sel(field_time=LATE).values
+    seen = [tooth_loads(run, float(time))[number] for time in instants]
+    places, loads = (np.concatenate([getattr(one, name) for one in seen]) for name in ("places", "loads"))
+    if "tooth_force" not in run.dataset:
+        middles = np.arange(1.5, 9.0)
+        return np.asarray(np.mean([np.interp(middles, one.places, one.loads) for one in seen], axis=0))
+    return np.array([loads[(places >= k) & (places < k + 1)].mean() for k in range(1, 9)])
+
+
+@pytest.mark.parametrize("number", [0, 1])
+def test_single_teeth_share_a_load_as_spread_ones(single: Run, spread: Run, number: int) -> None:
+    assert tooth_loads(single)[number].in_mesh > 8.0
+    own, other = sharing(single, number), sharing(spread, number)
+    np.testing.assert_allclose(own, other, atol=0.03 * np.abs(other).max())
+
+
+def test_single_teeth_are_as_stiff_as_spread_ones(single: Run, spread: Run) -> None:
+    assert abs(windup(spread)) > 2e-4
+    assert windup(single) == pytest.approx(windup(spread), rel=0.01)
+
+
+def test_the_energy_account_closes(single: Run) -> None:
+    assert float(np.abs(single.dataset.energy_closure).max()) < 1e-3  # the tolerance of time steps
+
+
+def test_the_ratio_is_that_of_the_teeth(single: Run) -> None:
+    error = derived.transmission_error(single).sel(pulley="driven")
+    early, late = (float(error.sel(time=window).mean()) for window in (slice(0.04, 0.05), slice(0.05, None)))
+    # elastic creep of a smooth belt
+    creep = 5.0 / (TEETH * PITCH / (2.0 * np.pi)) / AXIAL * SPEED * 0.01 * TEETH * PITCH / (2.0 * np.pi)
+    assert abs(late - early) < 0.1 * creep  # windup still swings
+    assert bd.results.jumps(single) == ()
+
+
+def test_forces_of_teeth_carry_the_torque(single: Run) -> None:
+    late = single.dataset.sel(field_time=LATE, time=LATE)
+    radius = TEETH * PITCH / (2.0 * np.pi)
+    for one in (0, 1):
+        torque = float(late["pulley_torque"][:, one].mean())
+        total = np.mean([tooth_loads(single, float(t))[one].loads.sum() for t in late["field_time"].values])
+        assert -total * radius == pytest.approx(torque, rel=0.02)  # sampled at fewer instants
+
+
+def test_reversal_takes_up_the_backlash() -> None:
+    backlash = 2e-4
+
+    def reversal(play: float) -> float:
+        """Way from one load to the opposite one, m."""
+        loads = (drive(one, speed=0.0, pitch_error=AGREED, backlash=play) for one in (3.0, -3.0))
+        ahead, behind = (windup(bd.simulate(one)) for one in loads)
+        return ahead - behind
+
+    # half on each pulley to either side
+    assert reversal(backlash) - reversal(0.0) == pytest.approx(2.0 * backlash, rel=0.02)
