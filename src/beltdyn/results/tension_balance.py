@@ -243,11 +243,12 @@ class TensionBalance:
         """Unstretched length of the belt on its path, m."""
         prepared = self._prepared
         law, radii, friction = prepared.belt.stretch_parameters, np.abs(prepared.path.radii), self._frictions[rows]
-        lifted = across(self._lifted[rows], prepared)[1]
         before, after = across(tension, prepared)
-        reaching = np.where(self._backward[rows, None], after, before)
-        least = 1e-9 * self.scales[0]
-        tight, slack = (np.maximum(choice(before, after) - lifted, least) for choice in (np.maximum, np.minimum))
+        lifted_before, lifted_after = across(self._lifted[rows], prepared)
+        backward, least = self._backward[rows, None], 1e-9 * self.scales[0]
+        reaching, lifted = np.where(backward, after, before), np.where(backward, lifted_after, lifted_before)
+        pressing = before - lifted_before, after - lifted_after
+        tight, slack = (np.maximum(choice(*pressing), least) for choice in (np.maximum, np.minimum))
         ratio = np.log(tight / slack)
         slid = np.minimum(ratio / np.maximum(friction, 1e-12), shape.wrap)
         sliding = lifted + np.where(ratio > 1e-9, (tight - slack) / np.maximum(ratio, 1e-9), tight)
