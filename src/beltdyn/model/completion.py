@@ -6,7 +6,7 @@ from typing import NamedTuple
 import numpy as np
 
 from beltdyn.errors import ModelError
-from beltdyn.machines import Tensioner
+from beltdyn.machines import MovingTensioner, Tensioner
 from beltdyn.model.belt import Belt
 from beltdyn.model.contact import Contact
 from beltdyn.model.defaults import (
@@ -66,7 +66,7 @@ def complete(layout: Layout) -> Completed:
     if given.is_settled and not contact.open_keys and belt.elements is not None:
         return Completed(belt, pulleys, contact, given.tensioners, path)
     estimate = given.estimate(path)
-    _check_estimate(given, pulleys, estimate)
+    _check_estimate(given, layout.nominal, pulleys, estimate)
     found = {"length": estimate.length} if belt.length is None else {}
     given = given._replace(
         belt=belt.replace(**found, installed_tension=None), contact=_with_stiffness(contact, estimate.stiffness)
@@ -136,20 +136,20 @@ def take_up(completed: Completed, distance: float) -> tuple[Tensioner, ...]:
     return with_take_up(completed.tensioners, fixed.take_up + distance / leverage(completed.path, number, fixed))
 
 
-def _check_estimate(given: Given, pulleys: tuple[Pulley, ...], estimate: StaticEstimate) -> None:
+def _check_estimate(given: Given, nominal: str | None, pulleys: tuple[Pulley, ...], estimate: StaticEstimate) -> None:
     """Refuse a belt at rest that is slack, or stretched beyond what its law describes."""
     wanted, length, path = given.belt.installed_tension, estimate.length, estimate.path.length
     if wanted is not None and not 0 < path <= (1 + LARGEST_STRAIN) * length:
         raise ValueError(
-            f"belt.installed_tension = {wanted:.5g} N would stretch the belt and press it into the pulleys by more "
+            f"{_asked(given, nominal)} would stretch the belt and press it into the pulleys by more "
             f"than {LARGEST_STRAIN:.0%} of its length. Reduce it, or give the belt an axial stiffness above "
             f"{given.belt.axial_stiffness:.3g} N"
         )
     least = _SMALLEST_STRAIN * given.belt.axial_stiffness
     if wanted is not None and wanted < least:
         raise ValueError(
-            f"belt.installed_tension = {wanted:.5g} N would stretch the belt by less than {_SMALLEST_STRAIN:.0e} of "
-            f"its length, which is below rounding. Give at least {least:.1g} N"
+            f"{_asked(given, nominal)} would stretch the belt by less than {_SMALLEST_STRAIN:.0e} of its length, which "
+            f"is below rounding. Give at least {least:.1g} N"
         )
     check_length(length, path, tensioned=given.has_springs)
     if given.has_springs:
@@ -159,6 +159,16 @@ def _check_estimate(given: Given, pulleys: tuple[Pulley, ...], estimate: StaticE
             f"the belt sinks into the pulleys and loses all tension: it is only {1e3 * (path - length):.3g} mm "
             "shorter than its path. Shorten it, or omit contact.stiffness to use the default"
         )
+
+
+def _asked(given: Given, nominal: str | None) -> str:
+    """The tension at rest with the key that asks for it."""
+    tension = f"{given.belt.installed_tension:.5g} N"
+    one = next((one for one in given.tensioners if isinstance(one, MovingTensioner) and one.pulley == nominal), None)
+    if one is None:
+        return f"belt.installed_tension = {tension}"
+    unit = "N m" if one.turns else "N"
+    return f'preload = {one.preload:.4g} {unit} of the tensioner of "{one.pulley}" is a tension of {tension}, which'
 
 
 def _check_place(given: Given, pulleys: tuple[Pulley, ...], path: Path) -> None:

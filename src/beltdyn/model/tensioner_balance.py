@@ -91,6 +91,8 @@ class _Situation(NamedTuple):
     def is_stable(self, position: float) -> bool:
         """Whether an equilibrium is stable: the excess falls along the travel at constant belt length."""
         there, step = self.at(position), 1e-4 * self.scale
+        if there.length <= 0.0:  # of a tension that no belt bears, which is refused as such
+            return True
         fixed = self._replace(
             belt=self.belt.replace(length=there.length, installed_tension=None),
             contact=self.contact.replace(stiffness=there.stiffness),

@@ -43,13 +43,39 @@ _REMEMBERED = 4096
 RPM = 30.0 / math.pi
 """Revolutions a minute in 1 rad/s."""
 
+_USUAL = MappingProxyType(
+    {
+        ("mm", "m"): 1e-3,
+        ("cm", "m"): 1e-2,
+        ("m", "m"): 1.0,
+        ("s", "s"): 1.0,
+        ("ms", "s"): 1e-3,
+        ("rpm", "rad/s"): math.pi / 30.0,
+        ("rad/s", "rad/s"): 1.0,
+        ("rpm/s", "rad/s^2"): math.pi / 30.0,
+        ("deg", "rad"): math.pi / 180.0,
+        ("rad", "rad"): 1.0,
+        ("N m/deg", "N*m/rad"): 180.0 / math.pi,
+        ("N", "N"): 1.0,
+        ("kN", "N"): 1e3,
+        ("N m", "N*m"): 1.0,
+        ("kW", "W"): 1e3,
+        ("W", "W"): 1.0,
+        ("kg", "kg"): 1.0,
+        ("g", "kg"): 1e-3,
+        ("kg cm^2", "kg*m^2"): 1e-4,
+        ("kg m^2", "kg*m^2"): 1.0,
+    }
+)
+"""(Unit, SI unit) -> factor of the units of most drive files, which so need no unit library; it takes 0.4 s to load."""
+
 SHOWN_UNITS = MappingProxyType({"rad/s": ("rpm", RPM), "rad": ("°", math.degrees(1.0))})
 """SI unit -> the one that readers are shown, and the factor on numbers."""
 
 
 @lru_cache(maxsize=1)
 def _registry() -> "pint.UnitRegistry[float]":
-    import pint  # takes 0.4 s, and most files hold plain numbers
+    import pint
 
     registry: pint.UnitRegistry[float] = pint.UnitRegistry(on_redefinition="ignore")  # Nm is a unit of yarn there
     for definition in _MORE_UNITS:
@@ -157,6 +183,9 @@ def _written(number: str, unit: str, tolerance: re.Match[str] | None) -> str:
 
 @lru_cache(maxsize=_REMEMBERED)
 def _convert(number: float, given: str, unit: str) -> float:
+    usual = _USUAL.get((given, unit))
+    if usual is not None:
+        return number * usual
     try:
         parsed = _registry().parse_units(given)
         same = parsed.is_compatible_with(unit)

@@ -4,7 +4,6 @@ from collections.abc import Callable, Sequence
 from typing import NamedTuple
 
 import numpy as np
-from scipy.optimize import brentq
 
 from beltdyn.arrays import FloatArray
 from beltdyn.errors import ModelError
@@ -64,6 +63,8 @@ class QuasiSteady:
         pulley, radius = drive.counter_clockwise_pulleys[self.driver], float(self._radii[self.driver])
         if pulley.speed is not None:
             return float(pulley.speed.at([0.0])[0]) * radius
+        from scipy.optimize import brentq
+
         limit = max((load.driven_speed for load in pulley.load), key=abs)
 
         def excess(speed: float) -> float:

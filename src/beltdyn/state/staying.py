@@ -151,7 +151,7 @@ def _from_laid(prepared: Prepared, system: System) -> tuple[State, float]:
 def _balanced(prepared: Prepared, system: System, state: State, start: float = 1.0) -> tuple[State, float]:
     """Equilibrium from a state nearby, in contact stiffer by a factor; also the mean tension of its spans, N."""
     if not follow(start, partial(_balance, prepared, system, state, anchor_at(state, True))):
-        raise _no_rest(system)
+        raise _no_rest(prepared, system)
     return state, looked_at(prepared, system, state).tension
 
 
@@ -167,10 +167,11 @@ def stand_like(prepared: Prepared, like: Standing) -> Standing:
     return like._replace(prepared=prepared, system=system, state=state, place=state.position.copy(), tension=tension)
 
 
-def _no_rest(system: System) -> ConvergenceError:
+def _no_rest(prepared: Prepared, system: System) -> ConvergenceError:
     return ConvergenceError(
-        f"no static equilibrium found with {system.nodes} elements. Check tension and penetration with `beltdyn "
-        "check`; change the belt tension or length, or omit contact.stiffness so that it is chosen."
+        f"no static equilibrium found with {system.nodes} elements, near a tension of "
+        f"{prepared.installation.tension:.4g} N. Check tension and penetration with `beltdyn check`; change "
+        "the belt tension or length, or omit contact.stiffness so that it is chosen."
     )
 
 

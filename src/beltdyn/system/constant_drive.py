@@ -3,7 +3,6 @@
 from collections.abc import Sequence
 
 import numpy as np
-from scipy.optimize import brentq
 
 from beltdyn.arrays import BoolArray, FloatArray, IntArray
 from beltdyn.errors import ModelError
@@ -149,6 +148,8 @@ def drive_shafts(system: System, velocity: FloatArray) -> None:
 
 def guess_hubs(system: System, velocity: FloatArray) -> None:
     """Guess speeds behind clutches in `velocity`: with the rim, or slower where the clutch slips."""
+    from scipy.optimize import brentq
+
     first, torque, states = system.first_body, interpreted(shaft_torque), np.zeros(system.bodies.size)
     pulley, rigid = rim_of_bodies(system), rigid_links(system)
     shafts = system.pulleys.shaft

@@ -68,6 +68,12 @@ def test_allowed_penetration_is_that_on_the_smallest_pulley(make_drive: MakeDriv
         ),
         ("flat", {"length": 2.5}, [SLIDING | {"preload": 1e-3, "rate": 0.0}], ("pushes the tensioner", "preload")),
         ("flat", {"length": 2.5}, [SLIDING | {"preload": -50.0, "rate": 0.0}], ("pushes the tensioner", "preload")),
+        (
+            "flat",
+            {"length": None},
+            [SLIDING | {"preload": 1e9}],
+            ('preload = 1e+09 N of the tensioner of "idler" is a tension of', "50%", "Reduce it"),
+        ),
         ("flat", {}, [SLIDING | {"pulley": "idle"}], ('pulley = "idle" is not the name', "motor, idler, fan")),
     ],
 )

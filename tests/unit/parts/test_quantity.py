@@ -4,7 +4,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from beltdyn.parts.quantity import _registry, to_si, written_like
+from beltdyn.parts.quantity import _USUAL, _registry, to_si, written_like
 
 
 @pytest.mark.parametrize(
@@ -38,6 +38,12 @@ from beltdyn.parts.quantity import _registry, to_si, written_like
 )
 def test_units(text: str, unit: str, value: float) -> None:
     assert to_si(text, unit) == pytest.approx(value, rel=1e-14)
+
+
+@pytest.mark.parametrize(("given_unit", "unit"), _USUAL)
+def test_usual_units_are_those_of_the_library(given_unit: str, unit: str) -> None:
+    expected = _registry().convert(3.7, given_unit, unit)
+    assert to_si(f"3.7 {given_unit}", unit) == pytest.approx(expected, rel=1e-14)
 
 
 def test_units_of_drive_engineers_are_added_without_a_word(caplog: pytest.LogCaptureFixture) -> None:
