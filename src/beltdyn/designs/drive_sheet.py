@@ -13,7 +13,8 @@ from numpy.typing import NDArray
 
 from beltdyn.arrays import FloatArray
 from beltdyn.errors import ModelError
-from beltdyn.model import Drive, FixedTensioner, Prepared, prepare
+from beltdyn.model import Drive, FixedTensioner, Prepared, alignment, prepare
+from beltdyn.model.alignment import judge_alignment
 from beltdyn.model.duty import PASS
 from beltdyn.model.installation import Installation
 from beltdyn.parts.quantity import Number, Numbers, number_in, numbers_in
@@ -140,6 +141,7 @@ def sheet(
     made.add_rows(columns)
     made.add_speeds(columns, speed, points)
     made.add_geometry()
+    made.add_alignment(drive)
     made.add_tensioner()
     made.add_belts()
     if full:
@@ -357,6 +359,21 @@ class _DriveSheet:
             "span_length": (Variable((_SPAN,), "m", "Span length"), path.span_lengths),
             "span_frequency": (Variable((_SPAN,), "Hz", "First frequency of the span at rest"), rest.span_frequencies),
         }
+
+    def add_alignment(self, drive: Drive) -> None:
+        """Fleeting angles of the spans, their worst case over the tolerances of a drive file, and what is allowed."""
+        found, ends = alignment(drive, self._rest.path), (_SPAN, "span_end")
+        self._notes += map(str, judge_alignment(drive, self._rest.path))
+        self.coordinates["span_end"] = (Variable(("span_end",), "1", "End of the span", "str"), ["leaving", "reaching"])
+        self.variables |= {
+            "fleeting_angle": (Variable(ends, "rad", "Fleeting angle"), found.angles),
+            "worst_fleeting_angle": (Variable(ends, "rad", "Largest fleeting angle, over tolerances"), found.worst),
+        }
+        if np.isfinite(found.limit):
+            self.variables |= {
+                "allowed_fleeting_angle": (Variable((), "rad", "Fleeting angle that the belt allows"), found.limit),
+                "allowed_offset": (Variable((_SPAN,), "m", "Axial offset still allowed"), found.allowed_offset),
+            }
 
     def add_tensioner(self) -> None:
         """Positions of the first tensioner: without a belt, with belts of all lengths, and at its load stop."""

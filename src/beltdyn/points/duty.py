@@ -12,6 +12,7 @@ from beltdyn.arrays import FloatArray
 from beltdyn.errors import ModelError
 from beltdyn.model import Drive, Pulley
 from beltdyn.model.duty import PASS, columns_of
+from beltdyn.parts.messages import suggest
 from beltdyn.parts.table_file import HeadedColumn, read_headed
 from beltdyn.points.changed_drive import (
     driver_of,
@@ -133,7 +134,14 @@ def duty(
 def duty_of(drive: Drive, table: Path | str | None) -> list[Column] | None:
     """The duty of a table, or else of the drive file; None without either."""
     if table is not None:
-        return read_duty(Path(table))
+        columns, names = read_duty(Path(table)), [one.name for one in drive.pulleys]
+        for one in columns:
+            if one.pulley and one.pulley not in names:
+                raise ModelError(
+                    f'{table}: the heading "{one.pulley} {one.what}" names no pulley of the drive. '
+                    f"{suggest(one.pulley, names)}"
+                )
+        return columns
     return [Column(*key, values) for key, values in columns_of(drive.duty).items()] if drive.duty else None
 
 

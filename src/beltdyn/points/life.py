@@ -99,6 +99,8 @@ def life(
     1.0
     """
     _require_data(drive)
+    if run is None and repeats != 1.0:
+        raise ModelError(f"repeats = {repeats:g} needs a run that occurs so often. Give run, or omit repeats.")
     columns = duty_of(drive, table) or [Column("duration", "", [HOUR])]
     held, durations = held_at(drive, at), durations_of(columns)
     event = None if run is None else _repeated(damage_of_run(_run_of(drive, run)), repeats)

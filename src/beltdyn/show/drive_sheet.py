@@ -57,6 +57,9 @@ def _facts(dataset: "xr.Dataset") -> Iterable[tuple[str, str]]:
     yield "cases", ", ".join(map(str, dataset["case"].values))
     factors = ", ".join(f"{one:.3g}" for one in dataset["friction"].values)
     yield "friction", f"{factors} times the coefficients below; the least slip safety is over all cases and these"
+    if "allowed_fleeting_angle" in dataset:
+        allowed = _DEGREES * float(dataset["allowed_fleeting_angle"])
+        yield "alignment", f"fleeting angles up to {allowed:.3g}°; geometry only, the dynamics are planar"
     safety = dataset["least_slip_safety_over_speed"]
     if bool(safety.notnull().any()):
         speed, pulley = np.unravel_index(int(np.nanargmin(safety.values)), safety.shape)
@@ -84,12 +87,22 @@ def _pulleys(dataset: "xr.Dataset") -> Table:
 
 
 def _spans(dataset: "xr.Dataset") -> Table:
-    columns = (
-        map(str, dataset["span"].values),
+    """Spans at rest, with their fleeting angles if pulleys are out of line, and the axial offset still allowed."""
+    columns: list[Sequence[str]] = [
+        [str(one) for one in dataset["span"].values],
         aligned((1e3 * dataset["span_length"].values).tolist(), 4),
         aligned(dataset["span_frequency"].values.tolist(), 3),
-    )
-    return Table("Spans at rest", ("", "length\nmm", "frequency\nHz"), tuple(zip(*columns, strict=True)))
+    ]
+    headings: tuple[str, ...] = ("", "length\nmm", "frequency\nHz")
+    angles, worst = (_DEGREES * dataset[name].values for name in ("fleeting_angle", "worst_fleeting_angle"))
+    if worst.any():
+        columns += [[f"{one:z.3f}°" for one in side] for side in angles.T.tolist()]
+        columns.append([f"{one:.3f}°" for one in worst.max(axis=1)])
+        headings = (*headings, "fleeting\nleaving", "angle\nreaching", "worst, with\ntolerances")
+    if "allowed_offset" in dataset:
+        columns.append(aligned((1e3 * dataset["allowed_offset"].values).tolist(), 3))
+        headings = (*headings, "offset still\nallowed mm")
+    return Table("Spans at rest", headings, tuple(zip(*columns, strict=True)))
 
 
 def _states(dataset: "xr.Dataset") -> Table:

@@ -61,6 +61,28 @@ def test_limits_judge_peaks_and_the_least_slip_safety(found: bd.Result) -> None:
     assert numbers["least_slip_safety"].limit == 1.5
 
 
+def test_alignment_is_that_of_the_drive_with_tolerances() -> None:
+    """Between fixed centers, where the path at rest is the given one."""
+    drive = bd.loads(
+        """
+belt = { profile = "PK", ribs = 4, installed_tension = "400 N" }
+pulley = [
+    { name = "motor", center = [0, 0], diameter = "120 mm", speed = "1000 rpm" },
+    { name = "fan", center = [0.4, 0], diameter = "180 mm", inertia = 0.01, axial_offset = "0.5 ± 4 mm" },
+]
+simulation = { duration = "1 s" }
+"""
+    )
+    result = bd.sheet(drive, points=2)
+    expected, dataset = bd.model.alignment(drive), result.dataset
+    np.testing.assert_allclose(dataset.fleeting_angle, expected.angles, rtol=1e-9)
+    np.testing.assert_allclose(dataset.worst_fleeting_angle, expected.worst, rtol=1e-9)
+    assert float(dataset.allowed_fleeting_angle) == expected.limit
+    np.testing.assert_allclose(dataset.allowed_offset, expected.allowed_offset, rtol=1e-9)
+    assert np.all(dataset.worst_fleeting_angle.values > np.abs(dataset.fleeting_angle.values))
+    assert any("with tolerances, but the belt allows" in one for one in result.warnings)
+
+
 def test_it_is_kept_in_a_file(found: bd.Result, tmp_path: Path) -> None:
     kept = bd.open_result(found.save(tmp_path / "sheet.nc"))
     assert kept.kind == "sheet"

@@ -90,6 +90,13 @@ def test_what_is_no_duty_table(tmp_path: Path, text: str, words: str) -> None:
         read_duty(file)
 
 
+def test_a_heading_with_a_name_that_no_pulley_has(tmp_path: Path) -> None:
+    file = tmp_path / "duty.csv"
+    file.write_text("share [%], drivn power [kW]\n100, 1\n", encoding="utf-8")
+    with pytest.raises(ModelError, match=r'duty.csv: the heading "drivn power" names no pulley.*mean "driven"'):
+        duty(bd.example("two_pulley"), table=file)
+
+
 def test_a_file_that_is_not_there(tmp_path: Path) -> None:
     with pytest.raises(ModelError, match="cannot be read"):
         read_duty(tmp_path / "none.csv")
