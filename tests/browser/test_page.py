@@ -223,6 +223,20 @@ def test_an_optimisation_finds_a_drive_file(shoot: Shoot, open_page: Open, folde
     page.frame_locator("iframe.bd-report").get_by_role("heading", name="Provenance").wait_for()
 
 
+def test_a_drive_sheet_has_its_tables_and_tells_what_is_wrong(shoot: Shoot, open_page: Open) -> None:
+    page = open_page()
+    choose_analysis(page, "sheet")
+    for text, told in (("3000 kg", "must be in units of rad/s"), ("3000 rpm/s", "sheet: completed")):
+        page.get_by_role("textbox", name="acceleration", exact=True).fill(text)
+        page.get_by_role("button", name="Run", exact=True).click()
+        page.get_by_text(told).first.wait_for()
+    spans = page.locator("table", has_text="offset").first
+    playwright.expect(spans.locator("tr", has_text="crank-tensioner")).to_have_count(1)
+    for title in ("Tensioner of tensioner", "Operating points", "Belts of standard length"):
+        page.get_by_text(title, exact=True).locator("visible=true").first.wait_for()
+    shoot(page, "drive_sheet")
+
+
 def test_wrong_values_and_layouts_are_told_and_undone(shoot: Shoot, open_page: Open) -> None:
     page = open_page()
     page.locator('[data-pulley="alternator"]').click()

@@ -29,14 +29,14 @@ _STATES = {
 def drive_sheet(result: Result) -> Sheet:
     """Give the sheet of a drive."""
     dataset = result.dataset
-    parts: list[Table | Facts] = [Facts(tuple(_facts(dataset))), _pulleys(dataset), _spans(dataset)]
+    parts: list[Table | Facts] = [Facts(tuple(_facts(dataset))), _pulleys(dataset)]
     if "state" in dataset.dims:
         parts.append(_states(dataset))
-    parts += [_points(dataset), _by_name(dataset, "span"), _by_name(dataset, "pulley")]
-    if "mode" in dataset.dims:
-        parts.append(_modes(dataset))
     if "standard" in dataset.dims:
         parts.append(_belts(dataset))
+    parts += [_points(dataset), _by_name(dataset, "span"), _by_name(dataset, "pulley"), _spans(dataset)]
+    if "mode" in dataset.dims:
+        parts.append(_modes(dataset))
     return Sheet(str(dataset.attrs["title"]), tuple(parts))
 
 
@@ -59,7 +59,7 @@ def _facts(dataset: "xr.Dataset") -> Iterable[tuple[str, str]]:
     yield "friction", f"{factors} times the coefficients below; the least slip safety is over all cases and these"
     if "allowed_fleeting_angle" in dataset:
         allowed = _DEGREES * float(dataset["allowed_fleeting_angle"])
-        yield "alignment", f"fleeting angles up to {allowed:.3g}°; geometry only, the dynamics are planar"
+        yield "alignment", f"fleeting angles up to {allowed:.3g}°, by geometry alone: the dynamics are planar"
     safety = dataset["least_slip_safety_over_speed"]
     if bool(safety.notnull().any()):
         speed, pulley = np.unravel_index(int(np.nanargmin(safety.values)), safety.shape)
@@ -101,7 +101,7 @@ def _spans(dataset: "xr.Dataset") -> Table:
         headings = (*headings, "fleeting\nleaving", "angle\nreaching", "worst, with\ntolerances")
     if "allowed_offset" in dataset:
         columns.append(aligned((1e3 * dataset["allowed_offset"].values).tolist(), 3))
-        headings = (*headings, "offset still\nallowed mm")
+        headings = (*headings, "offset\nallowed mm")
     return Table("Spans at rest", headings, tuple(zip(*columns, strict=True)))
 
 

@@ -94,7 +94,7 @@ def test_a_heading_with_a_name_that_no_pulley_has(tmp_path: Path) -> None:
     file = tmp_path / "duty.csv"
     file.write_text("share [%], drivn power [kW]\n100, 1\n", encoding="utf-8")
     with pytest.raises(ModelError, match=r'duty.csv: the heading "drivn power" names no pulley.*mean "driven"'):
-        duty(bd.example("two_pulley"), table=file)
+        duty(loaded_two_pulley(), table=file)
 
 
 def test_a_file_that_is_not_there(tmp_path: Path) -> None:
