@@ -48,8 +48,9 @@ def reports(tmp_path_factory: pytest.TempPathFactory) -> dict[str, Path]:
     text = files("beltdyn").joinpath("examples", "accessory_drive.toml").read_text(encoding="utf-8")
     text = text.replace('name = "compressor"', 'name = "compressor"\naxial_offset = "0.5 ± 0.9 mm"')
     rows = [f"[[duty]]\nshare = 0.05\nspeed = {80 + 20 * row}\npower = {{ alternator = 500 }}" for row in range(20)]
-    shown["sheet"] = bd.sheet(bd.loads("\n".join([text, *rows])), acceleration="2000 rpm/s")
-    assert any("with tolerances, but the belt allows" in one for one in shown["sheet"].warnings)
+    drive_sheet = bd.sheet(bd.loads("\n".join([text, *rows])), acceleration="2000 rpm/s")
+    assert any("with tolerances, but the belt allows" in one for one in drive_sheet.warnings)
+    shown["sheet"] = drive_sheet
     return {name: bd.write_report(one, folder / f"{name}.html") for name, one in shown.items()}
 
 

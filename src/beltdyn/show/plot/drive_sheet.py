@@ -39,14 +39,17 @@ def sheet_slip_safety(result: Result, ax: Axes | None = None) -> Axes:
     dataset, ax = result.dataset, axes_or_new(ax)
     speed = RPM * dataset["speed"].values
     nominal, least = (dataset[f"{name}_over_speed"].values for name in ("slip_safety", "least_slip_safety"))
-    worst = np.argsort(np.nan_to_num(np.fmin.reduce(least, axis=0), nan=np.inf), kind="stable")
-    loaded = [pulley for pulley in worst[:_MOST].tolist() if np.fmin.reduce(nominal[:, pulley]) < _HIGHEST_SAFETY]
+    lowest = np.nan_to_num(np.fmin.reduce(least, axis=0), nan=np.inf)
+    worst = np.argsort(lowest, kind="stable")[:_MOST]
+    safe = _HIGHEST_SAFETY <= lowest[worst[0]] < np.inf
+    top = 1.1 * float(np.nanmax(nominal[:, worst[0]])) if safe else _HIGHEST_SAFETY
+    loaded = worst[lowest[worst] < top].tolist()
     for number, pulley in enumerate(sorted(loaded)):
         tint, name = color(number), str(dataset["pulley"].values[pulley])
         ax.plot(speed, nominal[:, pulley], color=tint, linestyle=dash(number), label=name)
         ax.fill_between(speed, least[:, pulley], nominal[:, pulley], color=tint, alpha=0.15, linewidth=0.0)
     ax.axhline(1.0, color=INK, linewidth=0.8)
-    ax.set(xlabel=_speed_label(result), ylabel="Slip safety", ylim=(0.0, _HIGHEST_SAFETY))
+    ax.set(xlabel=_speed_label(result), ylabel="Slip safety", ylim=(0.0, top))
     name_lines(ax)
     return ax
 
