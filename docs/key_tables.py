@@ -18,7 +18,19 @@ from beltdyn.machines.profiles.harmonic import CrankSpeed
 from beltdyn.machines.profiles.profile import PROFILES
 from beltdyn.machines.tensioners.rotary import ArmAsSupplied
 from beltdyn.machines.tensioners.tensioner import TENSIONERS
-from beltdyn.model import Belt, Contact, FixedEnd, Harmonic, Limits, PulledEnd, Pulley, Simulation, Steady, WeightEnd
+from beltdyn.model import (
+    Belt,
+    Carriage,
+    Contact,
+    FixedEnd,
+    Harmonic,
+    Limits,
+    PulledEnd,
+    Pulley,
+    Simulation,
+    Steady,
+    WeightEnd,
+)
 from beltdyn.model.belt_form import Nominal, Sold, Stiffnesses
 from beltdyn.model.duty import DutyPoint
 from beltdyn.model.fatigue import CordFatigue, RibFatigue
@@ -169,6 +181,7 @@ KEYS: dict[str, Any] = {
     "steady": table(Steady),
     "limits": table(Limits),
     "end": family({"fixed": FixedEnd, "pulled": PulledEnd, "weight": WeightEnd}),
+    "carriage": table(Carriage),
     "harmonic": table(Harmonic),
     "crank": table(CrankSpeed),
     "load": family(LOADS, Load),

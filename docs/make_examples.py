@@ -13,6 +13,7 @@ from tempfile import TemporaryDirectory
 from types import MappingProxyType
 from typing import NamedTuple
 
+import example_axes as axes
 import example_numbers as by_hand
 import example_teeth as toothed
 import example_tensioners as tensioned
@@ -62,6 +63,8 @@ EXAMPLES: Mapping[str, Example] = MappingProxyType(
         "alternator_drive": Example(("speeds", "span_tensions", "tensioners", "hub_loads"), tensioned.alternator_drive),
         "tensioner_stop": Example(("span_tensions", "tensioners", "slip_safety"), tensioned.tensioner_stop),
         "timing_drive": Example(("span_tensions", "contact_pressure"), toothed.timing_drive),
+        "printer_axis": Example(("carriage_error", "span_tensions"), axes.printer_axis),
+        "gantry_axis": Example(("carriage_error",), axes.gantry_axis),
         "slip_through": Example(("speeds", "torques", "slip_safety", "slip"), by_hand.slip_through),
         "accessory_drive": Example(
             ("speeds", "span_tensions", "tensioners", "slip", "hub_loads"), accessory.numbers, accessory.study

@@ -56,6 +56,7 @@ from .transient.sweep import sweep
 from .vibration.campbell import campbell
 from .vibration.modes import modes
 from .vibration.response import response
+from .vibration.stroke import stroke
 
 __version__: str
 
@@ -108,6 +109,7 @@ __all__ = [
     "simulate_all",
     "steady_comparison",
     "steady_state",
+    "stroke",
     "study",
     "summarize",
     "sweep",

@@ -41,6 +41,7 @@ from beltdyn.machines.tensioners.tensioner import TENSIONERS
 from beltdyn.model.advice import advise, describe_time, off_the_stop, unstable_balance
 from beltdyn.model.alignment import Alignment, alignment
 from beltdyn.model.belt import Belt
+from beltdyn.model.carriage import Carriage
 from beltdyn.model.catalogue import Entry, read_catalogue
 from beltdyn.model.contact import Contact
 from beltdyn.model.drive import Drive
@@ -70,6 +71,7 @@ __all__ = [
     "Belt",
     "Brake",
     "CalibrationStudy",
+    "Carriage",
     "Constant",
     "Contact",
     "CordFatigue",

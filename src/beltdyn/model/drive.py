@@ -17,10 +17,11 @@ from beltdyn.machines import FunctionLoad, MovingTensioner, Tensioner
 from beltdyn.machines.tensioners.registry import AnyTensioner
 from beltdyn.model.as_supplied import Rotation, as_supplied
 from beltdyn.model.belt import Belt
+from beltdyn.model.carriage import Carriage, check_carriage
 from beltdyn.model.completion import Completed, complete
 from beltdyn.model.contact import Contact
 from beltdyn.model.duty import DutyPoint, check_duty
-from beltdyn.model.end import AnyEnd, PathEnd, ends_on_path
+from beltdyn.model.end import AnyEnd, End, PathEnd, ends_on_path
 from beltdyn.model.layout import Given, Layout, lay_out
 from beltdyn.model.meshing import check_teeth
 from beltdyn.model.path import Path
@@ -74,8 +75,11 @@ class Drive(Part):
     )
     contact: Contact = Field(default_factory=Contact, description="the group [contact]")
     tensioners: tuple[AnyTensioner, ...] = Field((), alias="tensioner", description="the groups [[tensioner]]")
-    ends: tuple[AnyEnd, ...] = Field(
+    given_ends: tuple[AnyEnd, ...] = Field(
         (), alias="end", description="the groups [[end]], first and second, of an open belt"
+    )
+    carriage: Carriage | None = Field(
+        None, description="the group [carriage], to which both ends of the belt of a linear axis are clamped"
     )
     duty: tuple[DutyPoint, ...] = Field(
         (), description="the groups [[duty]], operating points with their shares of time"
@@ -174,8 +178,32 @@ class Drive(Part):
     @model_validator(mode="after")
     def _teeth_fit_the_pulleys(self) -> Self:
         length = None if self.moving_tensioners else self.path.length
-        check_teeth(self.belt, self.pulleys, length, bool(self.ends))
+        check_teeth(self.belt, self.pulleys, length)
         return self
+
+    @model_validator(mode="after")
+    def _carriage_fits_the_axis(self) -> Self:
+        if self.carriage is None:
+            return self
+        if self.belt.crossed:
+            raise ValueError("belt.crossed = true is incompatible with [carriage], whose belt runs straight. Omit it")
+        if self.moving_tensioners:
+            raise ValueError(
+                f'the spring-loaded tensioner of "{self.moving_tensioners[0].pulley}" is incompatible with [carriage]: '
+                'it would yield to the load. Set kind = "fixed", whose take_up tensions the belt'
+            )
+        senses = self.counter_clockwise_pulleys
+        check_carriage(self.carriage, self.path, senses, self.path_ends, self.simulation.end)
+        return self
+
+    @property
+    def ends(self) -> tuple[End, ...]:
+        """The ends of an open belt, as given or clamped to the carriage."""
+        if self.carriage is None:
+            return self.given_ends
+        if self.given_ends:
+            raise ModelError("[[end]] and [carriage] exclude each other: the carriage holds both ends. Remove one")
+        return self.carriage.ends(self.pulleys[0].center) if self.pulleys else ()
 
     @property
     def title(self) -> str:

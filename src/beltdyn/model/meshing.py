@@ -10,7 +10,7 @@ from beltdyn.model.path import Path
 from beltdyn.model.pulley import Pulley
 
 
-def check_teeth(belt: Belt, pulleys: Sequence[Pulley], path_length: float | None, is_open: bool) -> None:
+def check_teeth(belt: Belt, pulleys: Sequence[Pulley], path_length: float | None) -> None:
     """Refuse teeth that no groove holds, and a belt with teeth that is too short for its path, unless that moves."""
     if belt.teeth is None or belt.toothing is None:
         return
@@ -18,11 +18,6 @@ def check_teeth(belt: Belt, pulleys: Sequence[Pulley], path_length: float | None
         raise ValueError(
             f"the belt has {belt.teeth} teeth, but no pulley has any. Give pulleys their teeth, or omit belt.teeth and "
             "belt.toothing for a flat belt"
-        )
-    if is_open:
-        raise ValueError(
-            "[[end]] opens the belt, but open belts with teeth are not modeled. Omit teeth of belt and pulleys, which "
-            "makes it a flat belt"
         )
     pitches = 0.0 if path_length is None else path_length / belt.given_pitch
     if pitches > belt.teeth + 1:

@@ -13,12 +13,13 @@ from beltdyn.elements import ElementKind
 from beltdyn.errors import ModelError
 from beltdyn.machines import MovingTensioner, Tensioner
 from beltdyn.model.belt import Belt
+from beltdyn.model.carriage import Carriage
 from beltdyn.model.carrier import Carrier, carriers_of, moved
 from beltdyn.model.completion import take_up
 from beltdyn.model.contact import Contact
 from beltdyn.model.defaults import Choice, critical_damping
 from beltdyn.model.drive import Drive
-from beltdyn.model.end import AnyEnd, PathEnd
+from beltdyn.model.end import End, PathEnd
 from beltdyn.model.installation import Installation, span_frequencies
 from beltdyn.model.layout import loaded
 from beltdyn.model.path import Path
@@ -83,9 +84,14 @@ class Prepared:
         return self.drive.gravity
 
     @property
-    def ends(self) -> tuple[AnyEnd, ...]:
+    def ends(self) -> tuple[End, ...]:
         """Ends of an open belt."""
         return self.drive.ends
+
+    @property
+    def carriage(self) -> Carriage | None:
+        """The carriage of a linear axis, which holds both ends."""
+        return self.drive.carriage
 
     @property
     def path_ends(self) -> tuple[PathEnd, ...]:

@@ -13,6 +13,7 @@ from beltdyn.arrays import FloatArray, IntArray
 from beltdyn.errors import SlipError
 from beltdyn.model import Prepared
 from beltdyn.model.advice import other_creep
+from beltdyn.model.carriage import carriage_rate
 from beltdyn.model.simulation import Frame, FrameName
 from beltdyn.observation.band_limit import BandLimit
 from beltdyn.observation.compilation import compile_kernels
@@ -83,13 +84,14 @@ def result_layout(prepared: Prepared, system: System) -> Layout:
         belt_coordinate=(starts[:, None] + lengths[:, None] * system.contact.points).ravel(),
         coordinate_names=element_kind(system).coordinates,
         tensioners=tuple(names[pulley] for pulley in system.tensioners.pulley),
+        carriages=_carriages(prepared),
         bodies=_bodies(prepared, system),
         tooth_coordinate=tuple(tooth_coordinates(system).tolist()),
     )
 
 
 def _bodies(prepared: Prepared, system: System) -> tuple[str, ...]:
-    """Names of rims, of bodies and controllers behind them, of the belt that flows, and of tensioners."""
+    """Names of rims, of bodies and controllers behind them, of the belt that flows, and of tensioners or carriage."""
     names = [pulley.name for pulley in prepared.pulleys]
     hubs = [f"{one.name} hub[{number}]" for one in prepared.pulleys for number, _ in enumerate(one.hub, 1)]
     lags = [
@@ -99,7 +101,13 @@ def _bodies(prepared: Prepared, system: System) -> tuple[str, ...]:
         if load.state_lag is not None
     ]
     flow = ["belt"] if isinstance(system.frame, Flowing) else []
-    return (*names, *hubs, *lags, *flow, *(f"{names[pulley]} tensioner" for pulley in system.tensioners.pulley))
+    tensioners = (f"{names[pulley]} tensioner" for pulley in system.tensioners.pulley)
+    return (*names, *hubs, *lags, *flow, *tensioners, *_carriages(prepared))
+
+
+def _carriages(prepared: Prepared) -> tuple[str, ...]:
+    """Name of the carriage, if there is one."""
+    return () if prepared.carriage is None else (prepared.carriage.name,)
 
 
 _SECONDS_BETWEEN_WRITES = 0.25
@@ -376,11 +384,22 @@ class Recording:
         carried = {"tensioner_position": position[:, tensioners:], "tensioner_speed": velocity[:, tensioners:]}
         return {
             **(carried if len(system.tensioners) else {}),
+            **self._carriage(position, velocity),
             "pulley_speed": velocity[:, nodes : nodes + pulleys],
             "pulley_angle": position[:, nodes : nodes + pulleys],
             "shaft_speed": velocity[:, shafts],
             "shaft_angle": position[:, shafts],
         }
+
+    def _carriage(self, position: FloatArray, velocity: FloatArray) -> Arrays:
+        """Way and speed of a carriage, and how far it is ahead of the driver with a belt that does not stretch."""
+        prepared, driver = self._prepared, self._prepared.reference
+        if prepared.carriage is None:
+            return {}
+        place, speed = position[:, -1:], velocity[:, -1:]
+        rate = carriage_rate(prepared.carriage, prepared.path, driver)
+        ahead = place - rate * position[:, self._system.first_body + driver, None]
+        return {"carriage_position": place, "carriage_speed": speed, "carriage_error": ahead}
 
     def _nodes(self, states: Chunk, instants: FloatArray) -> Arrays:
         """Coordinates and velocities of nodes, and of bodies at the same instants."""

@@ -37,6 +37,8 @@ class Layout:
     """Names of the coordinates of a node."""
     tensioners: tuple[str, ...] = ()
     """Names of the pulleys carried by tensioners, in the order of their coordinates."""
+    carriages: tuple[str, ...] = ()
+    """Name of the carriage, if there is one."""
     bodies: tuple[str, ...] = ()
     """Names of all bodies other than the belt, in the order of the coordinates."""
     tooth_coordinate: tuple[float, ...] = ()
@@ -64,6 +66,7 @@ class Layout:
             "pulley": self.pulleys,
             "span": self.spans,
             "tensioner": self.tensioners,
+            "carriage": self.carriages,
             "body": self.bodies,
             "axis": AXIS_NAMES,
             "coordinate": self.coordinate_names,
@@ -82,6 +85,7 @@ class Layout:
             "pulley": len(self.pulleys),
             "span": len(self.spans),
             "tensioner": len(self.tensioners),
+            "carriage": len(self.carriages),
             "body": len(self.bodies),
             "axis": len(AXIS_NAMES),
             "coordinate": len(self.coordinate_names),
@@ -171,6 +175,7 @@ def _sizes(prepared: Prepared) -> dict[str, int]:
         "pulley": pulleys,
         "span": prepared.path.spans,
         "tensioner": len(prepared.moving_tensioners),
+        "carriage": int(prepared.carriage is not None),
         "body": _bodies(prepared),
         "axis": len(AXIS_NAMES),
         "coordinate": len(kind.coordinates),
@@ -184,10 +189,11 @@ def _sizes(prepared: Prepared) -> dict[str, int]:
 
 
 def _bodies(prepared: Prepared) -> int:
-    """Number of what has a coordinate beside the belt: rims, hub chains, controllers, belt, tensioners."""
+    """Number of what has a coordinate beside the belt: rims, hub chains, controllers, belt, tensioners or carriage."""
     behind = sum(len(one.hub) + sum(load.state_lag is not None for load in one.load) for one in prepared.pulleys)
     flows = prepared.frame.stays
-    return len(prepared.pulleys) + behind + flows + len(prepared.moving_tensioners)
+    carried = len(prepared.moving_tensioners) + (prepared.carriage is not None)
+    return len(prepared.pulleys) + behind + flows + carried
 
 
 def _variable_bytes(variable: Variable, row: tuple[int, ...], count: int) -> int:

@@ -66,6 +66,7 @@ _POINT = ("field_time", "contact_point")
 _TOOTH = ("field_time", "tooth")
 _ARC = ("field_time", "pulley", "arc_part")
 _TENSIONER = ("time", "tensioner")
+_CARRIAGE = ("time", "carriage")
 
 COORDINATES = MappingProxyType(
     {
@@ -76,6 +77,7 @@ COORDINATES = MappingProxyType(
         "span": Variable(("span",), "1", "Span, named by the pulleys or ends it connects", "str"),
         "body": Variable(("body",), "1", "Body other than the belt", "str", core=False),
         "tensioner": Variable(("tensioner",), "1", "Tensioner, named by the pulley it carries", "str"),
+        "carriage": Variable(("carriage",), "1", "Carriage of a linear axis", "str", core=False),
         "axis": Variable(("axis",), "1", "Axis of the plane", "str"),
         "coordinate": Variable(("coordinate",), "1", "Nodal coordinate", "str"),
         "node_coordinate": Variable(("node",), "m", "Belt coordinate of the node, unstretched"),
@@ -103,6 +105,9 @@ _OUTPUTS = {
     "contact_damping_power": Variable(_PULLEY, "W", "Power lost in contact damping"),
     "tensioner_position": Variable(_TENSIONER, "m, rad", "Tensioner position", at_rest=True),
     "tensioner_speed": Variable(_TENSIONER, "m/s, rad/s", "Tensioner speed", core=False),
+    "carriage_position": Variable(_CARRIAGE, "m", "Way of the carriage", core=False, at_rest=True),
+    "carriage_speed": Variable(_CARRIAGE, "m/s", "Speed of the carriage", core=False),
+    "carriage_error": Variable(_CARRIAGE, "m", "Way of the carriage ahead of the driver", core=False),
     "node_position": Variable(("field_time", "node", "axis"), "m", "Node position", at_rest=True),
     "nodal_coordinates": Variable(_NODE, "m, 1", "Nodal coordinates", at_rest=True),
     "nodal_velocities": Variable(_NODE, "m/s, 1/s", "Nodal velocities", SHORT, core=False),
@@ -195,7 +200,7 @@ RECORDED = MappingProxyType(
 """Variables passed to a recorder, except those that `Layout.recorded` omits; `TIMES` come last, ``time`` last of "
 "all."""
 
-OPTIONAL = frozenset({"tensioner", "tooth"})
+OPTIONAL = frozenset({"tensioner", "tooth", "carriage"})
 """Dimensions that may have size zero; they are then omitted with their variables."""
 
 AUXILIARY_COORDINATES = MappingProxyType(

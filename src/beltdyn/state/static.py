@@ -18,7 +18,7 @@ from beltdyn.errors import ConvergenceError
 from beltdyn.records import Records
 from beltdyn.solvers.engine import correct, linearise
 from beltdyn.system.arrays import Equations, Motion, System, TangentFactors
-from beltdyn.system.meshing import phases, toothed_pulleys, unloaded
+from beltdyn.system.meshing import phases, turning_grooves, unloaded
 from beltdyn.system.motion import new_equations, no_multipliers
 from beltdyn.system.state import State
 
@@ -112,7 +112,7 @@ class _Search:
 
     def __init__(self, system: System, start: State) -> None:
         self._system = unloaded(system._replace(bodies=only_tensioners(system)))
-        self._grooves = toothed_pulleys(system)[1:]
+        self._grooves = turning_grooves(system)
         self.position, self._velocity = start.position.copy(), start.velocity
         self._multipliers = no_multipliers(system)
         self._here: Equations = new_equations(self._system)

@@ -2,9 +2,9 @@
 
 The state of a system with N nodes is the vector of n N nodal coordinates, n to a node (six of the paper's element),
 followed by D coordinates of bodies: the angles of the P rims, those of the bodies behind the rims in hub chains, the
-states of controllers, and the places of tensioners.  Velocities and accelerations are ordered alike.  Elements couple a
-node with the next one only, and the centerline of an element is made of one or several curves; beyond that the system
-does not ask how a belt is discretized.
+states of controllers, and the places of a carriage or of tensioners.  Velocities and accelerations are ordered alike.
+Elements couple a node with the next one only, and the centerline of an element is made of one or several curves; beyond
+that the system does not ask how a belt is discretized.
 """
 
 from typing import Any, Final, NamedTuple
@@ -49,6 +49,13 @@ class Supports(NamedTuple):
     """Constant generalized forces on the nodal coordinates, weight among them, shape (n N,)."""
     moment: FloatArray
     """Constant moments that turn the section r_y of a node, N m, shape (N,)."""
+
+
+class NoCarriage(NamedTuple):
+    """No carriage holds the ends of the belt."""
+
+    none: float = 0.0
+    """Zero."""
 
 
 class System(NamedTuple):
@@ -98,6 +105,8 @@ class System(NamedTuple):
     supports: Supports
     frame: Any
     """How the mesh stands to the belt: `frame.Travelling` or `frame.Staying`."""
+    carriage: Any = NoCarriage()
+    """What holds both ends of an open belt: `NoCarriage` or `guide.Guided`."""
 
 
 class Motion(NamedTuple):

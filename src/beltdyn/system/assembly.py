@@ -20,6 +20,7 @@ from beltdyn.system.body_forces import add_contact, add_machines, clear_body_for
 from beltdyn.system.element_state import add_material_damping, centreline, gather, gather_motion
 from beltdyn.system.flow_tangent import flowing_element, hold_mesh, hold_nothing
 from beltdyn.system.frame import Flowing, Travelling
+from beltdyn.system.guide import carry_ends
 from beltdyn.system.moving_center import couple_center, keep_drift, moving_center, pulley_state
 from beltdyn.system.ring_matrix import clear
 from beltdyn.system.supports import add_nodal_loads, couple_rim, hold_fixed, scatter, take_contact
@@ -68,6 +69,7 @@ def assemble(
     add_nodal_loads(system, motion.position, factors.by_position, matrix)
     if system.supports.any_fixed:
         hold_fixed(system, matrix)
+    carry_ends(system.carriage, system, wanted, matrix)
 
 
 @kernel(inline=True)

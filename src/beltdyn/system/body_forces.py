@@ -24,6 +24,7 @@ from beltdyn.system.arrays import (
     System,
     TangentFactors,
 )
+from beltdyn.system.guide import push_carriage
 from beltdyn.system.moving_center import tensioner_coordinate
 
 
@@ -119,6 +120,7 @@ def add_machines(
     _add_tensioners(system, motion, factors, corner, forces)
     _add_links(system, motion, factors, corner, forces)
     _take_shafts(system, motion, factors, corner, forces)
+    push_carriage(system.carriage, system, motion, factors.by_position, factors.by_velocity, corner, forces)
 
 
 @kernel(inline=True)

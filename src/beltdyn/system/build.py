@@ -22,6 +22,7 @@ from beltdyn.system.arrays import Supports, System
 from beltdyn.system.build_machines import body_arrays, machine_arrays, pulley_arrays
 from beltdyn.system.discretization import Discretization, discretize
 from beltdyn.system.frame import Travelling
+from beltdyn.system.guide import with_carriage
 from beltdyn.system.hysteresis import hysteresis_rows
 from beltdyn.system.meshing import with_teeth
 
@@ -51,7 +52,8 @@ Closure = Literal["shared_node", "multipliers", "open"]
 def drive_system(prepared: Prepared) -> System:
     """Arrays of a drive."""
     closure: Closure = "open" if prepared.ends else prepared.simulation.joint
-    return with_teeth(prepared, system_of(prepared, prepared.belt, prepared.contact, closure, **_at_ends(prepared)))
+    smooth = system_of(prepared, prepared.belt, prepared.contact, closure, **_at_ends(prepared))
+    return with_carriage(prepared, with_teeth(prepared, smooth))
 
 
 def system_of(prepared: Prepared, belt: Belt, contact: Contact, closure: Closure, **more: Any) -> System:

@@ -16,7 +16,7 @@ from beltdyn.kernel import by_type, kernel
 from beltdyn.model import Prepared
 from beltdyn.model.toothing import DISCRETE
 from beltdyn.records import Records, records
-from beltdyn.system.arrays import BodyForces, Motion, RingMatrix, System, TangentFactors
+from beltdyn.system.arrays import BodyForces, Motion, NoCarriage, RingMatrix, System, TangentFactors
 from beltdyn.system.body_forces import add_machines
 from beltdyn.system.constant_drive import constant_drive
 from beltdyn.system.frame import Travelling, centreline_places
@@ -121,18 +121,25 @@ def mesh_speeds(system: System, velocity: FloatArray) -> None:
 def unloaded(system: System) -> System:
     """The same system without loads, with grooves that turn to where teeth do not turn the pulley, if it has teeth.
 
-    On a mesh that travels, which nothing else holds along the belt, the grooves of the first pulley with teeth stay.
+    On a mesh that travels, where no fixed end holds it along the belt, the grooves of the first pulley with teeth stay.
     """
     rims = system.rims
     if not has_teeth(system):
         return system
     held = constant_drive(system, 0.0)
     held.profiles.segment.offset[:] = 0.0
-    turning, bodies = toothed_pulleys(system), held.bodies.copy()
+    turning, bodies = turning_grooves(system), held.bodies.copy()
     if isinstance(rims, ToothedRims):
-        held, turning = held._replace(rims=rims._replace(table=rims.table.copy())), turning[1:]
+        held = held._replace(rims=rims._replace(table=rims.table.copy()))
     bodies["unknown"][turning] = int(np.max(bodies.unknown, initial=-1)) + 1 + np.arange(turning.size)
     return led_by(held._replace(bodies=bodies, tensioners=system.tensioners), -1)
+
+
+def turning_grooves(system: System) -> IntArray:
+    """Numbers of the pulleys whose grooves turn at rest to where teeth do not turn the pulley; see `unloaded`."""
+    found = toothed_pulleys(system)
+    held = system.supports.any_fixed or not isinstance(system.carriage, NoCarriage)
+    return found if held or isinstance(system.rims, MeshingRims) else found[1:]
 
 
 def toothed_pulleys(system: System) -> IntArray:

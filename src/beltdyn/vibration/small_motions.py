@@ -153,10 +153,10 @@ def about_standing(rest: Standing) -> SmallMotions:
     smooth["friction"] = 0.0
     sliding = _linearised(rest.prepared, held._replace(pulleys=smooth), rest.state, 0.0)
     creeping = _linearised(rest.prepared, held, rest.state, 0.0).damping - sliding.damping
-    return sliding._replace(stiffness=sliding.stiffness + _sticking_rate(rest.tension, held) * creeping)
+    return sliding._replace(stiffness=sliding.stiffness + sticking_rate(rest.tension, held) * creeping)
 
 
-def _sticking_rate(tension: float, system: System) -> float:
+def sticking_rate(tension: float, system: System) -> float:
     """Stiffness along the rim over the slope of friction over slip, 1/s."""
     friction = np.asarray(system.pulleys.friction)
     pressure = tension / system.rims.radius

@@ -56,8 +56,9 @@ def take_extras(file: h5py.File) -> None:
 
 
 def test_the_kept_file_is_drawn(kept: Path, tmp_path: Path) -> None:
-    """All but what the drive has not, tensioners and teeth, and what needs more turns of the belt."""
-    left = ("tensioners", "load_sharing", "transmission_error", "transmission_orders", "waterfall", "orders")
+    """All but what the drive has not, tensioners, teeth and carriage, and what needs more turns of the belt."""
+    teeth = ("load_sharing", "transmission_error", "transmission_orders")
+    left = ("tensioners", "carriage_error", *teeth, "waterfall", "orders")
     chosen = [name for name, figure in plot.FIGURES.items() if "run" in figure.of and name not in left]
     assert len(plot.save_all(open_run(kept), tmp_path, chosen)) == len(chosen)
     plt.close("all")

@@ -3,6 +3,8 @@
 from typing import Any
 
 from beltdyn.show.plot.animation import animate as animate
+from beltdyn.show.plot.axis import carriage_error as carriage_error
+from beltdyn.show.plot.axis import stroke as stroke
 from beltdyn.show.plot.contact import contact_forces as contact_forces
 from beltdyn.show.plot.contact import contact_pressure as contact_pressure
 from beltdyn.show.plot.contact import wear_by_arc as wear_by_arc

@@ -42,7 +42,9 @@ def test_chosen_figures(tmp_path: Path, run: Run) -> None:
 
 
 def test_unknown_figure_is_a_model_error(tmp_path: Path, run: Run) -> None:
-    with pytest.raises(ModelError, match=r"figure 'speed' is unknown\. Choose from configuration, contact_forces, "):
+    with pytest.raises(
+        ModelError, match=r"figure 'speed' is unknown\. Choose from configuration, carriage_error, contact_forces, "
+    ):
         plot.save_all(run, tmp_path / "figures", ["slip", "speed"])
     assert not (tmp_path / "figures").exists()
 
@@ -91,11 +93,12 @@ def test_slip_in_vibration_is_drawn_as_means_over_a_turn(make_run: Callable[...,
     assert ax.lines[1].get_label() == f"driven {summarize(shaken).pulleys[1].slip:.3%}"
 
 
-_NOT_OF_IT = ("waterfall", "orders", "load_sharing", "transmission_error", "transmission_orders")
+_OF_TEETH = ("load_sharing", "transmission_error", "transmission_orders")
+_NOT_OF_IT = ("waterfall", "orders", "carriage_error", *_OF_TEETH)
 
 
 def test_all_figures_of_a_drive_with_a_tensioner(tmp_path: Path, run: Run) -> None:
-    """Those of a sweep need more turns than this run has, those of teeth a toothed belt; they are tried elsewhere."""
+    """Those of a sweep need more turns than this run has, others teeth or a carriage; they are tried elsewhere."""
     tensioned = tensioned_run(run)
     chosen = [name for name, one in plot.FIGURES.items() if RUN in one.of and name not in _NOT_OF_IT]
     assert [path.stem for path in plot.save_all(tensioned, tmp_path, chosen)] == chosen

@@ -1,0 +1,162 @@
+"""A linear axis over its stroke: stiffness at the carriage, and natural frequency, about rest."""
+
+from typing import Any
+
+import numpy as np
+
+from beltdyn.arrays import FloatArray
+from beltdyn.errors import ModelError
+from beltdyn.model import Drive, prepare
+from beltdyn.model.carriage import free_stroke
+from beltdyn.parts.quantity import Numbers, numbers_in
+from beltdyn.results import Result, Variable, build_result
+from beltdyn.solvers.flutter import Vibrations
+from beltdyn.solvers.progress import Progress, Report
+from beltdyn.state.installation import Rest, rest_of
+from beltdyn.state.static import standing
+from beltdyn.system.constant_drive import constant_drive
+from beltdyn.vibration.small_motions import sticking_rate
+
+_INSET = 0.05
+"""Part of the free stroke at each end that the default range leaves out: a clamp at a pulley has no span."""
+_MOST_STRETCH = 0.02
+"""Largest change of the tension over the stroke, relative, that is not mentioned."""
+
+_PLACE = ("place",)
+_VARIABLES = {
+    "stiffness": Variable(_PLACE, "N/m", "Stiffness at the carriage, driver held"),
+    "frequency": Variable(_PLACE, "Hz", "Natural frequency of the carriage on its belt"),
+    "carriage_share": Variable(_PLACE, "1", "Share of the carriage in the kinetic energy of that mode"),
+    "lowest_frequency": Variable(_PLACE, "Hz", "Lowest natural frequency, spans among them"),
+    "tension": Variable(_PLACE, "N", "Tension at rest"),
+}
+
+
+def stroke(drive: Drive, *, places: Numbers | None = None, points: int = 9, progress: Report | None = None) -> Result:
+    """Compute stiffness and natural frequency of a linear axis over its stroke.
+
+    At each place of the carriage the axis is at rest with the same belt; prescribed pulleys are held, others turn, and
+    the belt sticks to its pulleys or is held by its teeth. The stiffness is that of all spans, arcs and teeth at the
+    carriage. Of the natural modes that in which the carriage has most of the kinetic energy counts.
+
+    Parameters
+    ----------
+    drive
+        The axis: a drive with a carriage.
+    places
+        Ways of the carriage from its center, such as "-100..100 mm" or "0, 50 mm", or in m; by default over the stroke,
+        or over the free length of the belt.
+    points
+        Number of places in a range.
+    progress
+        Called repeatedly with a `Progress`.
+
+    Returns
+    -------
+    Result
+        Along ``place``.
+
+    Raises
+    ------
+    ModelError
+        If the drive has no carriage, no pulley holds the belt, or a place is beyond the stroke.
+    ConvergenceError
+        If there is no equilibrium.
+
+    Examples
+    --------
+    >>> found = bd.stroke(bd.example("printer_axis"), places="0, 80 mm").dataset
+    >>> bool(found.stiffness[1] > found.stiffness[0])  # nearer to the motor
+    True
+    """
+    carriage = drive.carriage
+    if carriage is None:
+        raise ModelError("a stroke needs a carriage. Give the group [carriage], to which both ends are clamped.")
+    if not any(pulley.prescribed for pulley in drive.pulleys):
+        raise ModelError(
+            "no pulley holds the belt: a stiffness at the carriage needs one with prescribed speed. Give the driver "
+            "its speed in place of a motor."
+        )
+    ways = _ways(drive, places, points)
+    prepared = prepare(drive)
+    first = rest_of(prepared, progress).prepared.drive  # with the length, or the take-up, of the installed tension
+    rows = []
+    for number, way in enumerate(ways.tolist()):
+        if progress is not None:
+            progress(Progress(float(number), float(ways.size), 0.0, number, "equilibrium"))
+        rows.append(_at(rest_of(prepare(_moved(first, way)), None)))
+    columns = dict(zip(_VARIABLES, np.array(rows).T, strict=True))
+    axis = Variable(_PLACE, "m", "Way of the carriage from its center")
+    values: dict[str, Any] = {name: (one, columns[name]) for name, one in _VARIABLES.items()}
+    tensions = columns["tension"]
+    doubts = []
+    if np.ptp(tensions) > _MOST_STRETCH * tensions.mean():
+        doubts = [
+            f"the tension at rest changes over the stroke from {tensions.min():.4g} to {tensions.max():.4g} N: the "
+            "guide does not run along the belt. Move carriage.center onto the line of the belt."
+        ]
+    result = build_result("stroke", drive, values, {"place": (axis, ways)}, doubts)
+    result.dataset.attrs["axes"] = "place"
+    return result
+
+
+def _ways(drive: Drive, places: Numbers | None, points: int) -> FloatArray:
+    """Ways of the carriage, m, within its stroke."""
+    carriage = drive.carriage
+    assert carriage is not None
+    room = np.array(free_stroke(carriage, drive.path))
+    inner = (1.0 - 2.0 * _INSET) * (room - room.mean()) + room.mean()
+    lower, upper = carriage.stroke or inner.tolist()
+    if places is None:
+        return np.linspace(lower, upper, points)
+    found = numbers_in("places", places, "m", points)
+    if found.min() <= room[0] or found.max() >= room[1]:
+        raise ModelError(
+            f"places = {places!r} go beyond the ways from {room[0]:.5g} to {room[1]:.5g} m, where a clamp of the "
+            "carriage reaches a pulley. Give ways between them."
+        )
+    return found
+
+
+def _moved(drive: Drive, way: float) -> Drive:
+    """The axis with its carriage at another place."""
+    carriage = drive.carriage
+    assert carriage is not None
+    x, y = (at + way * part for at, part in zip(carriage.center, carriage.direction, strict=True))
+    held = [one.replace(speed=0.0, harmonics=()) if one.prescribed else one for one in drive.pulleys]
+    own = carriage.replace(center=(x, y), stroke=None, stop_stiffness=None, stop_damping=0.0)
+    return drive.replace(carriage=own, pulley=held)
+
+
+def _at(rest: Rest) -> tuple[float, ...]:
+    """Stiffness, frequency of the carriage, its share, lowest frequency, and tension at rest."""
+    stiffness, mass = _linearised(rest)
+    from scipy.linalg import eigh
+
+    last = stiffness.shape[0] - 1
+    unit = np.zeros(last + 1)
+    unit[last] = 1.0
+    compliance = float(np.linalg.solve(stiffness, unit)[last])
+    squares, ways = eigh(stiffness, mass)
+    shares = mass[last, last] * ways[last] ** 2
+    own = int(np.argmax(shares))
+    hertz = np.sqrt(np.maximum(squares, 0.0)) / (2.0 * np.pi)
+    return 1.0 / compliance, float(hertz[own]), float(shares[own]), float(hertz[0]), rest.tension
+
+
+def _linearised(rest: Rest) -> tuple[FloatArray, FloatArray]:
+    """Stiffness and mass of nodes, free pulleys and, last, the carriage, symmetric, where the belt sticks."""
+    system = constant_drive(standing(rest.system), 0.0)
+    smooth = system.pulleys.copy()
+    smooth["friction"] = 0.0
+    parts = []
+    for one in (system._replace(pulleys=smooth), system):
+        vibrations = Vibrations(one)
+        tangents = vibrations.tangents(0.0, rest.state.position, np.zeros_like(rest.state.velocity))
+        parts.append([vibrations.matrix(values).toarray() for values in tangents])
+    (stiffness, sliding, mass), (_, rubbing, _) = parts
+    stuck = stiffness + sticking_rate(rest.tension, system) * (rubbing - sliding)
+    kept = np.ones(len(mass), dtype=bool)
+    kept[[0, 1, system.first_body - len(system.scale), system.first_body - len(system.scale) + 1]] = False  # carried
+    stuck, mass = (0.5 * (one + one.T)[np.ix_(kept, kept)] for one in (stuck, mass))
+    return stuck, mass

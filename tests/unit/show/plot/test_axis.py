@@ -1,0 +1,29 @@
+"""The figures of linear axes."""
+
+import numpy as np
+import pytest
+
+import beltdyn as bd
+from beltdyn.errors import ModelError
+from beltdyn.results import Run
+
+
+def test_the_error_of_the_carriage_is_drawn_in_micrometers() -> None:
+    run = bd.simulate(bd.example("printer_axis").with_({"simulation.duration": 0.06}))
+    ax = bd.plot.carriage_error(run)
+    time, error = np.array(ax.lines[0].get_data())
+    assert time == pytest.approx(run.dataset.time.values)
+    assert error == pytest.approx(1e6 * run.dataset.carriage_error.values[:, 0])
+    assert "carriage_error" in bd.plot.FIGURES
+    with pytest.raises(ModelError, match="this drive has no carriage"):
+        bd.plot.carriage_error(Run(run.dataset.drop_vars("carriage_error"), run.drive))
+
+
+def test_stiffness_and_frequency_are_drawn_over_the_stroke() -> None:
+    found = bd.stroke(bd.example("printer_axis"), places="-50, 50 mm")
+    ax = bd.plot.stroke(found)
+    way, stiffness = np.array(ax.lines[0].get_data())
+    assert way == pytest.approx([-50.0, 50.0])
+    assert stiffness == pytest.approx(1e-3 * found.dataset.stiffness.values)
+    (right,) = [one for one in ax.figure.axes if one is not ax]
+    assert np.array(right.lines[0].get_ydata()) == pytest.approx(found.dataset.frequency.values)

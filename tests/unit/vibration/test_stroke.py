@@ -1,0 +1,34 @@
+"""Stiffness and frequency over the stroke: where the carriage may be, and what a drive needs for it."""
+
+import pytest
+
+import beltdyn as bd
+from beltdyn.errors import ModelError
+
+AXIS = bd.example("printer_axis")
+
+
+def test_it_is_stiffer_nearer_to_the_driver_and_swings_faster() -> None:
+    """The spans in series with the way back: EA (1 / L1 + 1 / L2), softest at the idler."""
+    found = bd.stroke(AXIS, places="-100, 0, 100 mm").dataset
+    assert found.place.values == pytest.approx([-0.1, 0.0, 0.1])
+    assert (found.stiffness.diff("place") > 0.0).all()
+    assert (found.frequency.diff("place") > 0.0).all()
+    assert (found.lowest_frequency <= found.frequency + 1e-9).all()
+    taken_up = 0.3256
+    spans = AXIS.belt.axial_stiffness * (1.0 / 0.135 + 1.0 / (taken_up - 0.165 + taken_up))
+    assert 0.8 * spans < float(found.stiffness[1]) < spans  # arcs and teeth yield too
+    assert found.tension.values == pytest.approx(30.0, rel=5e-3)
+
+
+def test_places_are_within_the_free_way() -> None:
+    with pytest.raises(ModelError, match="where a clamp of the carriage reaches a pulley"):
+        bd.stroke(AXIS, places="0, 140 mm")
+
+
+def test_it_needs_a_carriage_and_a_held_pulley() -> None:
+    with pytest.raises(ModelError, match="a stroke needs a carriage"):
+        bd.stroke(bd.example("two_pulley"))
+    motor = AXIS.pulleys[0].replace(speed=None, inertia=1e-5, torque={"kind": "constant", "value": 0.01})
+    with pytest.raises(ModelError, match="no pulley holds the belt"):
+        bd.stroke(AXIS.replace(pulley=[motor, AXIS.pulleys[1]]))

@@ -1,0 +1,137 @@
+"""Linear axes against closed forms: stiffness and frequency over the stroke, the way of a turn, energy, motion."""
+
+from typing import Any
+
+import numpy as np
+import pytest
+
+import beltdyn as bd
+from beltdyn.arrays import FloatArray
+
+AXIAL, TOOTH, PITCH, TEETH = 1e5, 1e6, 8e-3, 30
+RADIUS = TEETH * PITCH / (2.0 * np.pi)
+DISTANCE, LENGTH, MASS, TENSION = 0.8, 0.1, 5.0, 200.0
+BELT = {
+    "teeth": 218,
+    "width": 0.02,
+    "thickness": 0.004,
+    "axial_stiffness": AXIAL,
+    "bending_stiffness": 1e-5,
+    "mass_per_length": 0.05,
+    "installed_tension": TENSION,
+    "toothing": {"pitch": PITCH, "tooth_stiffness": TOOTH},
+    "discretization": "quintic",
+    "elements": 150,
+}
+
+
+def axis(speed: Any = 0.0, light: bool = False, duration: float = 0.12, **carriage: Any) -> bd.Drive:
+    """Two equal pulleys, the first one driven, and a carriage on the upper span; a light belt has a light idler."""
+    return bd.Drive(
+        belt=BELT | ({"mass_per_length": 1e-3} if light else {}),
+        pulley=[
+            {"name": "motor", "center": [0.0, 0.0], "teeth": TEETH, "speed": speed},
+            {"name": "idler", "center": [DISTANCE, 0.0], "teeth": TEETH, "inertia": 1e-7 if light else 1e-4},
+        ],
+        carriage={"center": [0.4, RADIUS], "direction": [-1.0, 0.0], "length": LENGTH, "mass": MASS, **carriage},
+        contact={"friction": 0.0},
+        tensioner=[{"kind": "fixed", "pulley": "idler", "direction": [1.0, 0.0]}],
+        simulation={"duration": duration, "rtol": 1e-3, "output_interval": 1e-3},
+    )
+
+
+def arc(length: float) -> FloatArray:
+    """Stiffness of a belt on an arc that its teeth hold, by the tension over the displacement at both ends."""
+    share = np.sqrt(PITCH * AXIAL / TOOTH)
+    own, other = 1.0 / np.tanh(length / share), 1.0 / np.sinh(length / share)
+    return np.asarray(AXIAL / share * np.array([[own, -other], [-other, own]]))
+
+
+def stiffness_of(first: float, last: float, back: float) -> float:
+    """Stiffness at the carriage: spans beside it, and the way back over an idler that turns."""
+    whole = np.zeros((6, 6))  # carriage, both ends of the driver's arc, both of the idler's, and its rim
+    for i, j, length in ((0, 1, first), (2, 3, back), (4, 0, last)):
+        whole[np.ix_([i, j], [i, j])] += AXIAL / length * np.array([[1.0, -1.0], [-1.0, 1.0]])
+    whole[1:3, 1:3] += arc(np.pi * RADIUS)
+    slips = np.array([[0, 0, 0, 1, 0, -1], [0, 0, 0, 0, 1, -1]])
+    whole += slips.T @ arc(np.pi * RADIUS) @ slips
+    return float(whole[0, 0] - whole[0, 1:] @ np.linalg.solve(whole[1:, 1:], whole[1:, 0]))
+
+
+def test_stiffness_and_frequency_over_the_stroke() -> None:
+    """EA / L of the spans in series with arcs and teeth; without the mass of belt and idler."""
+    held = axis(light=True)
+    found = bd.stroke(held, places="-0.2, 0, 0.2 m").dataset
+    taken_up = float(bd.check(held).drive.centers[1, 0])
+    for place, stiffness, frequency, share in zip(
+        *(found[name].values for name in ("place", "stiffness", "frequency", "carriage_share")), strict=True
+    ):
+        first, last = 0.4 - place - 0.5 * LENGTH, taken_up - 0.4 + place - 0.5 * LENGTH
+        expected = stiffness_of(first, last, taken_up)
+        assert stiffness == pytest.approx(expected, rel=0.01)
+        assert frequency == pytest.approx(np.sqrt(expected / MASS) / (2.0 * np.pi), rel=0.01)
+        assert share > 0.99
+
+
+@pytest.fixture(scope="module")
+def moved() -> bd.Run:
+    """A turn of the driver and back, with limited jerk."""
+    move = {
+        "kind": "s_curve",
+        "times": [0.01],
+        "angles": [np.pi],
+        "speed": 20.0,
+        "acceleration": 300.0,
+        "jerk": 2e4,
+    }
+    return bd.simulate(axis(move, duration=0.27, friction=20.0, damping=30.0))
+
+
+def test_the_way_of_a_turn_is_that_of_the_teeth_of_a_stretched_belt(moved: bd.Run) -> None:
+    """A pulley passes teeth; the belt that leaves it under T is 1 + T / EA times as long as its unstretched pitches."""
+    dataset, belt = moved.dataset, moved.prepared.belt
+    strain = float(dataset.span_tension.values[-1, -1]) / AXIAL
+    way = 0.5 * TEETH * belt.given_pitch * (1.0 + strain)
+    assert float(dataset.carriage_position[-1, 0]) == pytest.approx(way, rel=3e-4)
+    assert float(dataset.carriage_error[-1, 0]) == pytest.approx(
+        float(dataset.carriage_position[-1, 0]) - np.pi * RADIUS, abs=1e-12
+    )
+
+
+def test_both_ends_stay_on_the_carriage(moved: bd.Run) -> None:
+    dataset = moved.dataset
+    ends = dataset.node_position.values[:, [0, -1]]
+    way = dataset.carriage_position.sel(time=dataset.field_time.values, method="nearest").values
+    begin = np.array([[0.4 - 0.5 * LENGTH, RADIUS], [0.4 + 0.5 * LENGTH, RADIUS]])
+    assert np.abs(ends - begin - way[:, :, None] * np.array([-1.0, 0.0])).max() < 1e-9
+
+
+def test_the_belt_gives_what_mass_and_guide_take(moved: bd.Run) -> None:
+    """Newton's law of the carriage: m a = T1 - T2 - friction; tensions are means of spans, right to 0.5 % at rest."""
+    dataset = moved.dataset
+    time, speed = dataset.time.values, dataset.carriage_speed.values[:, 0]
+    moving = speed > 0.1
+    rate = np.gradient(speed, time)
+    tension = dataset.span_tension.values
+    pull = tension[:, 2] - tension[:, 1]
+    taken = MASS * rate + 30.0 * speed + 20.0 * np.tanh(speed / 1e-3)
+    assert pull[moving].mean() == pytest.approx(taken[moving].mean(), abs=0.005 * TENSION)
+    assert float(np.sqrt(np.mean((pull - taken)[moving] ** 2))) < 0.05 * np.abs(taken).max()
+
+
+def test_energy_closes(moved: bd.Run) -> None:
+    assert float(np.abs(moved.dataset.energy_closure).max()) < 2.0 * moved.prepared.simulation.rtol
+
+
+def test_a_force_over_time_swings_the_carriage_at_its_frequency() -> None:
+    """Driver held: a step of force swings it about F / k, with the frequency of the closed form."""
+    held = axis(force={"kind": "step", "time": 0.01, "value": 50.0})
+    run = bd.simulate(held)
+    taken_up = float(run.drive.centers[1, 0])
+    stiffness = stiffness_of(0.4 - 0.5 * LENGTH, taken_up - 0.4 - 0.5 * LENGTH, taken_up)
+    way, time = run.dataset.carriage_position.values[:, 0], run.dataset.time.values
+    after = time > 0.01
+    frequency = np.sqrt(stiffness / MASS) / (2.0 * np.pi)
+    expected = 50.0 / stiffness * (1.0 - np.cos(2.0 * np.pi * frequency * (time[after] - 0.01)))
+    first = time[after] < 0.01 + 2.0 / frequency
+    assert way[after][first] == pytest.approx(expected[first], abs=0.05 * expected.max())
