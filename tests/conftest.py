@@ -5,7 +5,7 @@ creep, without vibration.
 """
 
 import json
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -140,8 +140,12 @@ def make_run(
 
 
 @pytest.fixture(scope="session")
-def run(make_run: Callable[..., Run]) -> Run:
-    return make_run()
+def run(make_run: Callable[..., Run]) -> Iterator[Run]:
+    """A run that all tests share, and none may change."""
+    made = make_run()
+    attributes = dict(made.dataset.attrs)
+    yield made
+    assert made.dataset.attrs == attributes, "a test has changed the attributes of the shared run"
 
 
 def _outputs(drive: Drive, layout: Layout, time: FloatArray) -> Arrays:

@@ -4,6 +4,7 @@ import subprocess
 import sys
 from collections.abc import Callable
 from functools import wraps
+from importlib import import_module
 from inspect import signature
 from math import hypot
 from pathlib import Path
@@ -200,7 +201,7 @@ def test_schema_is_json(run_main: RunMain) -> None:
 
 def put_in_place_of_simulate(monkeypatch: pytest.MonkeyPatch, stand_in: Callable[..., Run]) -> None:
     """Let `beltdyn simulate` call something else, with the options of `simulate`."""
-    monkeypatch.setattr(sys.modules["beltdyn.transient.simulate"], "simulate", wraps(simulate)(stand_in))
+    monkeypatch.setattr(import_module("beltdyn.transient.simulate"), "simulate", wraps(simulate)(stand_in))
 
 
 @pytest.mark.parametrize("outputs", [None, 0, 3])

@@ -1,7 +1,7 @@
 """`beltdyn equilibrium`: what it shows and writes, and what it leaves where there is no equilibrium."""
 
-import sys
 from collections.abc import Callable
+from importlib import import_module
 from pathlib import Path
 
 import pytest
@@ -21,7 +21,7 @@ def unbalanced(monkeypatch: pytest.MonkeyPatch) -> None:
     def fail(*_: object) -> None:
         raise ConvergenceError("no equilibrium.")
 
-    monkeypatch.setattr(sys.modules["beltdyn.state.installation"], "find_equilibrium", fail)
+    monkeypatch.setattr(import_module("beltdyn.state.installation"), "find_equilibrium", fail)
 
 
 def test_it_shows_and_writes_the_drive_at_rest(run_main: RunMain, drive_file: Path) -> None:

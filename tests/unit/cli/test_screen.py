@@ -1,8 +1,8 @@
 """What a run shows on the screen."""
 
-import sys
 from collections.abc import Callable
 from dataclasses import replace
+from importlib import import_module
 from pathlib import Path
 
 import numpy as np
@@ -63,8 +63,7 @@ def test_summary_of_a_static_equilibrium(make_run: Callable[..., Run], capsys: p
 
 
 def test_steady_running_is_over_no_time(run: Run, capsys: pytest.CaptureFixture[str]) -> None:
-    run.dataset.attrs["belt_parameter"] = 1.0
-    show_result(run)
+    show_result(Run(run.dataset.assign_attrs(belt_parameter=1.0), run.drive))
     output = capsys.readouterr().out
     assert "Pulleys (steady running)" in output
     assert "Spans (steady running)" in output
@@ -207,7 +206,7 @@ def end_as(monkeypatch: pytest.MonkeyPatch, run: Run) -> None:
         return run
 
     app["simulate"].default_command = None  # it is made of the function
-    monkeypatch.setattr(sys.modules["beltdyn.transient.simulate"], "simulate", simulate)
+    monkeypatch.setattr(import_module("beltdyn.transient.simulate"), "simulate", simulate)
 
 
 def test_run_with_tables(run_main: RunMain, run: Run, drive_file: Path, monkeypatch: pytest.MonkeyPatch) -> None:
