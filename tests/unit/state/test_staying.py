@@ -74,7 +74,8 @@ def test_where_its_neighbour_leads_nowhere_it_is_found_from_the_laid_belt(
 
 
 @pytest.mark.parametrize(
-    ("part", "said"), [(0.3, "too soft: on .* Increase contact.stiffness"), (0.03, "elements, near a tension of 100 N. Check")]
+    ("part", "said"),
+    [(0.3, "too soft: on .* Increase contact.stiffness"), (0.03, "elements, near a tension of 100 N. Check")],
 )
 def test_without_rest_contact_that_is_too_soft_is_told(
     drive: Drive, monkeypatch: pytest.MonkeyPatch, part: float, said: str
