@@ -104,7 +104,7 @@ def _ways(drive: Drive, places: Numbers | None, points: int) -> FloatArray:
     """Ways of the carriage, m, within its stroke."""
     carriage = drive.carriage
     assert carriage is not None
-    room = np.array(free_stroke(carriage, drive.path))
+    room = np.array(free_stroke(carriage, prepare(drive).path))
     inner = (1.0 - 2.0 * _INSET) * (room - room.mean()) + room.mean()
     lower, upper = carriage.stroke or inner.tolist()
     if places is None:

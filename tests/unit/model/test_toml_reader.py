@@ -52,6 +52,7 @@ def test_schema_knows_every_group() -> None:
     schema = json_schema()
     assert set(schema["properties"]) == {
         "author",
+        "carriage",
         "project",
         "belt",
         "pulley",
