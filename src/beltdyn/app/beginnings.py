@@ -33,7 +33,7 @@ def beginning(
             value = _usual(one, data, drive)
             if value is not None:
                 found[one.key] = value
-    if "angles" in listed and "angles" not in found and listed["angles"].required:
+    if "angles" in listed and "angles" not in found and "speed" not in listed:
         found["angles"] = [float(number) for number in range(len(found.get("times", (0.0, 0.2))))]
     return given | found
 

@@ -88,7 +88,10 @@ def edits_of_kind(
     tried = _with(data, location, {"kind": kind})
     known = {one.key for one in fields(tried, location)}
     kept = {key: value for key, value in group.items() if key in known} if isinstance(group, Mapping) else {}
-    return [Edit("set", location, {**beginning(tried, location, kind, drive), **kept, "kind": kind})]
+    begun = beginning(tried, location, kind, drive)
+    if "angles" in begun and "angles" not in kept:  # they belong to their own instants
+        kept.pop("times", None)
+    return [Edit("set", location, {**begun, **kept, "kind": kind})]
 
 
 def edits_of_entry(
