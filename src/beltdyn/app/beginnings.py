@@ -34,7 +34,7 @@ def beginning(
             value = _usual(one, data, drive)
             if value is not None:
                 found[one.key] = value
-    if "angles" in listed:
+    if {"angles", "times"} <= listed.keys():
         found = {"times": [0.0, 0.2]} | {key: value for key, value in _MOVE.items() if key in listed} | found
     return given | found
 
