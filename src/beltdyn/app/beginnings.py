@@ -14,7 +14,6 @@ _OF_UNITS = {"rad/s": "1500 rpm", "N*m": "5 N m", "N": "100 N", "Pa": "5 MPa", "
 """What profiles rise to, by their unit."""
 _OPPOSING = "-5 N m"
 """Torque on a pulley that turns counter-clockwise."""
-_MOVE = {"angles": [0.0, 1.0], "speed": 50.0, "acceleration": 1e3, "jerk": 1e5}
 _TIMES = {"start": 0.02, "end": 0.2, "time": 0.1, "times": [0.0, 0.2]}
 
 
@@ -30,12 +29,10 @@ def beginning(
     example = {key: value for key, value in _example(data, location).items() if key in listed}
     found = {key: example[key] for key in listed if key in example}
     for one in listed.values():
-        if one.key not in found and (one.required or one.key in ("times", "values")):
+        if one.key not in found and (one.required or one.key in ("times", "values", "angles")):
             value = _usual(one, data, drive)
             if value is not None:
                 found[one.key] = value
-    if {"angles", "times"} <= listed.keys():
-        found = {"times": [0.0, 0.2]} | {key: value for key, value in _MOVE.items() if key in listed} | found
     return given | found
 
 

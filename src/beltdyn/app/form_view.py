@@ -89,8 +89,9 @@ def edits_of_kind(
     known = {one.key for one in fields(tried, location)}
     kept = {key: value for key, value in group.items() if key in known} if isinstance(group, Mapping) else {}
     begun = beginning(tried, location, kind, drive)
-    if "angles" in begun and "angles" not in kept:  # they belong to their own instants
-        kept.pop("times", None)
+    points = {key for key, value in begun.items() if isinstance(value, list)}
+    if not points <= kept.keys():  # columns of points belong together
+        kept = {key: value for key, value in kept.items() if key not in points}
     return [Edit("set", location, {**begun, **kept, "kind": kind})]
 
 

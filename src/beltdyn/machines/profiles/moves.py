@@ -29,8 +29,8 @@ class _Piece(NamedTuple):
     jerk: float
 
 
-def _pieces(way: float, speed: float, acceleration: float, jerk: float) -> tuple[list[_Piece], float]:
-    """Parts of a move over a positive way within its limits, and its largest speed."""
+def _pieces(way: float, speed: float, acceleration: float, jerk: float) -> list[_Piece]:
+    """Parts of a move over a positive way within its limits."""
     bend = acceleration**2 / jerk
 
     def phase(reached: float) -> tuple[float, float]:
@@ -51,7 +51,7 @@ def _pieces(way: float, speed: float, acceleration: float, jerk: float) -> tuple
     own = 0.0 if jerk == inf else jerk
     rise = [_Piece(bent, own), _Piece(straight, 0.0), _Piece(bent, -own)]
     fall = [_Piece(bent, -own), _Piece(straight, 0.0), _Piece(bent, own)]
-    return [*rise, _Piece((way - length(reached)) / reached, 0.0), *fall], reached
+    return [*rise, _Piece((way - length(reached)) / reached, 0.0), *fall]
 
 
 class Moves(Profile[Value], Generic[Value]):
@@ -61,9 +61,13 @@ class Moves(Profile[Value], Generic[Value]):
     proportional = ("angles",)
 
     times: tuple[Time, ...] = Field(min_length=1, description="the instants at which moves begin, in s")
-    angles: tuple[Angle, ...] = Field(min_length=1, description="the angles at which they end, in rad")
-    speed: AngularSpeed = Field(gt=0, description="the largest speed of a move, in rad/s")
-    acceleration: AngularAcceleration = Field(gt=0, description="the acceleration of a move, in rad/s^2")
+    angles: tuple[Angle, ...] = Field(
+        min_length=1, examples=[[0.0, 1.0]], description="the angles at which they end, in rad"
+    )
+    speed: AngularSpeed = Field(gt=0, examples=[50.0], description="the largest speed of a move, in rad/s")
+    acceleration: AngularAcceleration = Field(
+        gt=0, examples=[1e3], description="the acceleration of a move, in rad/s^2"
+    )
 
     @model_validator(mode="after")
     def _ends_a_move_before_the_next(self) -> Self:
@@ -84,17 +88,22 @@ class Moves(Profile[Value], Generic[Value]):
     @property
     def _spans(self) -> Iterator[tuple[float, float]]:
         """Begin and end of each move, s."""
-        for begin, way in zip(self.times, np.diff([0.0, *self.angles]).tolist(), strict=True):
-            whole = sum(one.duration for one in self._parts(abs(way))) if way else 0.0
+        for begin, way in self._moves:
+            whole = sum(one.duration for one in self._parts(way)) if way else 0.0
             yield begin, begin + whole
 
+    @property
+    def _moves(self) -> Iterator[tuple[float, float]]:
+        """Instant and way of each move, s and rad."""
+        yield from zip(self.times, np.diff([0.0, *self.angles]).tolist(), strict=True)
+
     def _parts(self, way: float) -> list[_Piece]:
-        return _pieces(way, self.speed, self.acceleration, self._largest_jerk)[0]
+        return _pieces(abs(way), self.speed, self.acceleration, self._largest_jerk)
 
     def segments(self) -> Records:
         """Rest, then for each move up to seven pieces of constant jerk, and rest."""
         rows = [(-np.inf, 0.0, 0.0, 0.0)]
-        for begin, way in zip(self.times, np.diff([0.0, *self.angles]).tolist(), strict=True):
+        for begin, way in self._moves:
             rows += self._rows(begin, way) if way else []
         starts, offsets, slopes, curvatures = np.array(rows).T
         return records(SEGMENT, start=starts, offset=offsets, slope=slopes, curvature=curvatures)
@@ -102,9 +111,8 @@ class Moves(Profile[Value], Generic[Value]):
     def _rows(self, begin: float, way: float) -> Iterator[tuple[float, float, float, float]]:
         """Start, speed, acceleration and jerk of the pieces of a move, and of the rest behind it."""
         sense = 1.0 if way > 0.0 else -1.0
-        parts, _ = _pieces(abs(way), self.speed, self.acceleration, self._largest_jerk)
         time, speed, rate = begin, 0.0, 0.0
-        for number, piece in enumerate(parts):
+        for number, piece in enumerate(self._parts(way)):
             if self._largest_jerk == inf:  # the acceleration jumps
                 rate = {1: self.acceleration, 5: -self.acceleration}.get(number, 0.0)
             if piece.duration > 0.0:
@@ -149,7 +157,7 @@ class SCurve(Moves[Value], Generic[Value]):
     """
 
     kind: Literal["s_curve"] = Field("s_curve", description="the kind of profile")
-    jerk: AngularJerk = Field(gt=0, description="the jerk of a move, in rad/s^3")
+    jerk: AngularJerk = Field(gt=0, examples=[1e5], description="the jerk of a move, in rad/s^3")
 
     @property
     def _largest_jerk(self) -> float:
@@ -179,7 +187,9 @@ class PositionTable(Profile[Value], Generic[Value]):
 
     kind: Literal["position_table"] = Field("position_table", description="the kind of profile")
     times: tuple[Time, ...] = Field(min_length=2, description="the instants of the points, in s")
-    angles: tuple[Angle, ...] = Field(min_length=2, description="the angles at these instants, in rad")
+    angles: tuple[Angle, ...] = Field(
+        min_length=2, examples=[[0.0, 1.0]], description="the angles at these instants, in rad"
+    )
 
     @model_validator(mode="before")
     @classmethod
