@@ -240,7 +240,7 @@ def _narrow_teeth(drive: Drive, installation: Installation) -> Iterator[Finding]
     if not speed > 0.0:
         return
     powers[driver] = -powers.sum()
-    path, toothed = installation.path, np.array([bool(one.teeth) for one in drive.pulleys])
+    path, toothed = installation.path, prepare(drive).toothed
     rated = belt.on(2.0 * np.abs(path.radii), path.wrap_angles, speed, toothed).on(toothed)
     pulls = (drive.limits.service_factor or 1.0) * np.abs(powers) / speed
     used = np.divide(pulls, rated.pull, out=np.where(pulls > 0.0, np.inf, 0.0), where=rated.pull > 0.0)

@@ -29,7 +29,8 @@ def rate(
     wraps = wrap_angles(span_directions(centers, prepared.path.radii, prepared.path.ends), prepared.path.radii)
     found = belt.on(2.0 * prepared.radii, wraps, speed, loaded)
     by_teeth = prepared.belt.teeth is not None
-    return found.on(np.array([bool(one.teeth) if by_teeth else one.side == "inside" for one in prepared.pulleys]))
+    inside = np.array([one.side == "inside" for one in prepared.pulleys])
+    return found.on(prepared.toothed if by_teeth else inside)
 
 
 def utilization(drive: Drive, rated: FloatArray, powers: FloatArray) -> FloatArray:

@@ -200,7 +200,7 @@ def _tooth_table(drive: Drive, installation: Installation) -> Table:
     rows, belt, path = _teeth(drive, installation), drive.rated_belt, installation.path
     if not isinstance(belt, RatedTeeth):
         return Table("Teeth", _TOOTH_HEADINGS, tuple(rows))
-    toothed = np.array([bool(one.teeth) for one in drive.pulleys])
+    toothed = prepare(drive).toothed
     pulls = belt.on(2.0 * np.abs(path.radii), path.wrap_angles, 0.0, toothed).pull[toothed]
     return Table(
         "Teeth",
@@ -211,7 +211,7 @@ def _tooth_table(drive: Drive, installation: Installation) -> Table:
 
 def _teeth(drive: Drive, installation: Installation) -> list[tuple[str, ...]]:
     """Rows of pulleys with teeth; their ratio is exact."""
-    path, toothed = installation.path, [p for p, one in enumerate(drive.pulleys) if one.teeth]
+    path, toothed = installation.path, np.flatnonzero(prepare(drive).toothed).tolist()
     meshes, first = teeth_in_mesh(drive.belt, path), drive.pulleys[toothed[0]].teeth
     return [
         (

@@ -47,7 +47,7 @@ def transmission_error(
     beltdyn.errors.ModelError: the belt has no teeth, which a transmission error needs. Use a run of a toothed belt.
     """
     toothing, pulleys = run.prepared.belt.toothing, run.prepared.pulleys
-    held = [number for number, pulley in enumerate(pulleys) if pulley.teeth]
+    held = np.flatnonzero(run.prepared.toothed).tolist()
     if toothing is None or not held:
         raise ModelError("the belt has no teeth, which a transmission error needs. Use a run of a toothed belt.")
     usual = run.drive.reference if run.drive.reference in held else held[0]
