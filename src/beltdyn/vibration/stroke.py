@@ -6,7 +6,7 @@ import numpy as np
 
 from beltdyn.arrays import FloatArray
 from beltdyn.errors import ModelError
-from beltdyn.model import Drive, prepare
+from beltdyn.model import Drive, Prepared, prepare
 from beltdyn.model.carriage import free_stroke
 from beltdyn.parts.quantity import Numbers, numbers_in
 from beltdyn.results import Result, Variable, build_result
@@ -77,8 +77,8 @@ def stroke(drive: Drive, *, places: Numbers | None = None, points: int = 9, prog
             "no pulley holds the belt: a stiffness at the carriage needs one with prescribed speed. Give the driver "
             "its speed in place of a motor."
         )
-    ways = _ways(drive, places, points)
     prepared = prepare(drive)
+    ways = _ways(prepared, places, points)
     first = rest_of(prepared, progress).prepared.drive  # with the length, or the take-up, of the installed tension
     rows = []
     for number, way in enumerate(ways.tolist()):
@@ -100,11 +100,11 @@ def stroke(drive: Drive, *, places: Numbers | None = None, points: int = 9, prog
     return result
 
 
-def _ways(drive: Drive, places: Numbers | None, points: int) -> FloatArray:
+def _ways(prepared: Prepared, places: Numbers | None, points: int) -> FloatArray:
     """Ways of the carriage, m, within its stroke."""
-    carriage = drive.carriage
+    carriage = prepared.carriage
     assert carriage is not None
-    room = np.array(free_stroke(carriage, prepare(drive).path))
+    room = np.array(free_stroke(carriage, prepared.path))
     inner = (1.0 - 2.0 * _INSET) * (room - room.mean()) + room.mean()
     lower, upper = carriage.stroke or inner.tolist()
     if places is None:
