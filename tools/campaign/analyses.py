@@ -79,6 +79,7 @@ WORKS: dict[str, Work] = {
     "calibrate": _calibrated,
     "campbell": lambda drive, _: bd.campbell(drive, speed="0, 500, 1e4 rpm", count=2),
     "response": lambda drive, _: bd.response(drive, speed="0, 500, 1e4 rpm"),
+    "stroke": lambda drive, _: bd.stroke(drive, points=2),
     "study": _studied,
 }
 """Name -> what is done with a drive, in a folder of its own."""

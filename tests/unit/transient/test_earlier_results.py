@@ -43,6 +43,7 @@ OPTIONS: dict[str, dict[str, Any]] = {
     "calibrate": {"study": CalibrationStudy(number=[LENGTH], measurement=[{"table": "slip.csv"}])},
     "campbell": {"speed": "80, 120 rpm", "count": 2},
     "response": {"speed": "80, 120 rpm"},
+    "stroke": {"places": "0, 50 mm"},
 }
 """Analysis -> options that make it short."""
 
@@ -60,6 +61,8 @@ def fitting(name: str, drive: Drive) -> Drive:
     """The drive with what an analysis asks for."""
     if name == "simulate":
         return short(drive, 0.005)
+    if name == "stroke":
+        return bd.example("printer_axis")
     if name == "tensioner_sheet":
         slide = {"kind": "sliding", "pulley": "driven", "direction": [1, 0], "mass": 1.0, "preload": 60.0}
         return drive.replace(tensioner=[slide])

@@ -51,6 +51,11 @@ def load_sharing(run: Run, time: float | None = None, ax: Axes | None = None) ->
     ------
     ModelError
         If the belt has no teeth.
+
+    Examples
+    --------
+    >>> bd.plot.load_sharing(bd.steady_state(bd.example("timing_drive"))).get_ylabel()
+    'Force of a tooth on the belt [N]'
     """
     loads = tooth_loads(run, time)
     if not loads:
@@ -89,6 +94,12 @@ def transmission_error(run: Run, reference: str | int | None = None, ax: Axes | 
     ------
     ModelError
         If the belt has no teeth, or the reference has none.
+
+    Examples
+    --------
+    >>> short = bd.example("timing_drive").with_({"simulation.duration": 0.02})
+    >>> bd.plot.transmission_error(bd.simulate(short)).get_ylabel()
+    'Transmission error, less its mean [µm]'
     """
     error = derived.transmission_error(run, reference)
     ax = axes_or_new(ax)
@@ -125,6 +136,12 @@ def transmission_orders(run: Run, reference: str | int | None = None, ax: Axes |
     ------
     ModelError
         If the belt has no teeth, the reference has none, or the run is too short.
+
+    Examples
+    --------
+    >>> bd.plot.transmission_orders(run)  # its belt has no teeth
+    Traceback (most recent call last):
+    beltdyn.errors.ModelError: the belt has no teeth, which a transmission error needs. Use a run of a toothed belt.
     """
     times = run.dataset["time"].values
     error = derived.transmission_error(run, reference, start=0.5 * (times[0] + times[-1]))

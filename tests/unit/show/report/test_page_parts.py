@@ -9,8 +9,8 @@ from beltdyn.show.report.page_parts import differing_keys, origin
 
 
 def test_the_origin_names_versions_hashes_and_settings(run: Run, tmp_path: Path) -> None:
-    run.dataset.attrs |= mesh_used(run.drive, run.drive.frame, 20)
-    path = run.save(tmp_path / "run.nc")
+    meshed = Run(run.dataset.assign_attrs(mesh_used(run.drive, run.drive.frame, 20)), run.drive)
+    path = meshed.save(tmp_path / "run.nc")
     facts = dict(origin(open_run(path)))
     assert facts["SHA-256 of run.nc"] == hashlib.sha256(path.read_bytes()).hexdigest()
     assert facts["SHA-256 of the drive"] == hashlib.sha256(run.drive.text.encode()).hexdigest()
