@@ -120,7 +120,7 @@ def add_machines(
     _add_tensioners(system, motion, factors, corner, forces)
     _add_links(system, motion, factors, corner, forces)
     _take_shafts(system, motion, factors, corner, forces)
-    push_carriage(system.carriage, system, motion, factors.by_position, factors.by_velocity, corner, forces)
+    push_carriage(system.carriage, system, motion, factors, differentiates_forces(factors), corner, forces)
 
 
 @kernel(inline=True)

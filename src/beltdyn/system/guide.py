@@ -29,6 +29,7 @@ from beltdyn.system.arrays import (
     RingMatrix,
     Supports,
     System,
+    TangentFactors,
 )
 
 GUIDE = record(
@@ -76,8 +77,8 @@ def _push_nothing(
     carriage: NoCarriage,
     system: System,
     motion: Motion,
-    by_position: float,
-    by_velocity: float,
+    factors: TangentFactors,
+    wanted: bool,
     corner: Any,
     forces: BodyForces,
 ) -> None:
@@ -89,8 +90,8 @@ def _push(
     carriage: Guided,
     system: System,
     motion: Motion,
-    by_position: float,
-    by_velocity: float,
+    factors: TangentFactors,
+    wanted: bool,
     corner: Any,
     forces: BodyForces,
 ) -> None:
@@ -103,12 +104,12 @@ def _push(
     forces.power[TORQUE_WORK] += push * motion.velocity[at] - own.loss
     forces.stored[SPRING_ENERGY] += own.energy
     unknown = system.bodies[row.body].unknown
-    if unknown >= 0:
-        corner[unknown, unknown] -= by_position * own.by_position + by_velocity * own.by_velocity
+    if unknown >= 0 and wanted:
+        corner[unknown, unknown] -= factors.by_position * own.by_position + factors.by_velocity * own.by_velocity
 
 
 push_carriage: Callable[..., None] = by_type({NoCarriage: _push_nothing, Guided: _push}, "push_carriage")
-"""Add the forces on a carriage to those on bodies, their power and their tangent, with its factors."""
+"""Add the forces on a carriage to those on bodies, their power and, if it is wanted, their tangent."""
 
 
 @kernel(inline=True)

@@ -1,12 +1,22 @@
 """The motion of prescribed shafts in a state."""
 
+from importlib.resources import files
+
 import numpy as np
 import pytest
 
-from beltdyn.model import Drive
+from beltdyn.model import Drive, example, prepare
 from beltdyn.system.arrays import Motion
-from beltdyn.system.build import belt_system
-from beltdyn.system.state_forces import prescribe
+from beltdyn.system.body_forces import body_forces_history, new_body_forces
+from beltdyn.system.build import belt_system, drive_system
+from beltdyn.system.element_state import element_workspace
+from beltdyn.system.state import laid
+from beltdyn.system.state_forces import BodyForcesScratch, fill_body_forces, prescribe
+
+EXAMPLES = sorted(path.name[:-5] for path in (files("beltdyn") / "examples").iterdir() if path.name.endswith(".toml"))
+
+SIGNALING_NAN = np.uint64(0x7FF0000000000001)
+"""Bits that even adding zero changes."""
 
 
 def test_prescribe_writes_prescribed_pulleys_only(drive: Drive) -> None:
@@ -19,3 +29,20 @@ def test_prescribe_writes_prescribed_pulleys_only(drive: Drive) -> None:
     assert np.all(position[:-2] == 7.0)
     assert np.all(velocity[:-2] == 7.0)
     assert np.all(acceleration[:-2] == 7.0)
+
+
+@pytest.mark.parametrize("name", EXAMPLES)
+def test_forces_alone_touch_no_tangent(name: str) -> None:
+    """Whatever machines a drive has: who asks for forces has no tangent, and its array may be empty."""
+    prepared = prepare(example(name))
+    system = drive_system(prepared)
+    state, size = laid(system, prepared.path), system.bodies.size
+    corner = np.full((size, size), SIGNALING_NAN).view(np.float64)
+    scratch = BodyForcesScratch(
+        np.zeros_like(state.position), element_workspace(system), corner, new_body_forces(system)
+    )
+    moving = np.ones_like(state.velocity)
+    fill_body_forces(
+        system, np.array([0.01]), state.position[None], moving[None], scratch, body_forces_history(system, 1)
+    )
+    assert np.all(corner.view(np.uint64) == SIGNALING_NAN)
