@@ -26,7 +26,8 @@ class Contact(Part):
     `creep_ratio`, the slip velocity at saturation over the rim speed; ``"coefficient_slope"`` has `creep_velocity`, the
     slip velocity at saturation; ``"force_slope"`` (as published) has `creep_rate_factor`, the slope of the friction
     force over the slip velocity; ``"stribeck"`` has `kinetic_ratio` and `stribeck_velocity` beside `creep_ratio`, and
-    friction that falls with the slip velocity.
+    friction that falls with the slip velocity; ``"air_film"`` has `film_radius`, `web_width` and `roughness` beside
+    `creep_ratio`, and friction that falls with the speed of the web.
 
     Examples
     --------

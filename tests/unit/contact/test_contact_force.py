@@ -15,7 +15,7 @@ from beltdyn.contact.contact_force import (
     contact_force,
     contact_workspace,
 )
-from beltdyn.contact.friction import friction_force
+from beltdyn.contact.friction import AirFilm, friction_force
 from beltdyn.contact.law import ContactLaw, PulleyState
 from beltdyn.contact.surface import Round
 from beltdyn.quadrature import gauss_points
@@ -203,8 +203,10 @@ def test_sums_along_a_chord_are_the_integrals_of_its_laws(
     """A straight belt, 3 mm deep, that is pressed in at 0.5 m/s while the rim slides on it at 9 m/s.
 
     Lengths count in the unstretched belt, here 80 % of what lies there.  The published rule takes those of its points
-    over the whole element that touch.
+    over the whole element that touch.  Air films stay thin: friction would have kinks, which Gauss points miss.
     """
+    if isinstance(law.friction, AirFilm):
+        law = law._replace(friction=law.friction._replace(roughness=1e-4))
     pulley, law = (
         pulley._replace(speed=speed, rolling=0.0),
         law._replace(arm_to_rim=arm_to_rim, follow_zone=follow_zone),

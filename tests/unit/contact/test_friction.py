@@ -5,7 +5,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from beltdyn.contact.friction import FrictionParameters, RelativeCreep, friction_force
+from beltdyn.contact.friction import AirFilm, FrictionParameters, RelativeCreep, friction_force
 
 MU = 0.5
 RIM = 0.8
@@ -27,8 +27,11 @@ def break_away(law: FrictionParameters, normal: float) -> float:
 
 @given(SLIPS, NORMALS)
 def test_is_odd(friction: FrictionParameters, slip: float, normal: float) -> None:
-    there, back = force_at(friction, slip, normal), force_at(friction, -slip, normal)
-    assert back == (-there[0], there[1], -there[2], -there[3])
+    """With slip and rim reversed; where no film is drawn in, with the slip alone as well."""
+    there, back = force_at(friction, slip, normal), force_at(friction, -slip, normal, -RIM)
+    assert back == (-there[0], there[1], -there[2], there[3])
+    if not isinstance(friction, AirFilm):
+        assert force_at(friction, -slip, normal) == (-there[0], there[1], -there[2], -there[3])
 
 
 @given(SLIPS, NORMALS)
@@ -93,3 +96,27 @@ def test_relative_creep_at_rest() -> None:
     """A pulley that stands still is held by a slope of its own."""
     law = RelativeCreep(creep_ratio=0.01, standstill_creep=1e-4)
     assert friction_force(law, 5e-5, 200.0, MU, 0.0) == pytest.approx((-50.0, -1e6, -0.25, 0.0), rel=1e-12)
+
+
+FILM = AirFilm(0.01, 1e-4, film_radius=0.05, web_width=0.1, roughness=3e-6, air_viscosity=1.8e-5)
+"""Of a web with f_n = 200 N/m, and so 100 N/m of tension per width."""
+
+
+@pytest.mark.parametrize(("height", "share"), [(0.5, 1.0), (1.0, 1.0), (1.4, 0.8), (2.0, 0.5), (2.9, 0.05), (3.1, 0.0)])
+@pytest.mark.parametrize("slip", [-0.2, 0.2])
+def test_air_film_takes_its_share_of_friction(height: float, share: float, slip: float) -> None:
+    """At heights over the roughness h / sigma, from the speed of the film by Knox and Sweeney."""
+    entrained = 100.0 * (height * 3e-6 / (0.643 * 0.05)) ** 1.5 / (6.0 * 1.8e-5)
+    rim = (entrained - slip) / 2.0
+    force = friction_force(FILM, slip, 200.0, MU, rim)[0]
+    assert force == pytest.approx(-np.sign(slip) * share * MU * 200.0, rel=1e-9, abs=1e-9)
+
+
+def test_air_film_of_a_known_web() -> None:
+    """At 2 m/s, 100 N/m and R = 50 mm the film is 0.643 R (12 eta v / T')^(2/3) = 8.53 um high."""
+    law = FILM._replace(roughness=4.265e-6)
+    assert friction_force(law, 1.0, 200.0, MU, 1.5)[0] == pytest.approx(-0.5 * MU * 200.0, rel=2e-3)
+
+
+def test_air_film_carries_what_does_not_press() -> None:
+    assert friction_force(FILM, 0.3, 0.0, MU, 5.0)[0] == 0.0

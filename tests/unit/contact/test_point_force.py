@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from beltdyn.arrays import FloatArray
-from beltdyn.contact.friction import ForceSlope
+from beltdyn.contact.friction import AirFilm, ForceSlope
 from beltdyn.contact.law import ContactLaw, PulleyState
 from beltdyn.contact.normal import Published
 from beltdyn.contact.penetration import Approach, approach, slip_velocity
@@ -71,7 +71,10 @@ def test_secant_of_friction_reaches_back_to_no_slip(
     assert secant._replace(by_slip=force.by_slip) == force  # the force itself is the same
     faster = pulley._replace(speed=pulley.speed + 100.0)
     force, secant = (point_force(point(state, faster), faster, every_law, wanted) for wanted in (False, True))
-    assert force.by_slip >= 0.0  # it slides: by its slope nothing would hold the belt
+    slides = (
+        force.by_slip >= 0.0
+    )  # by its slope nothing would hold the belt, but for the air that a slower belt draws in
+    assert slides or isinstance(every_law.friction, AirFilm)
     assert secant.by_slip < 0.0 or force.friction == 0.0
 
 

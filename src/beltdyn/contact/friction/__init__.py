@@ -1,5 +1,6 @@
 """Friction laws, one per file (Eqs. 20 and 22, Fig. 3); importing one here registers it."""
 
+from beltdyn.contact.friction.air_film import AirFilm as AirFilm
 from beltdyn.contact.friction.coefficient_slope import CoefficientSlope as CoefficientSlope
 from beltdyn.contact.friction.force_slope import ForceSlope as ForceSlope
 from beltdyn.contact.friction.law import LAWS as LAWS
