@@ -17,6 +17,7 @@ from beltdyn.model import Drive, FixedTensioner, Prepared, alignment, prepare
 from beltdyn.model.alignment import judge_alignment
 from beltdyn.model.duty import PASS
 from beltdyn.model.installation import Installation
+from beltdyn.model.tensioning import DEFLECTION, tension_checks
 from beltdyn.parts.quantity import Number, Numbers, number_in, numbers_in
 from beltdyn.points.changed_drive import at_instant
 from beltdyn.points.duty import Column, at_row, durations_of, duty, duty_of
@@ -141,6 +142,7 @@ def sheet(
     made.add_rows(columns)
     made.add_speeds(columns, speed, points)
     made.add_geometry()
+    made.add_tensioning()
     made.add_alignment(drive)
     made.add_tensioner()
     made.add_belts()
@@ -357,7 +359,24 @@ class _DriveSheet:
             "friction_coefficient": (Variable((_PULLEY,), "1", "Friction with the wedge effect"), prepared.frictions),
             "center": (Variable((_PULLEY, "axis"), "m", "Center"), path.centers),
             "span_length": (Variable((_SPAN,), "m", "Span length"), path.span_lengths),
-            "span_frequency": (Variable((_SPAN,), "Hz", "First frequency of the span at rest"), rest.span_frequencies),
+        }
+
+    def add_tensioning(self) -> None:
+        """Frequency and deflection force of each span, new, run in, and before the belt is tensioned again."""
+        checks = tension_checks(self._drive, self._rest)
+        if not checks:
+            return
+        deflection = DEFLECTION * self._rest.path.span_lengths
+        self.coordinates["belt_state"] = (
+            Variable(("belt_state",), "1", "State of the belt", "str"),
+            [one.state for one in checks],
+        )
+        of_span, along = "of the span, plucked at rest", ("belt_state", _SPAN)
+        self.variables |= {
+            "deflection": (Variable((_SPAN,), "m", "Deflection of the middle of the span"), deflection),
+            "tension_in_state": (Variable(("belt_state",), "N", "Tension"), [one.tension for one in checks]),
+            "span_frequency": (Variable(along, "Hz", f"First frequency {of_span}"), [one.frequencies for one in checks]),
+            "deflection_force": (Variable(along, "N", "Force that deflects the span"), [one.forces for one in checks]),
         }
 
     def add_alignment(self, drive: Drive) -> None:

@@ -7,7 +7,7 @@ import numpy as np
 from beltdyn.errors import ModelError
 from beltdyn.model import Drive, prepare
 from beltdyn.parts.messages import suggest
-from beltdyn.points.operating_points import VARIABLES, labels_of, values_by_name, variables_of
+from beltdyn.points.operating_points import DATA, VARIABLES, labels_of, values_by_name, variables_of
 from beltdyn.results import Run, Variable
 from beltdyn.results.run import OWN
 from beltdyn.results.summary import means_of
@@ -88,6 +88,9 @@ def names_in(known: Mapping[str, float] | Sequence[str], of: str | Sequence[str]
         named = [name for name in known if wanted in (name, variable_and_label(name)[0])]
         if not named:
             names = known if "[" in wanted else dict.fromkeys(variable_and_label(name)[0] for name in known)
+            needed = DATA.get(variable_and_label(wanted)[0])
+            if needed is not None:
+                raise ModelError(f"{key} = {wanted!r} needs data that the belt does not have. Give {needed}.")
             raise ModelError(f"{key} = {wanted!r} is not a numerical result. {suggest(wanted, list(names))}")
         found += named
     return list(dict.fromkeys(found))

@@ -95,6 +95,12 @@ _OF_PULLEYS = {
 
 
 _OF_RATING = ("rated_power", "utilization")
+_CORDS = "[belt.cord_fatigue] with its source, or a profile that has it, such as SPZ"
+_RIBS = "[belt.rib_fatigue] with its source, or a profile that has it, such as PK"
+DATA = {name: _CORDS if name.startswith("cord") else _RIBS for name in OF_FATIGUE}
+DATA["rib_life"] = "passages in [belt.rib_fatigue], the life in the reference condition, with their source"
+DATA |= dict.fromkeys(_OF_RATING, "a profile with a power rating, such as SPZ or PK")
+"""What a belt must have for results that not all drives have, by their names."""
 
 
 def labels_of(drive: Drive) -> dict[str, list[str]]:

@@ -54,6 +54,8 @@ def _facts(dataset: "xr.Dataset") -> Iterable[tuple[str, str]]:
         )
     if "take_up_rate" in dataset:
         yield "take-up", f"{float(dataset['take_up_rate']):.3g} mm of path per mm"
+    if "belt_state" in dataset.dims:
+        yield "tension check", "frequency of a span plucked at rest; force on one belt that deflects the middle of a span"
     yield "cases", ", ".join(map(str, dataset["case"].values))
     factors = ", ".join(f"{one:.3g}" for one in dataset["friction"].values)
     yield "friction", f"{factors} times the coefficients below; the least slip safety is over all cases and these"
@@ -87,13 +89,19 @@ def _pulleys(dataset: "xr.Dataset") -> Table:
 
 
 def _spans(dataset: "xr.Dataset") -> Table:
-    """Spans at rest, with their fleeting angles if pulleys are out of line, and the axial offset still allowed."""
+    """Spans at rest: how the tension is checked, and their fleeting angles if pulleys are out of line."""
     columns: list[Sequence[str]] = [
         [str(one) for one in dataset["span"].values],
         aligned((1e3 * dataset["span_length"].values).tolist(), 4),
-        aligned(dataset["span_frequency"].values.tolist(), 3),
     ]
-    headings: tuple[str, ...] = ("", "length\nmm", "frequency\nHz")
+    headings: tuple[str, ...] = ("", "length\nmm")
+    if "belt_state" in dataset.dims:
+        columns.append(aligned((1e3 * dataset["deflection"].values).tolist(), 3))
+        headings = (*headings, "deflection\nmm")
+        for state in map(str, dataset["belt_state"].values):
+            at = dataset.sel(belt_state=state)
+            columns += [aligned(at[name].values.tolist(), 3) for name in ("span_frequency", "deflection_force")]
+            headings = (*headings, f"{state}\nHz", f"{state}\nN")
     angles, worst = (_DEGREES * dataset[name].values for name in ("fleeting_angle", "worst_fleeting_angle"))
     if worst.any():
         columns += [[f"{one:z.3f}°" for one in side] for side in angles.T.tolist()]
