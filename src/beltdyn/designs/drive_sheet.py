@@ -371,12 +371,14 @@ class _DriveSheet:
             Variable(("belt_state",), "1", "State of the belt", "str"),
             [one.state for one in checks],
         )
-        of_span, along = "of the span, plucked at rest", ("belt_state", _SPAN)
+        along = ("belt_state", _SPAN)
+        frequency = Variable(along, "Hz", "First frequency of the span, plucked at rest")
+        force = Variable(along, "N", "Force across the middle of the span that deflects it")
         self.variables |= {
             "deflection": (Variable((_SPAN,), "m", "Deflection of the middle of the span"), deflection),
             "tension_in_state": (Variable(("belt_state",), "N", "Tension"), [one.tension for one in checks]),
-            "span_frequency": (Variable(along, "Hz", f"First frequency {of_span}"), [one.frequencies for one in checks]),
-            "deflection_force": (Variable(along, "N", "Force that deflects the span"), [one.forces for one in checks]),
+            "span_frequency": (frequency, [one.frequencies for one in checks]),
+            "deflection_force": (force, [one.forces for one in checks]),
         }
 
     def add_alignment(self, drive: Drive) -> None:

@@ -36,6 +36,7 @@ from beltdyn.parts.kind_fields import Chosen, chosen_kinds
 from beltdyn.parts.part import Part
 from beltdyn.parts.quantity import Acceleration, Title, Words
 from beltdyn.parts.text_file import parse_toml
+from beltdyn.parts.tolerances import carry_tolerances, tolerances_of, with_tolerances
 
 _MOST_NAMED = 8
 """Pulleys that a drive names where it says what it is."""
@@ -414,12 +415,16 @@ class Drive(Part):
         >>> changed.belt.installed_tension, changed.pulleys[1].inertia
         (40.0, 0.2)
         """
-        return Drive(**changed_arguments(self, changes))
+        changed = Drive(**changed_arguments(self, changes))
+        carry_tolerances(self, changed)
+        return changed
 
     @cached_property
     def text(self) -> str:
         """The TOML text of the drive, original or equivalent."""
-        return self._source or tomli_w.dumps(self.data, multiline_strings=False)
+        if self._source is not None:
+            return self._source
+        return tomli_w.dumps(with_tolerances(self, self.data, tolerances_of(self)), multiline_strings=False)
 
     @property
     def data(self) -> dict[str, Any]:

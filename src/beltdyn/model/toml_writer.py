@@ -1,57 +1,18 @@
 """Drives to TOML."""
 
 import math
-from collections.abc import Iterator, Mapping
+from collections.abc import Mapping
 from typing import Any
 
 import tomli_w
 
-from beltdyn.errors import ModelError
-from beltdyn.machines.profiles.profile import Profile
 from beltdyn.model.drive import Drive, refuse_functions
 from beltdyn.model.toml_reader import loads
-from beltdyn.parts.change import as_argument, steps_of, unit_at, value_at
-from beltdyn.parts.quantity import tolerance_in, written_like
-from beltdyn.parts.text_file import entry_name, parse_toml
-from beltdyn.parts.toml_edits import Edit, Location, changed_data, changed_text
-
-# Tolerances of the numbers of a drive file, as in ``width = "12.5 ± 0.1 mm"``
-
-
-def tolerances_of(drive: Drive) -> dict[str, float]:
-    """Tolerances of the numbers of a drive, in SI units, by their paths.
-
-    Examples
-    --------
-    >>> from beltdyn.model.toml_writer import tolerances_of
-    >>> text = bd.example("two_pulley").text.replace('width = 0.01', 'width = "10 ± 0.2 mm"')
-    >>> tolerances_of(bd.loads(text))
-    {'belt.width': 0.0002}
-    """
-    found = dict[str, float]()
-    for path, text in _texts(parse_toml(drive.text), ""):
-        try:
-            if isinstance(value_at(drive, path), Profile):
-                path += ".value"
-            tolerance = tolerance_in(text, unit_at(drive, path))
-        except (ModelError, ValueError):
-            continue  # no number: a name
-        if tolerance is not None:
-            number, size = as_argument(drive, path, tolerance)
-            found[number] = size
-    return found
-
-
-def _texts(value: Any, path: str) -> Iterator[tuple[str, str]]:
-    """All texts of a drive file, with the paths at which they stand."""
-    if isinstance(value, str):
-        yield path, value
-    elif isinstance(value, Mapping):
-        for key, inner in value.items():
-            yield from _texts(inner, f"{path}.{key}" if path else key)
-    elif isinstance(value, list):
-        for number, inner in enumerate(value, 1):
-            yield from _texts(inner, f"{path}[{entry_name(inner) or number}]")
+from beltdyn.parts.change import unit_at
+from beltdyn.parts.quantity import written_like
+from beltdyn.parts.text_file import parse_toml
+from beltdyn.parts.tolerances import location_of, tolerances_of, with_tolerances
+from beltdyn.parts.toml_edits import Edit, changed_data, changed_text
 
 
 def dumps(drive: Drive) -> str:
@@ -83,33 +44,7 @@ def dumps(drive: Drive) -> str:
 def spelled_out(drive: Drive, tolerances: Mapping[str, float]) -> str:
     """Write a drive as `dumps` does, with given tolerances."""
     refuse_functions(drive, "a drive file cannot hold a Python function", "keep the drive in a script")
-    data = drive.data
-    for path, size in tolerances.items():
-        holder: Any = data
-        *outer, last = location_of(data, path)
-        for key in outer:
-            holder = holder[key]
-        holder[last] = f"{float(holder[last])!r} ± {size:.10g} {unit_at(drive, path)}".strip()
-    return tomli_w.dumps(data, multiline_strings=False)
-
-
-def location_of(data: Mapping[str, Any], path: str) -> Location:
-    """The location of a path of `Drive.with_` in the plain data of a drive file."""
-    given: Any = data
-    location: Location = ()
-    for step in steps_of(path):
-        if location:
-            given = given[location[-1]]
-        location = (*location, _key(given, step))
-    return location
-
-
-def _key(holder: Any, step: str) -> str | int:
-    """A step of a path as a key, or the position in a list."""
-    if isinstance(holder, Mapping | str | float | int):  # a number may stand for a constant profile
-        return step
-    names = [entry_name(one) or str(number) for number, one in enumerate(holder, 1)]
-    return names.index(step) if step in names else int(step) - 1
+    return tomli_w.dumps(with_tolerances(drive, drive.data, tolerances), multiline_strings=False)
 
 
 # Change numbers in the text of a drive file and keep its comments, order and units

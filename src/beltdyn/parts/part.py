@@ -4,17 +4,27 @@ import inspect
 import textwrap
 import types
 import typing
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from functools import cache
 from types import MappingProxyType
 from typing import Annotated, Any, ClassVar, Literal, Self
 
 from annotated_types import Ge, Gt, Le, Lt
-from pydantic import BaseModel, BeforeValidator, ConfigDict, ValidationError, model_validator
+from pydantic import (
+    BaseModel,
+    BeforeValidator,
+    ConfigDict,
+    ModelWrapValidatorHandler,
+    PrivateAttr,
+    ValidationError,
+    model_validator,
+)
 from pydantic.fields import FieldInfo
 
 from beltdyn.errors import ModelError
 from beltdyn.parts.messages import explain
+from beltdyn.parts.quantity import has_tolerance
+from beltdyn.parts.text_file import entry_name
 
 # Docstrings of the parts of a drive from their fields: meaning, unit, limits and default of each argument
 
@@ -127,6 +137,26 @@ def _type(annotation: Any, metadata: typing.Sequence[Any] = ()) -> str:
     return name + " or text with a unit" * with_unit
 
 
+def _first_key(path: str) -> str:
+    """The first key of a path."""
+    return path.replace("[", ".").partition(".")[0]
+
+
+def _toleranced(given: Any, path: str) -> Iterator[tuple[str, str]]:
+    """All texts with tolerances in what a part is made of, with their paths."""
+    if isinstance(given, str) and has_tolerance(given):
+        yield path, given
+    elif isinstance(given, Mapping):
+        for key, inner in given.items():
+            yield from _toleranced(inner, f"{path}.{key}" if path else str(key))
+    elif isinstance(given, list | tuple):
+        for number, inner in enumerate(given, 1):
+            yield from _toleranced(inner, f"{path}[{entry_name(inner) or number}]")
+    elif isinstance(given, Part):
+        for inside, text in given.toleranced.items():
+            yield f"{path}.{inside}", text
+
+
 class Part(BaseModel):
     """A validated, immutable part of a drive; its constructor takes the keys of the file."""
 
@@ -139,6 +169,8 @@ class Part(BaseModel):
     """Pairs of arguments that determine each other."""
     in_place_of: ClassVar[Mapping[str, str]] = MappingProxyType({})
     """Arguments that are converted to another one, by name."""
+
+    _toleranced: dict[str, str] = PrivateAttr(default_factory=dict)
 
     def __init__(self, **data: Any) -> None:
         try:
@@ -170,6 +202,23 @@ class Part(BaseModel):
         if not isinstance(data, Mapping):
             return data
         return {name: value for name, value in data.items() if value is not None or name not in cls._optional()}
+
+    @model_validator(mode="wrap")
+    @classmethod
+    def _keeps_tolerances(cls, data: Any, build: ModelWrapValidatorHandler[Self]) -> Self:
+        part = build(data)
+        if isinstance(data, Mapping):
+            part._toleranced = dict(_toleranced(data, ""))
+        return part
+
+    @property
+    def toleranced(self) -> dict[str, str]:
+        """Numbers given as texts with tolerances, such as ``"12.5 ± 0.1 mm"``, by their paths."""
+        return self._toleranced
+
+    def take_over(self, toleranced: Mapping[str, str]) -> None:
+        """Keep tolerances of the part from which this one is copied, where it has none of its own."""
+        self._toleranced = {**toleranced, **self._toleranced}
 
     @classmethod
     @cache
@@ -222,7 +271,10 @@ class Part(BaseModel):
         >>> drive.belt.replace(elements=30).elements
         30
         """
-        return type(self)(**self.merged(changes))
+        changed = type(self)(**self.merged(changes))
+        meant = {self._meant(key) for key in changes}
+        changed.take_over({p: text for p, text in self.toleranced.items() if self._meant(_first_key(p)) not in meant})
+        return changed
 
     def merged(self, changes: Mapping[str, Any]) -> dict[str, Any]:
         """The constructor arguments with some values changed, as for `replace`."""

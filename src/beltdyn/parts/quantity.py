@@ -131,6 +131,11 @@ def is_unit(text: str) -> bool:
         return False
 
 
+def has_tolerance(text: str) -> bool:
+    """Whether a text may be a number with a tolerance."""
+    return len(text) <= _LONGEST_TEXT and _MARKS.search(text) is not None
+
+
 def tolerance_in(text: str, unit: str) -> float | None:
     """The tolerance of a text such as ``"12.5 ± 0.1 mm"``, ``"12.5 +- 0.1 mm"`` or ``"12.5 mm ± 1 %"``, in `unit`."""
     _, match = _without_tolerance(text, unit)

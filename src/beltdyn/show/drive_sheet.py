@@ -55,7 +55,10 @@ def _facts(dataset: "xr.Dataset") -> Iterable[tuple[str, str]]:
     if "take_up_rate" in dataset:
         yield "take-up", f"{float(dataset['take_up_rate']):.3g} mm of path per mm"
     if "belt_state" in dataset.dims:
-        yield "tension check", "frequency of a span plucked at rest; force on one belt that deflects the middle of a span"
+        yield (
+            "tension check",
+            "frequency of a plucked span at rest; force on one belt across the middle of a span",
+        )
     yield "cases", ", ".join(map(str, dataset["case"].values))
     factors = ", ".join(f"{one:.3g}" for one in dataset["friction"].values)
     yield "friction", f"{factors} times the coefficients below; the least slip safety is over all cases and these"

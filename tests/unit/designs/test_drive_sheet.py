@@ -8,7 +8,8 @@ import pytest
 
 import beltdyn as bd
 from beltdyn.errors import ModelError
-from beltdyn.model import example
+from beltdyn.model import example, install
+from beltdyn.model.tensioning import tension_checks
 
 ROWS = [
     {"name": "idle", "share": 0.7, "speed": "900 rpm", "power": {"alternator": "0.5 kW"}},
@@ -81,6 +82,20 @@ simulation = { duration = "1 s" }
     np.testing.assert_allclose(dataset.allowed_offset, expected.allowed_offset, rtol=1e-9)
     assert np.all(dataset.worst_fleeting_angle.values > np.abs(dataset.fleeting_angle.values))
     assert any("with tolerances, but the belt allows" in one for one in result.warnings)
+
+
+def test_spans_are_checked_as_in_the_workshop() -> None:
+    """A new, a run-in and a loose belt between fixed centers as `check` tells; one state where a spring holds it."""
+    drive = example("fan_direct_start")
+    dataset, checks = bd.sheet(drive, points=2).dataset, tension_checks(drive, install(drive))
+    assert dataset.belt_state.values.tolist() == [one.state for one in checks] == ["new", "run in", "least"]
+    for one in checks:
+        at = dataset.sel(belt_state=one.state)
+        np.testing.assert_allclose(at.span_frequency, one.frequencies, rtol=0.01)  # closed form, finite elements
+        np.testing.assert_allclose(at.deflection_force, one.forces, rtol=0.01)
+    np.testing.assert_allclose(dataset.deflection, 0.016 * dataset.span_length)
+    held = bd.sheet(example("alternator_drive"), points=2).dataset
+    assert held.belt_state.values.tolist() == ["at rest"]
 
 
 def test_it_is_kept_in_a_file(found: bd.Result, tmp_path: Path) -> None:

@@ -1,9 +1,12 @@
 """Results of analyses as named numbers."""
 
+import re
+
 import numpy as np
 import pytest
 from numpy.typing import ArrayLike
 
+from beltdyn.designs.named_results import names_in, names_of
 from beltdyn.designs.point_work import columns_of, require_reductions
 from beltdyn.errors import ModelError
 from beltdyn.model import Drive
@@ -50,6 +53,19 @@ def test_what_there_is_not_is_told(drive: Drive) -> None:
     found = columns_of(equilibrium(drive), ["hub_laod", "tension"])
     assert found.values.keys() == {"tension"}
     assert found.missing == "results = 'hub_laod' is not a numerical result. Did you mean \"hub_load\"?"
+
+
+@pytest.mark.parametrize(
+    ("result", "needed"),
+    [
+        ("cord_life", "[belt.cord_fatigue]"),
+        ("rib_life", "passages in [belt.rib_fatigue]"),
+        ("utilization", "SPZ or PK"),
+    ],
+)
+def test_what_the_belt_has_no_data_for_says_which(result: str, needed: str, drive: Drive) -> None:
+    with pytest.raises(ModelError, match=re.escape(needed)):
+        names_in(names_of(drive), result)
 
 
 @pytest.mark.parametrize("text", ["greatest(span_tension)", "largest(span_tension", "largest()"])

@@ -7,8 +7,9 @@ import pytest
 
 from beltdyn.designs.sensitivity import numbers_of
 from beltdyn.model import Drive, dumps, loads
-from beltdyn.model.toml_writer import edited, spelled_out, tolerances_of
+from beltdyn.model.toml_writer import edited, spelled_out
 from beltdyn.parts.change import unit_at
+from beltdyn.parts.tolerances import tolerances_of
 
 EXAMPLES = sorted(path.name for path in files("beltdyn").joinpath("examples").iterdir() if path.name.endswith(".toml"))
 
