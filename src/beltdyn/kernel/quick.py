@@ -22,13 +22,14 @@ from filelock import FileLock
 from llvmlite.binding import parse_assembly
 from numba.core.caching import NullCache
 from numba.core.codegen import JITCodeLibrary
-from numba.core.compiler import Compiler, CompileResult
+from numba.core.compiler import CompileResult
 from numba.core.registry import CPUDispatcher
 from numba.core.serialize import NumbaPickler
 from numba.core.types.misc import unliteral
 
 from beltdyn.kernel.cache import ENTRY
 from beltdyn.kernel.fingerprint import fingerprint, is_own, mark_of, marked, marks_in
+from beltdyn.kernel.lowering import TARGET, KernelCompiler
 from beltdyn.kernel.seal import read_sealed, setting, warn_of_damage, write_sealed
 
 _NO_EXTRAS = {"no_cfunc_wrapper": True, "no_rewrites": True, "_nrt": False}
@@ -41,12 +42,20 @@ _OPTIMISATION = type(numba.config.OPT)(1)
 """LLVM's level: a higher one takes a fifth longer to compile, and the code is no faster."""
 
 
+class _Callee(CPUDispatcher):  # type: ignore[misc]
+    """A kernel as others call it."""
+
+    targetdescr = TARGET
+
+
 class QuickDispatcher(CPUDispatcher):  # type: ignore[misc]
     """A compiled function that shows itself to other kernels as code to be optimized along with them."""
 
+    targetdescr = TARGET
+
     def __init__(self, function: Any, options: dict[str, Any], inline: bool, folder: Path) -> None:
         self._options = options | _NO_EXTRAS
-        super().__init__(function, targetoptions=self._options)
+        super().__init__(function, {}, self._options, KernelCompiler)
         self._inline = inline
         self._folder = folder
 
@@ -54,7 +63,7 @@ class QuickDispatcher(CPUDispatcher):  # type: ignore[misc]
     def _code(self) -> CPUDispatcher:
         """What another kernel calls."""
         inlined = {"forceinline": self._inline, "no_cpython_wrapper": True}
-        return CPUDispatcher(self.py_func, {}, self._options | inlined, _CodeCompiler)
+        return _Callee(self.py_func, {}, self._options | inlined, _CodeCompiler)
 
     def get_call_template(self, args: Any, kws: Any) -> Any:
         """Type a call by another kernel, constants like any other number."""
@@ -231,7 +240,7 @@ def _content(file: str) -> bytes:
     return Path(file).read_bytes()
 
 
-class _CodeCompiler(Compiler):  # type: ignore[misc]
+class _CodeCompiler(KernelCompiler):
     """Numba's compiler, up to the code before optimization."""
 
     def __init__(self, typingctx: Any, targetctx: Any, _library: Any, *choices: Any) -> None:
