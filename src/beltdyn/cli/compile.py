@@ -1,13 +1,9 @@
 """`beltdyn compile`."""
 
 from pathlib import Path
-from typing import TYPE_CHECKING
 
 from beltdyn.cli.console import show
 from beltdyn.cli.progress import compilation_bar
-
-if TYPE_CHECKING:
-    from beltdyn.model import Drive
 
 _USUAL = ("alternator_drive",)
 """Examples that need the kernels of most drives."""
@@ -25,24 +21,16 @@ def compile_(*files: Path) -> None:
     """
     from beltdyn.kernel import kernel_cache
     from beltdyn.model import example, load
-    from beltdyn.observation.compilation import beside
     from beltdyn.state.installation import bring_to_rest
     from beltdyn.transient.simulate import simulate
+    from beltdyn.vibration.modes import modes
 
     drives = [load(file) for file in files] or [example(name) for name in _USUAL]
     with compilation_bar():
         for drive in drives:
             outputs = {"output_interval": None, "field_interval": None, "start_at": None}
             short = drive.replace(simulation=drive.simulation.replace(duration=_SHORT, **outputs))
-            with beside(compile_running, drive):
-                simulate(short)
-                bring_to_rest(drive)
-            compile_running(drive)
+            simulate(short)
+            bring_to_rest(drive)
+            modes(drive)
     show(f"Kernels are compiled: {kernel_cache()}")
-
-
-def compile_running(drive: "Drive") -> None:
-    """Find the modes about steady running, with the kernels that they need."""
-    from beltdyn.vibration.modes import modes
-
-    modes(drive)

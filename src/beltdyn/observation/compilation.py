@@ -1,7 +1,7 @@
 """Compilation of the kernels of a simulation: once per machine, then loaded from disk.
 
-What solves the equations of motion takes more than half of the compilation; where nothing is on the disk yet and there
-is a second core, a second process does that part.
+Steady running, the solution of the equations of motion, and observation take a third of the compilation each; where
+there is a second core, a second process does a part of it meanwhile.
 """
 
 import os
@@ -9,7 +9,7 @@ import pickle
 import subprocess
 import sys
 from collections.abc import Callable, Iterator
-from contextlib import contextmanager
+from contextlib import contextmanager, nullcontext
 from tempfile import TemporaryFile
 from threading import Thread
 from typing import BinaryIO
@@ -18,6 +18,7 @@ import numpy as np
 
 from beltdyn.kernel import (
     CACHE_VARIABLE,
+    compiles_quickly,
     holds_kernels,
     kernel_cache,
     report_compilation,
@@ -44,15 +45,26 @@ def usable_cores() -> int:
 def compile_kernels(system: System, state: State) -> None:
     """Call every kernel that static equilibrium, generalized-alpha and observation need, on no work at all."""
     with _second_process(system, state):
-        _compile_observing(system)
-        _compile_recording()
+        compile_observing(system)
     compile_solving(system, state)
+
+
+def compile_run(system: System, state: State) -> None:
+    """The same, in this process alone."""
+    compile_solving(system, state)
+    compile_observing(system)
+
+
+def compile_observing(system: System) -> None:
+    """Compile what observes states and derives results from them."""
+    _compile_looking(system)
+    _compile_recording()
 
 
 def compile_for_rest(system: System, state: State) -> None:
     """Call the kernels that static equilibrium needs."""
     with _second_process(system, state):
-        _compile_observing(system)
+        _compile_looking(system)
     compile_solving(system, state)
 
 
@@ -60,10 +72,10 @@ def rest_is_compiled(system: System, state: State) -> bool:
     """Whether static equilibrium needs no compilation."""
     if not holds_kernels(kernel_cache()):
         return False  # without the import of Numba
-    return runs_compiled(_compile_observing, system) and runs_compiled(compile_solving, system, state)
+    return runs_compiled(_compile_looking, system) and runs_compiled(compile_solving, system, state)
 
 
-def _compile_observing(system: System) -> None:
+def _compile_looking(system: System) -> None:
     observe(system, np.empty(0), np.empty((0, 0)), np.empty((0, 0)))
 
 
@@ -90,7 +102,7 @@ def run_for_another(arguments: BinaryIO) -> None:
         sys.stdout.write(f"{done} {total}\n")
         sys.stdout.flush()
 
-    with watch_compilation(report):
+    with watch_compilation(report), _helped():
         function, *values = pickle.load(arguments)
         function(*values)
 
@@ -120,6 +132,40 @@ def _second_process(system: System, state: State) -> Iterator[None]:
 
 
 @contextmanager
+def ahead(function: Callable[..., object], system: System, *others: object) -> Iterator[None]:
+    """Let another process compile meanwhile what is needed next, where that is not compiled; see `beside`."""
+    kind = function, tuple(map(type, system))
+    if _helps or kind in _compiled:
+        yield
+        return
+    _compiled.add(kind)
+    with nullcontext() if _is_compiled(function, system, *others) else beside(function, system, *others):
+        yield
+
+
+_compiled = set[tuple[object, ...]]()
+"""What has been asked for: one process does not ask twice, though other kinds of machines need other kernels."""
+_helps = list[None]()
+"""Filled while another process compiles for this one, and in that process: there are no more than two."""
+
+
+def _is_compiled(function: Callable[..., object], *arguments: object) -> bool:
+    """Whether a function needs no compilation; plain compilation does not say, and counts as done if it has begun."""
+    if not holds_kernels(kernel_cache()):
+        return False
+    return not compiles_quickly() or runs_compiled(function, *arguments)
+
+
+@contextmanager
+def _helped() -> Iterator[None]:
+    _helps.append(None)
+    try:
+        yield
+    finally:
+        _helps.pop()
+
+
+@contextmanager
 def beside(function: Callable[..., object], *arguments: object) -> Iterator[None]:
     """Call a function that compiles kernels in another process meanwhile, where there is a second core.
 
@@ -146,7 +192,8 @@ def beside(function: Callable[..., object], *arguments: object) -> Iterator[None
     reader = Thread(target=_report, args=(process,), daemon=True)
     reader.start()
     try:
-        yield
+        with _helped():
+            yield
         process.wait()
     finally:
         process.kill()

@@ -9,6 +9,7 @@ from beltdyn.arrays import FloatArray
 from beltdyn.errors import ConvergenceError
 from beltdyn.model import Drive, Prepared
 from beltdyn.model.resolution import Arc, Laid
+from beltdyn.observation.compilation import ahead, compile_observing
 from beltdyn.state.installation import drawn_in, follow, from_starts, looked_at, with_stiffer_contact
 from beltdyn.state.newton import FOUND, find_steady, steady_work
 from beltdyn.state.static import only_tensioners
@@ -139,7 +140,8 @@ def stand(prepared: Prepared, elements: int | None = None, *, fineness: float = 
     """
     lengths = prepared.graded_lengths(fineness) if elements is None else prepared.equal_lengths(elements)
     system = staying_system(prepared, lengths)
-    state, tension = _from_laid(prepared, system)
+    with ahead(compile_observing, system):
+        state, tension = _from_laid(prepared, system)
     return Standing(prepared, system, state, state.position.copy(), tension, prepared.layer, fineness)
 
 

@@ -1,6 +1,7 @@
 """Initial state of a run: at rest, laid, in steady running, or from an earlier run."""
 
 from collections.abc import Callable
+from contextlib import AbstractContextManager
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -9,7 +10,7 @@ from beltdyn.arrays import FloatArray
 from beltdyn.errors import ModelError
 from beltdyn.model import Drive, Prepared, prepare
 from beltdyn.model.simulation import EarlierRun, Frame, Instants
-from beltdyn.observation.compilation import compile_kernels
+from beltdyn.observation.compilation import ahead, compile_kernels, compile_run, compile_solving
 from beltdyn.solvers.generalized_alpha import GeneralizedAlpha
 from beltdyn.solvers.progress import Report
 from beltdyn.solvers.trajectory import Integrator, Statistics, drive_task
@@ -108,15 +109,23 @@ def settled(drive: Drive, integrator: Integrator) -> tuple[Drive, Frame]:
 
 def compile_ahead(drive: Drive) -> None:
     """Compile the kernels of a run once, before several processes need them."""
-    prepared = prepare(drive)
+    compile_kernels(*_before_run(prepare(drive)))
+
+
+def compile_solving_ahead(prepared: Prepared) -> AbstractContextManager[None]:
+    """Let another process compile meanwhile what solves the equations of motion of a run."""
+    return ahead(compile_solving, *_before_run(prepared))
+
+
+def _before_run(prepared: Prepared) -> tuple[System, State]:
+    """Arrays of the types that a run will have, and a state."""
     if prepared.frame.stays:
-        lengths = prepared.equal_lengths(prepared.elements)
-        given = staying_system(prepared, lengths)
+        given = staying_system(prepared, prepared.equal_lengths(prepared.elements))
         at_zero = at_rest(given, np.zeros((given.nodes, len(given.scale))))
         system = flowing_system(turning(given, at_zero), np.array([1.0, 0.0]))
     else:
         system = drive_system(prepared)
-    compile_kernels(system, laid(system, prepared.path))
+    return system, laid(system, prepared.path)
 
 
 def mesh_of(prepared: Prepared, integrator: Integrator, progress: Report | None = None) -> Beginning:
@@ -132,7 +141,8 @@ def mesh_of(prepared: Prepared, integrator: Integrator, progress: Report | None 
     if isinstance(settings.start, EarlierRun):
         return begin_from(prepared.drive)
     if staying:
-        return begin_flowing(prepared, progress)
+        with ahead(compile_run, *_before_run(prepared)):
+            return begin_flowing(prepared, progress)
     system = drive_system(prepared)
     return Beginning(prepared, system, _laid(prepared, system), attributes=tooth_phases(system))
 

@@ -8,7 +8,7 @@ from numpy.typing import ArrayLike
 
 from beltdyn.arrays import BoolArray, ComplexArray, IntArray
 from beltdyn.errors import ConvergenceError, ModelError
-from beltdyn.model import Drive
+from beltdyn.model import Drive, prepare
 from beltdyn.parts.quantity import RPM, Number, numbers_in
 from beltdyn.points.changed_drive import at_speed, driver_of, held_at, sense_of
 from beltdyn.results import Result, Run, Variable, build_result
@@ -16,6 +16,7 @@ from beltdyn.results.schema import AXIS_NAMES, COORDINATES, runs_steadily
 from beltdyn.solvers.eigenvalues import LIGHT, MOST_SWINGING, lightly_damped, pencil, swinging, swings
 from beltdyn.solvers.progress import Report
 from beltdyn.state.steady import steady_state
+from beltdyn.transient.beginning import compile_solving_ahead
 from beltdyn.transient.earlier_run import instant_of
 from beltdyn.vibration.mode_shapes import Points, Shapes, Shares, belt_points, part_names, shapes_of, shares_of
 from beltdyn.vibration.small_motions import (
@@ -262,7 +263,8 @@ def modes(
         motions, state = about_rest(drive), "at rest"
     else:
         held = drive if speed is None else _at_speed(drive, speed, pulley, at)
-        run = steady_state(held, at=at, force_tolerance=force_tolerance, progress=progress)
+        with compile_solving_ahead(prepare(held)):
+            run = steady_state(held, at=at, force_tolerance=force_tolerance, progress=progress)
         motions, state = about_steady(run), _running(run)
     result = modes_about(motions, count)
     told = {"title": f"Modes of {drive.title}, {state}", "drive_as_given": given}
