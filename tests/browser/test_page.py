@@ -201,6 +201,33 @@ requirement = [{ result = "slip_safety", at_least = 3.0 }]
 """
 
 
+def test_a_table_of_pulleys_is_read_from_a_file(shoot: Shoot, open_page: Open, folder: Path) -> None:
+    (folder / "pulleys.csv").write_text(
+        "name;x [mm];y [mm];diameter [mm];side\ncrank;0;0;160;inside\nidler;70;140;70;outside\n"
+        "alternator;0;270;56;inside\n",
+        encoding="utf-8",
+    )
+    (folder / "picture.csv").write_bytes(b"\x89PNG\x81\x00\xff")
+    expect, page = playwright.expect, open_page()
+    page.get_by_role("button", name="New", exact=True).click()
+    page.get_by_text("table of pulleys", exact=True).click()
+    pasted = page.get_by_label("table of pulleys", exact=True)
+    for name in ("picture.csv", "pulleys.csv"):
+        with page.expect_file_chooser() as chooser:
+            page.get_by_role("button", name="CSV file").click(timeout=60_000)
+        chooser.value.set_files(folder / name)
+        if name == "picture.csv":
+            page.get_by_text("picture.csv is not a text file").wait_for()
+    expect(pasted).to_have_value(re.compile("alternator;0;270;56"))
+    expect(page.get_by_text("picture.csv is not a text file")).to_be_hidden()
+    shoot(page, "table_of_pulleys")
+    page.get_by_role("button", name="Use", exact=True).click()
+    expect(page.locator('[data-pulley="alternator"]')).to_have_count(1)
+    expect(page.locator(".bd-belt:not(.bd-sketch)")).to_have_count(1)
+    expect(page.locator('[data-pulley="idler"]')).to_have_class(re.compile("bd-back"))
+    expect(page.locator(".bd-message:not(.bd-warning)")).to_have_count(0)
+
+
 def test_an_optimisation_finds_a_drive_file(shoot: Shoot, open_page: Open, folder: Path) -> None:
     """The least hub load is that at which slip is just as safe as it has to be."""
     (folder / "drive.toml").write_text(FAN, encoding="utf-8")

@@ -114,8 +114,9 @@ class FileMenu:
         self.ask_table()
 
     def ask_table(self) -> None:
-        """Ask for a table of pulleys."""
-        TableDialog(lambda text: self._begin(lambda: self._session.start(text)))
+        """Ask for a table of pulleys, in a dialog that outlives what was clicked."""
+        with ui.context.client:
+            TableDialog(lambda text: self._begin(lambda: self._session.start(text)))
 
     def _offer(self, dialog: ui.dialog, one: Example) -> None:
         def begin() -> None:

@@ -42,6 +42,7 @@ class TableDialog:
     async def _read(self, event: UploadEventArguments) -> None:
         try:
             self._table.value = decoded(await event.file.read())
+            self._told.set_visibility(False)
         except UnicodeDecodeError:
             self._say(f"{event.file.name} is not a text file. Save it as CSV in UTF-8.")
 
