@@ -1,4 +1,4 @@
-"""What the page of the timing drive says in numbers, beside a hand calculation; see `docs/example_numbers.py`."""
+"""What the page of toothed belts says in numbers, beside a hand calculation; see `docs/example_numbers.py`."""
 
 from collections.abc import Iterator
 from math import cosh, pi, sinh, sqrt
@@ -33,3 +33,15 @@ def timing_drive(run: Run) -> Iterator[Number]:
     slope = (after * cosh(length / shared) - before) / (shared * sinh(length / shared))
     first = toothing.pitch * slope
     yield Number("largest tooth load on the camshaft, N", first, loads["camshaft"].largest, 0.05 * first)
+
+
+def servo_axis(run: Run) -> Iterator[Number]:
+    """The peak after a step of acceleration, twice the inertial force without damping, and the angle of the move."""
+    pulleys, data = run.drive.pulleys, run.dataset
+    radius, acceleration = 72.0 * 5e-3 / (2.0 * pi), 500.0 * RPM / 3.0 / 0.05
+    peak = (2.0 * 0.02 * acceleration + 0.5) / radius
+    spans = data.span_tension.sel(time=slice(0.02, 0.07)).values
+    found = float((spans[:, 1] - spans[:, 0]).max())
+    yield Number("largest circumferential force as it accelerates, N", peak, found, 0.05 * peak)
+    turned = float(data.pulley_angle[-1, 1] - data.pulley_angle[0, 1]) * 180.0 / pi
+    yield Number("angle of the move, degrees", 360.0 * pulleys[0].teeth / pulleys[1].teeth, turned, 0.1)

@@ -65,6 +65,7 @@ EXAMPLES: Mapping[str, Example] = MappingProxyType(
         "timing_drive": Example(("span_tensions", "contact_pressure"), toothed.timing_drive),
         "printer_axis": Example(("carriage_error", "span_tensions"), axes.printer_axis),
         "gantry_axis": Example(("carriage_error",), axes.gantry_axis),
+        "servo_axis": Example(("speeds", "span_tensions"), toothed.servo_axis),
         "slip_through": Example(("speeds", "torques", "slip_safety", "slip"), by_hand.slip_through),
         "accessory_drive": Example(
             ("speeds", "span_tensions", "tensioners", "slip", "hub_loads"), accessory.numbers, accessory.study

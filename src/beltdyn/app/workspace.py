@@ -112,6 +112,7 @@ STARTS = {
     "fan_direct_start": "Fan with V-belts",
     "conveyor": "Conveyor",
     "washing_machine": "Washing machine",
+    "servo_axis": "Servo axis with a toothed belt",
 }
 """Examples that the empty canvas offers, by what users call them."""
 
