@@ -37,3 +37,27 @@ def test_a_second_process_compiles_what_this_drive_needs(tmp_path: Path, discret
         text=True,
     )
     assert process.stdout.split() == ["1", "0"]
+
+
+STEADY = """
+from beltdyn.model import example
+from beltdyn.state.steady import steady_state
+from beltdyn.system.observe import fill_observations
+
+steady_state(example("unequal_radii"))
+stats = fill_observations.dispatcher.stats
+print(sum(stats.cache_hits.values()), sum(stats.cache_misses.values()))
+"""
+
+
+@pytest.mark.slow
+@pytest.mark.skipif(usable_cores() < 2, reason="one core: one process compiles all")
+def test_a_second_process_compiles_what_observes_steady_running(tmp_path: Path) -> None:
+    process = subprocess.run(
+        [sys.executable, "-c", STEADY],
+        env={**os.environ, "BELTDYN_CACHE_DIR": str(tmp_path)},
+        check=True,
+        capture_output=True,
+        text=True,
+    )
+    assert process.stdout.split() == ["1", "0"]
