@@ -36,12 +36,18 @@ def timing_drive(run: Run) -> Iterator[Number]:
 
 
 def servo_axis(run: Run) -> Iterator[Number]:
-    """The peak after a step of acceleration, twice the inertial force without damping, and the angle of the move."""
+    """The peak after a step of acceleration, and the angle of the move.
+
+    The table sticks until the belt pulls with the friction F of its bearing, and then swings without damping about F and
+    the inertial force N: the peak is F + N + sqrt(N^2 + 2 N F). The resistance that grows with speed and the damping of
+    the belt, left out, change it by less than 1 %.
+    """
     pulleys, data = run.drive.pulleys, run.dataset
     radius, acceleration = 72.0 * 5e-3 / (2.0 * pi), 500.0 * RPM / 3.0 / 0.05
-    peak = (2.0 * 0.02 * acceleration + 0.5) / radius
+    inertial, friction = 0.02 * acceleration / radius, 0.5 / radius
+    peak = friction + inertial + sqrt(inertial**2 + 2.0 * inertial * friction)
     spans = data.span_tension.sel(time=slice(0.02, 0.07)).values
     found = float((spans[:, 1] - spans[:, 0]).max())
-    yield Number("largest circumferential force as it accelerates, N", peak, found, 0.05 * peak)
+    yield Number("largest circumferential force as it accelerates, N", peak, found, 0.01 * peak)
     turned = float(data.pulley_angle[-1, 1] - data.pulley_angle[0, 1]) * 180.0 / pi
     yield Number("angle of the move, degrees", 360.0 * pulleys[0].teeth / pulleys[1].teeth, turned, 0.1)
