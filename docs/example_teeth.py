@@ -38,9 +38,9 @@ def timing_drive(run: Run) -> Iterator[Number]:
 def servo_axis(run: Run) -> Iterator[Number]:
     """The peak after a step of acceleration, and the angle of the move.
 
-    The table sticks until the belt pulls with the friction F of its bearing, and then swings without damping about F and
-    the inertial force N: the peak is F + N + sqrt(N^2 + 2 N F). The resistance that grows with speed and the damping of
-    the belt, left out, change it by less than 1 %.
+    The table sticks until the belt pulls with the friction F of its bearing, and then swings without damping about F
+    and the inertial force N: the peak is F + N + sqrt(N^2 + 2 N F). The resistance that grows with speed and the
+    damping of the belt, left out, change it by less than 1 %.
     """
     pulleys, data = run.drive.pulleys, run.dataset
     radius, acceleration = 72.0 * 5e-3 / (2.0 * pi), 500.0 * RPM / 3.0 / 0.05
