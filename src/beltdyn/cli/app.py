@@ -96,6 +96,10 @@ def _warning_line(
     return _with_source(message, category, filename, lineno, line)
 
 
+_MEANT = {"run": "simulate", "solve": "simulate", "tension": "tensioner-sheet", "figure": "plot"}
+"""Commands by other words for them."""
+
+
 def _usage(error: CycloptsError) -> str:
     """What is wrong with the words of a command."""
     command = " ".join(("beltdyn", *(error.command_chain or ())))
@@ -103,7 +107,9 @@ def _usage(error: CycloptsError) -> str:
         words = ", ".join(f'"{word}"' for word in error.unused_tokens or ())
         return f"{command} takes no argument {words}. See {command} --help."
     if isinstance(error, UnknownCommandError) and error.unused_tokens:
-        begun = [name for name in app.resolved_commands() if name.startswith(error.unused_tokens[0])]
-        if len(begun) == 1:
-            return f'Unknown command "{error.unused_tokens[0]}". Did you mean "{begun[0]}"? See beltdyn --help.'
+        word = error.unused_tokens[0]
+        named = [name for name in app.resolved_commands() if word in (*name.split("-"), name[: len(word)])]
+        meant = _MEANT.get(word, named[0] if len(named) == 1 else None)
+        if meant is not None:
+            return f'Unknown command "{word}". Did you mean "{meant}"? See beltdyn --help.'
     return str(error)

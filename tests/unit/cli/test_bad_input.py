@@ -403,6 +403,8 @@ def test_message(case: Case, drive_text: str, folder: Path, refuse: Refuse) -> N
         (["simulate", "--nosuch", "a.toml"], "--nosuch"),
         (["check"], "FILE requires an argument"),
         (["simulat"], 'Unknown command "simulat"'),
+        (["map", "drive.toml"], 'Unknown command "map". Did you mean "operating-map"?'),
+        (["run", "drive.toml"], 'Unknown command "run". Did you mean "simulate"?'),
         (["steady", "drive.toml"], 'Unknown command "steady". Did you mean "steady-state"?'),
     ],
 )
