@@ -14,6 +14,7 @@ import pytest
 from numpy.typing import ArrayLike, NDArray
 
 from beltdyn.arrays import FloatArray
+from beltdyn.kinds import Registry
 from beltdyn.model import Drive, prepare
 from beltdyn.results import Layout, MemoryRecorder, Run, provenance
 from beltdyn.results.friction_work import FrictionWork, Touch
@@ -41,6 +42,16 @@ STATISTICS = {
 def pytest_addoption(parser: pytest.Parser) -> None:
     parser.addoption("--curves", metavar="FILE", help="write the curves of docs/verification to a JSON file")
     parser.addoption("--compiled", action="store_true", help="compile the kernels of points, elements and machines too")
+
+
+@pytest.fixture(autouse=True)
+def _own_kinds() -> Iterator[None]:
+    """What a test registers is forgotten behind it: checkpoints, schemas and kernels know of all kinds."""
+    before = [(registry, set(registry)) for registry in Registry.families]
+    yield
+    for registry, known in before:
+        for name in set(registry) - known:
+            registry.forget(name)
 
 
 @pytest.fixture

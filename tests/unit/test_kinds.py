@@ -1,6 +1,5 @@
 """Registries of kinds, and the call that adds a kind: what is refused, what replaces, and what follows."""
 
-from collections.abc import Iterator
 from pathlib import Path
 from typing import Annotated, Any, Literal, NamedTuple
 
@@ -55,15 +54,6 @@ def pulled(constants: np.record, _numbers: Any, _shaft: Any) -> LoadTorque:
 
 def friction_law(name: str, *parameters: Parameter, force: Any = sloped) -> FrictionLaw:
     return FrictionLaw(name, Slope, force, parameters)
-
-
-@pytest.fixture(autouse=True)
-def _own_kinds() -> Iterator[None]:
-    """What a test registers is forgotten behind it."""
-    yield
-    for registry in Registry.families:
-        for name in [name for name in registry if registry.is_own(name)]:
-            registry.forget(name)
 
 
 @pytest.mark.parametrize("registry", [LOADS, LINKS, TENSIONERS, PROFILES], ids=lambda one: one.family)

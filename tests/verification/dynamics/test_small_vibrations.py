@@ -189,7 +189,7 @@ def test_dry_friction_of_a_tensioner_as_dashpot(rpm: float, wave: float, measure
     expected = float(linear.dataset.friction_change[0])
     measured(change=change, expected=expected)
     assert expected == pytest.approx(change, abs=0.02)
-    assert any("dry friction of tensioners, which this response leaves out" in one for one in linear.warnings)
+    assert any("dry friction of tensioners, which this response neglects" in one for one in linear.warnings)
     held = response(wavy, speed=f"{rpm} rpm", dry_tensioners="stuck").dataset
     np.testing.assert_allclose(held.span_tension_amplitude.values[0, 0], seen, atol=0.02 * amplitude.max())
     assert float(held.friction_change[0]) < 0.02
