@@ -102,7 +102,7 @@ for _analysis in (
     Analysis("beltdyn.designs.calibrate:calibrate", "Fit parameters of a drive to measured results."),
     Analysis("beltdyn.vibration.campbell:campbell", "Compute natural modes over speed, and critical speeds.", True),
     Analysis("beltdyn.vibration.response:response", "Compute forced vibrations under harmonics, over speed.", True),
-    Analysis("beltdyn.vibration.stroke:stroke", "Compute stiffness and frequency of a linear axis over its stroke."),
+    Analysis("beltdyn.vibration.stroke:stroke", "Compute stiffness and modes of a linear axis over its stroke."),
     # one line each
 ):
     register(_analysis)

@@ -1,6 +1,7 @@
 """The carriage of a linear axis: a mass on a straight guide, to which both ends of an open belt are clamped."""
 
 from collections.abc import Sequence
+from functools import lru_cache
 from typing import Self
 
 import numpy as np
@@ -18,7 +19,8 @@ from beltdyn.model.pulley import Pulley
 from beltdyn.parts.part import Part
 from beltdyn.parts.quantity import Coordinate, Damping, Force, Length, Mass, Name, Speed, Stiffness
 
-_INSTANTS = 1001
+_INSTANTS = 101
+"""Instants at which a way is looked at, besides those at which a move changes."""
 _MOST_OBLIQUE = np.radians(5.0)
 """Largest angle between the belt at a clamp and the guide."""
 
@@ -150,9 +152,12 @@ def carriage_rate(carriage: Carriage, path: Path, pulley: int) -> float:
     return -float(path.radii[pulley] * np.dot(path.ways_out[0], carriage.direction))
 
 
+@lru_cache(maxsize=64)
 def turned(speed: Profile, duration: float) -> FloatArray:
-    """Angles that a speed has turned since time zero at some instants, rad."""
-    rows, times = profile_rows([speed], [()]), np.linspace(0.0, duration, _INSTANTS)
+    """Angles that a speed has turned since time zero at some instants, rad; not to be changed."""
+    starts = speed.integrated.start
+    times = np.union1d(np.linspace(0.0, duration, _INSTANTS), starts[(starts > 0.0) & (starts < duration)])
+    rows = profile_rows([speed], [()])
     return np.array([interpreted(profile_integral)(rows, 0, time) for time in times.tolist()])
 
 

@@ -19,7 +19,7 @@ from beltdyn.model import Drive
 from beltdyn.parts.quantity import RPM
 from beltdyn.results import Result, Run, Variable, build_result
 from beltdyn.results.atomic import locked_output, require_replaceable
-from beltdyn.results.balance import LOSSES
+from beltdyn.results.balance import causes_of
 from beltdyn.results.dataset import is_result
 from beltdyn.results.fatigue import VARIABLES as OF_FATIGUE
 from beltdyn.results.fatigue import fatigue_by_name, known_variables
@@ -33,7 +33,6 @@ from beltdyn.state.steady import require_steady, steady_state
 # What is known of an operating point, and how it follows from steady running
 
 PULLEY, _SPAN, _TENSIONER = ("pulley",), ("span",), ("tensioner",)
-_CAUSES = [cause for name, cause in LOSSES.items() if name != "numerical_loss"]
 
 VARIABLES = {
     "belt_speed": Variable((), "m/s", "Belt speed"),
@@ -103,13 +102,19 @@ DATA |= dict.fromkeys(_OF_RATING, "a profile with a power rating, such as SPZ or
 """What a belt must have for results that not all drives have, by their names."""
 
 
+def _causes(drive: Drive) -> list[str]:
+    """Causes of losses in steady running, which takes no steps."""
+    causes = causes_of(toothed=drive.belt.teeth is not None)
+    return [cause for name, cause in causes.items() if name != "numerical_loss"]
+
+
 def labels_of(drive: Drive) -> dict[str, list[str]]:
     """Labels along the dimensions of `VARIABLES`."""
     return {
         "pulley": [one.name for one in drive.pulleys],
         "span": ["-".join(names) for names in drive.spans],
         "tensioner": [one.pulley for one in drive.moving_tensioners],
-        "cause": _CAUSES,
+        "cause": _causes(drive),
         "axis": list(AXIS_NAMES),
     }
 
@@ -138,7 +143,7 @@ def values_by_name(run: Run, means: Means, names: Collection[str] = VARIABLES.ke
         "power_in": balance.power_in,
         "power_out": balance.power_out,
         "efficiency": balance.efficiency,
-        "loss": [balance.losses[cause] for cause in _CAUSES],
+        "loss": [balance.losses[cause] for cause in _causes(run.drive)],
     }
     safeties = np.array(values["slip_safety"])
     if np.any(np.isfinite(safeties)):

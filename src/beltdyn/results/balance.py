@@ -23,6 +23,13 @@ LOSSES: Mapping[str, str] = {
 }
 """Recorded works of the losses, and their causes in words."""
 
+OF_TEETH = "teeth and compression"
+"""Cause in words of `compression_loss` of belts with teeth: what these lose, store, and leave as they enter and leave
+under load, which may be negative."""
+
+_OF_GROOVES = "tooth_phases"
+"""Attribute of the results of belts with teeth."""
+
 _BEFORE = {"material_loss": "belt material"}
 """The combined loss of stretch and bending in files of earlier formats."""
 
@@ -74,9 +81,15 @@ class Balance:
 
 def losses_of(recorded: Recorded) -> Mapping[str, str]:
     """Give the recorded works of the losses, and their causes in words."""
-    return {name: cause for name, cause in LOSSES.items() if name in recorded} | (
+    causes = causes_of(toothed=_OF_GROOVES in recorded.attrs)
+    return {name: cause for name, cause in causes.items() if name in recorded} | (
         {} if "bending_loss" in recorded else _BEFORE
     )
+
+
+def causes_of(*, toothed: bool) -> Mapping[str, str]:
+    """Works of the losses and their causes in words, of belts with or without teeth."""
+    return {**LOSSES, "compression_loss": OF_TEETH} if toothed else LOSSES
 
 
 def power_balance(recorded: Recorded, window: Window | None = None) -> Balance:

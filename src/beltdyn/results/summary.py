@@ -9,7 +9,7 @@ import numpy as np
 from beltdyn.errors import ModelError
 from beltdyn.model import Drive
 from beltdyn.model.simulation import Simulation
-from beltdyn.results.balance import LOSSES, Balance, largest_closure, power_balance
+from beltdyn.results.balance import Balance, causes_of, largest_closure, power_balance
 from beltdyn.results.checks.mesh import STEADY_LOSSES, STEADY_SLIPS
 from beltdyn.results.cycles import Window, mean_window
 from beltdyn.results.means import (
@@ -251,7 +251,9 @@ def steady_losses(run: Run) -> dict[str, list[float]]:
     """Attributes of another run by which `off_steady_running` finds its errors."""
     means = means_of(run)
     return {
-        STEADY_LOSSES: [means.balance.losses[cause] for cause in LOSSES.values()],
+        STEADY_LOSSES: [
+            means.balance.losses[cause] for cause in causes_of(toothed=run.drive.belt.teeth is not None).values()
+        ],
         STEADY_SLIPS: [one.slip for one in means.pulleys],
     }
 

@@ -325,7 +325,8 @@ def _as_run(prepared: Prepared, instant: float, found: _Found) -> Run:
 def require_steady(drive: Drive) -> None:
     """Make sure that a drive may run steadily."""
     if drive.ends:
-        raise ModelError("an open belt has no steady running. Simulate it with `beltdyn simulate`.")
+        modes = "; `beltdyn stroke` has stiffness and modes of the axis at rest" if drive.carriage else ""
+        raise ModelError(f"an open belt has no steady running. Simulate it with `beltdyn simulate`{modes}.")
     shaped = [pulley.name for pulley in drive.pulleys if pulley.surface and pulley.surface.kind != "circle"]
     if shaped:
         raise ModelError(

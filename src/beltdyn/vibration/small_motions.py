@@ -141,7 +141,8 @@ def about_rest(drive: Drive) -> SmallMotions:
     The hysteresis of the belt is left out: its stress has no tangent there.
     """
     if drive.ends:
-        raise ModelError("the belt is open, but modes need a closed belt. Simulate the drive with `beltdyn simulate`.")
+        other = "Use `beltdyn stroke`" if drive.carriage else "Simulate the drive with `beltdyn simulate`"
+        raise ModelError(f"the belt is open, but modes need a closed belt. {other}.")
     return about_standing(bring_to_stand(prepare(drive)))
 
 

@@ -23,17 +23,24 @@ _MOST_STRETCH = 0.02
 """Largest change of the tension over the stroke, relative, that is not mentioned."""
 
 _PLACE = ("place",)
+_EACH = ("place", "mode")
 _VARIABLES = {
     "stiffness": Variable(_PLACE, "N/m", "Stiffness at the carriage, driver held"),
     "frequency": Variable(_PLACE, "Hz", "Natural frequency of the carriage on its belt"),
     "carriage_share": Variable(_PLACE, "1", "Share of the carriage in the kinetic energy of that mode"),
     "lowest_frequency": Variable(_PLACE, "Hz", "Lowest natural frequency, spans among them"),
     "tension": Variable(_PLACE, "N", "Tension at rest"),
+    "mode_frequency": Variable(_EACH, "Hz", "Natural frequencies, from the lowest on"),
+    "mode_part": Variable(_EACH, "1", "Part with most of the kinetic energy", "str"),
 }
+BELT = "belt"
+"""Name of the belt among what moves in a mode."""
 
 
-def stroke(drive: Drive, *, places: Numbers | None = None, points: int = 9, progress: Report | None = None) -> Result:
-    """Compute stiffness and natural frequency of a linear axis over its stroke.
+def stroke(
+    drive: Drive, *, places: Numbers | None = None, points: int = 9, count: int = 6, progress: Report | None = None
+) -> Result:
+    """Compute stiffness, natural frequency and modes of a linear axis over its stroke.
 
     At each place of the carriage the axis is at rest with the same belt; prescribed pulleys are held, others turn, and
     the belt sticks to its pulleys or is held by its teeth. The stiffness is that of all spans, arcs and teeth at the
@@ -48,18 +55,20 @@ def stroke(drive: Drive, *, places: Numbers | None = None, points: int = 9, prog
         or over the free length of the belt.
     points
         Number of places in a range.
+    count
+        Number of modes at each place, from the lowest frequency on.
     progress
         Called repeatedly with a `Progress`.
 
     Returns
     -------
     Result
-        Along ``place``.
+        Along ``place``, and the modes along ``mode`` too.
 
     Raises
     ------
     ModelError
-        If the drive has no carriage, no pulley holds the belt, or a place is beyond the stroke.
+        If the drive has no carriage, no pulley holds the belt, a place is beyond the stroke, or `count` is below 1.
     ConvergenceError
         If there is no equilibrium.
 
@@ -77,15 +86,17 @@ def stroke(drive: Drive, *, places: Numbers | None = None, points: int = 9, prog
             "no pulley holds the belt: a stiffness at the carriage needs one with prescribed speed. Give the driver "
             "its speed in place of a motor."
         )
+    if count < 1:
+        raise ModelError(f"count = {count} must be 1 or more.")
     prepared = prepare(drive)
     ways = _ways(prepared, places, points)
     first = rest_of(prepared, progress).prepared.drive  # with the length, or the take-up, of the installed tension
-    rows = []
+    rows = list[dict[str, Any]]()
     for number, way in enumerate(ways.tolist()):
         if progress is not None:
             progress(Progress(float(number), float(ways.size), 0.0, number, "equilibrium"))
-        rows.append(_at(rest_of(prepare(_moved(first, way)), None)))
-    columns = dict(zip(_VARIABLES, np.array(rows).T, strict=True))
+        rows.append(_at(rest_of(prepare(_moved(first, way)), None), count))
+    columns = {name: np.array([row[name] for row in rows]) for name in _VARIABLES}
     axis = Variable(_PLACE, "m", "Way of the carriage from its center")
     values: dict[str, Any] = {name: (one, columns[name]) for name, one in _VARIABLES.items()}
     tensions = columns["tension"]
@@ -95,7 +106,9 @@ def stroke(drive: Drive, *, places: Numbers | None = None, points: int = 9, prog
             f"the tension at rest changes over the stroke from {tensions.min():.4g} to {tensions.max():.4g} N: the "
             "guide does not run along the belt. Move carriage.center onto the line of the belt."
         ]
-    result = build_result("stroke", drive, values, {"place": (axis, ways)}, doubts)
+    numbers = np.arange(1, columns["mode_frequency"].shape[1] + 1)
+    modes = Variable(("mode",), "1", "Mode", "int64")
+    result = build_result("stroke", drive, values, {"place": (axis, ways), "mode": (modes, numbers)}, doubts)
     result.dataset.attrs["axes"] = "place"
     return result
 
@@ -128,8 +141,8 @@ def _moved(drive: Drive, way: float) -> Drive:
     return drive.replace(carriage=own, pulley=held)
 
 
-def _at(rest: Rest) -> tuple[float, ...]:
-    """Stiffness, frequency of the carriage, its share, lowest frequency, and tension at rest."""
+def _at(rest: Rest, count: int) -> dict[str, Any]:
+    """Values of `_VARIABLES` at a place, with so many modes."""
     stiffness, mass = _linearised(rest)
     from scipy.linalg import eigh
 
@@ -141,7 +154,29 @@ def _at(rest: Rest) -> tuple[float, ...]:
     shares = mass[last, last] * ways[last] ** 2
     own = int(np.argmax(shares))
     hertz = np.sqrt(np.maximum(squares, 0.0)) / (2.0 * np.pi)
-    return 1.0 / compliance, float(hertz[own]), float(shares[own]), float(hertz[0]), rest.tension
+    names = np.array(_parts(rest, last + 1))
+    energies = ways[:, :count] * (mass @ ways[:, :count])
+    parts = list(dict.fromkeys(names.tolist()))
+    largest = np.argmax([energies[names == part].sum(axis=0) for part in parts], axis=0)
+    return {
+        "stiffness": 1.0 / compliance,
+        "frequency": float(hertz[own]),
+        "carriage_share": float(shares[own]),
+        "lowest_frequency": float(hertz[0]),
+        "tension": rest.tension,
+        "mode_frequency": hertz[:count],
+        "mode_part": [parts[number] for number in largest.tolist()],
+    }
+
+
+def _parts(rest: Rest, size: int) -> list[str]:
+    """To what each unknown of `_linearised` belongs: the belt, a pulley or its hub, and last the carriage."""
+    unknown, pulleys = np.asarray(rest.system.bodies.unknown), rest.prepared.pulleys
+    carriage = rest.prepared.carriage
+    assert carriage is not None
+    free = np.argsort(unknown)[np.count_nonzero(unknown < 0) :].tolist()
+    names = [pulleys[body].name if body < len(pulleys) else f"hub {body + 1 - len(pulleys)}" for body in free[:-1]]
+    return [*[BELT] * (size - len(free)), *names, carriage.name]
 
 
 def _linearised(rest: Rest) -> tuple[FloatArray, FloatArray]:

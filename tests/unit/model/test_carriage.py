@@ -1,10 +1,11 @@
 """Linear axes that cannot run: one clear error each; the carriage holds both ends in running order."""
 
+import numpy as np
 import pytest
 
 from beltdyn.errors import ModelError
 from beltdyn.model import Carriage, Drive, FixedEnd, dumps, example, loads
-from beltdyn.model.carriage import carriage_rate, free_stroke
+from beltdyn.model.carriage import carriage_rate, free_stroke, turned
 
 AXIS = example("printer_axis")
 TEXT = AXIS.text
@@ -70,6 +71,16 @@ def test_a_turn_moves_it_by_the_teeth_of_the_motor() -> None:
     assert carriage_rate(AXIS.carriage, AXIS.path, 0) * 6.283185307 == pytest.approx(0.040, rel=1e-6)
     other = AXIS.carriage.replace(direction=(1.0, 0.0))
     assert carriage_rate(other, AXIS.path, 0) == -carriage_rate(AXIS.carriage, AXIS.path, 0)
+
+
+def test_ways_are_looked_at_where_a_move_turns_back() -> None:
+    """2.5 turns there and back within a second: the extremes are exact."""
+    speed = AXIS.pulleys[0].speed
+    assert speed is not None
+    angles = turned(speed, 1.0)
+    assert angles.max() == pytest.approx(5.0 * np.pi, rel=1e-12)
+    assert angles.min() == pytest.approx(0.0, abs=1e-9)
+    assert turned(speed, 1.0) is angles  # for the same move it is found once
 
 
 def test_it_is_written_and_read() -> None:

@@ -19,6 +19,12 @@ def test_it_is_stiffer_nearer_to_the_driver_and_swings_faster() -> None:
     spans = AXIS.belt.axial_stiffness * (1.0 / 0.135 + 1.0 / (taken_up - 0.165 + taken_up))
     assert 0.8 * spans < float(found.stiffness[1]) < spans  # arcs and teeth yield too
     assert found.tension.values == pytest.approx(30.0, rel=5e-3)
+    assert (found.mode_frequency.values[:, 0] == found.lowest_frequency.values).all()
+    assert (found.mode_frequency.diff("mode") > 0.0).all()
+    # the first mode of the longest span, pinned at the clamp and the pulley: stiffer by bending at its ends
+    speed = (30.0 / AXIS.belt.mass_per_length) ** 0.5
+    assert float(found.mode_frequency[1, 0]) == pytest.approx(speed / (2.0 * 0.3256), rel=0.1)
+    assert found.mode_part.values[1, 0] == "belt"
 
 
 def test_places_are_within_the_free_way() -> None:
@@ -26,7 +32,9 @@ def test_places_are_within_the_free_way() -> None:
         bd.stroke(AXIS, places="0, 140 mm")
 
 
-def test_it_needs_a_carriage_and_a_held_pulley() -> None:
+def test_it_needs_a_carriage_and_a_held_pulley_and_modes() -> None:
+    with pytest.raises(ModelError, match="count = 0 must be 1 or more"):
+        bd.stroke(AXIS, count=0)
     with pytest.raises(ModelError, match="a stroke needs a carriage"):
         bd.stroke(bd.example("two_pulley"))
     motor = AXIS.pulleys[0].replace(speed=None, inertia=1e-5, torque={"kind": "constant", "value": 0.01})

@@ -7,7 +7,7 @@ from beltdyn.model import Prepared
 from beltdyn.model.defaults import DAMPING_RATIO
 from beltdyn.parts.messages import Finding, listing
 from beltdyn.parts.quantity import RPM
-from beltdyn.results.balance import Balance, largest_closure, largest_numerical_share
+from beltdyn.results.balance import OF_TEETH, Balance, largest_closure, largest_numerical_share
 from beltdyn.results.checks.evidence import Evidence, shorter_steps
 from beltdyn.results.schema import attribute
 
@@ -27,7 +27,8 @@ _GIVES = 0.01
 def negative_losses(evidence: Evidence) -> Iterator[Finding]:
     """Losses with a negative mean, against the second law."""
     balance = evidence.balance
-    giving = {cause: power for cause, power in balance.losses.items() if -power > GAIN_LIMIT * evidence.power}
+    limit = GAIN_LIMIT * evidence.power
+    giving = {cause: power for cause, power in balance.losses.items() if -power > limit and cause != OF_TEETH}
     if giving and balance.power_in > 0.0:
         point = evidence.prepared.contact.moment_arm == "point" and "friction" in giving
         gains = listing([f"{power:.3g} W in {cause}" for cause, power in giving.items()])
