@@ -231,7 +231,8 @@ def mesh_errors(drive: OnPulleys, running: Running, elements: int) -> dict[str, 
     Returns
     -------
     dict of str to float
-        Relative error of each of `ERROR_LIMITS`, without sign.
+        Relative error of each of `ERROR_LIMITS`, without sign; NaN of slip and losses of a belt with teeth, which does
+        not slip.
 
     Examples
     --------
@@ -247,7 +248,7 @@ def mesh_errors(drive: OnPulleys, running: Running, elements: int) -> dict[str, 
     turning = angles**3 * depth
     tension = _TENSION * float(np.sum(radii * turning)) / (strain * drive.belt_length)
     peak = float(np.max(fineness * depth))
-    creep = float(np.max(turning)) / math.sqrt(strain)
+    creep = float(np.max(turning)) / math.sqrt(strain) if drive.belt.teeth is None else math.nan
     errors = tension, tension + _MEAN * peak, _PEAK * peak, _SLIP * creep, _LOSSES * creep
     return dict(zip(ERROR_LIMITS, errors, strict=True))
 
@@ -278,7 +279,7 @@ def elements_needed(drive: OnPulleys, running: Running) -> dict[str, int]:
 
 
 def fewest(drive: OnPulleys, running: Running, name: str, limit: float) -> int:
-    """Fewest elements whose estimate of one of `ERROR_LIMITS` is within a limit, by bisection."""
+    """Fewest elements whose estimate of one of `ERROR_LIMITS` is within a limit or unknown, by bisection."""
     few, many = 0, _MOST_ELEMENTS
     while many - few > 1:
         middle = (few + many) // 2

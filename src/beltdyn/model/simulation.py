@@ -449,8 +449,9 @@ def unused_settings(belt: Belt, contact: Contact) -> list[str]:
 
 
 def element_of(belt: Belt, frame: Frame) -> str:
-    """Name of the elements of a belt on a mesh."""
-    return QUINTIC.name if frame.stays else belt.discretization or ANCF.name
+    """Name of the elements of a belt on a mesh; the arcs of toothed pulleys are short, and few quintics follow them."""
+    usual = ANCF if belt.teeth is None else QUINTIC
+    return QUINTIC.name if frame.stays else belt.discretization or usual.name
 
 
 def _written(group: str, key: str, value: Any) -> str:

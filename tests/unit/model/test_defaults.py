@@ -5,7 +5,20 @@ from typing import Any
 import numpy as np
 import pytest
 
-from beltdyn.model import Belt, Contact, Drive, advise, dumps, install, loads, mesh_errors, prepare
+from beltdyn import example
+from beltdyn.model import (
+    Belt,
+    Contact,
+    Drive,
+    advise,
+    dumps,
+    elements_needed,
+    install,
+    loads,
+    mesh_errors,
+    prepare,
+    unresolved,
+)
 from beltdyn.model.defaults import critical_damping
 from beltdyn.model.resolution import Running
 
@@ -124,6 +137,18 @@ def test_the_mesh_resolves_tension_and_slip() -> None:
     assert errors["tension"] <= 0.005
     assert errors["slip"] <= 0.015
     assert coarser["tension"] > 0.005 or coarser["slip"] > 0.015
+
+
+def test_the_mesh_of_a_belt_with_teeth_follows_the_tension_alone() -> None:
+    """Teeth hold it, so that it does not slip; a quintic follows the small radii of toothed pulleys."""
+    given = example("timing_drive").with_({"belt.toothing.law": "discrete"})
+    running = Running(prepare(given).installation.tension)
+    errors, needed = mesh_errors(given, running, given.elements), elements_needed(given, running)
+    assert given.element_kind.name == "quintic"
+    assert given.elements % 113 == 0
+    assert errors["tension"] <= 0.005 < mesh_errors(given, running, given.elements - 113)["tension"]
+    assert np.isnan([errors["slip"], errors["losses"]]).all()
+    assert unresolved(errors, needed, pressures=False) == []
 
 
 def test_it_is_told_which_mesh_resolves_pressures() -> None:
