@@ -40,6 +40,57 @@ def axis(speed: Any = 0.0, light: bool = False, duration: float = 0.12, **carria
     )
 
 
+REVERSED = {
+    "kind": "s_curve",
+    "times": [0.01, 0.23],
+    "angles": [np.pi, 0.0],
+    "speed": 20.0,
+    "acceleration": 400.0,
+    "jerk": 4e4,
+}
+"""Half a turn there and back, with constant speed in between."""
+THERE, BACK = slice(0.09, 0.16), slice(0.31, 0.38)
+
+
+def reversal(backlash: float) -> float:
+    """Difference of the error of position at constant speed there and back, with friction of the guide, m."""
+    given = axis(REVERSED, duration=0.4, friction=20.0)
+    agreed = [one.merged({"pitch_error": TENSION / AXIAL}) for one in given.pulleys]
+    toothing = {"pitch": PITCH, "tooth_stiffness": TOOTH, "tooth_damping": 20.0, "backlash": backlash}
+    belt = BELT | {"toothing": toothing, "stretch_damping_time": 1e-3}
+    error = bd.simulate(given.replace(belt=belt, pulley=agreed)).dataset.carriage_error[:, 0]
+    return float(error.sel(time=BACK).mean() - error.sel(time=THERE).mean())
+
+
+def test_an_axis_that_turns_back_loses_the_backlash() -> None:
+    """The pitches agree, and the idler turns freely: the play of the driver's teeth alone is taken up."""
+    backlash = 2e-4
+    assert reversal(backlash) - reversal(0.0) == pytest.approx(backlash, rel=0.02)
+
+
+def at_teeth(run: bd.Run, window: slice) -> tuple[FloatArray, FloatArray]:
+    """Cycles for each tooth of the driver, and amplitudes of the error of position, m."""
+    part = run.dataset.sel(time=window)
+    passed = np.abs(part.pulley_angle.values[:, 0]) / (2.0 * np.pi) * float(run.drive.pulleys[0].teeth or 0)
+    error = part.carriage_error.values[:, 0]
+    even = passed[0] + np.arange(4096) / 4096 * np.floor(passed[-1] - passed[0])
+    laid = np.interp(even, passed, error - np.polyval(np.polyfit(passed, error, 2), passed))
+    weights, orders = np.hanning(even.size), np.arange(0.2, 4.0, 0.05)
+    waves = np.exp(-2j * np.pi * orders[:, None] * even)
+    return orders, 2.0 * np.abs(waves @ (weights * laid)) / weights.sum()
+
+
+def test_single_teeth_of_a_printer_leave_bands_a_pitch_apart() -> None:
+    """Vertical banding: at 300 mm/s the meshing frequency is 150 Hz, whatever the speed a wave of 2 mm on the print."""
+    changes = {"simulation.duration": 0.35, "simulation.output_interval": 2e-4, "simulation.rtol": 1e-3}
+    single = bd.simulate(bd.example("printer_axis").with_({"belt.toothing.law": "discrete", **changes}))
+    orders, found = at_teeth(single, slice(0.14, 0.34))
+    near = np.abs(orders - 1.0) < 0.15
+    assert orders[near][np.argmax(found[near])] == pytest.approx(1.0, abs=0.05)
+    _, without = at_teeth(bd.simulate(bd.example("printer_axis").with_(changes)), slice(0.14, 0.34))
+    assert found[near].max() > 3.0 * without[near].max()
+
+
 def arc(length: float) -> FloatArray:
     """Stiffness of a belt on an arc that its teeth hold, by the tension over the displacement at both ends."""
     share = np.sqrt(PITCH * AXIAL / TOOTH)
