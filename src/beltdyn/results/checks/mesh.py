@@ -10,7 +10,7 @@ from beltdyn.machines.loads.load import Load
 from beltdyn.model import ERROR_LIMITS, Prepared, unresolved
 from beltdyn.model.resolution import PRESSURES
 from beltdyn.parts.messages import Finding, listing
-from beltdyn.results.balance import causes_of
+from beltdyn.results.balance import OF_TEETH, causes_of
 from beltdyn.results.checks.creep import LOSS_LIMIT
 from beltdyn.results.checks.evidence import Evidence
 from beltdyn.results.provenance import found_errors
@@ -93,7 +93,7 @@ def off_steady_running(evidence: Evidence) -> Iterator[Finding]:
 def _off_losses(evidence: Evidence) -> Iterator[str]:
     """Losses, by part, that differ from those of steady running."""
     losses, steady = evidence.balance.losses, np.asarray(evidence.recorded.attrs[STEADY_LOSSES])
-    causes = causes_of(toothed=evidence.prepared.belt.teeth is not None).values()
+    causes = causes_of(toothed=OF_TEETH in losses).values()
     off = np.array([losses.get(cause, 0.0) for cause in causes]) - steady
     parts = dict(zip(causes, (off / steady.sum()).tolist(), strict=True))
     total = sum(parts.values())
