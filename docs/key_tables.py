@@ -12,6 +12,8 @@ from pydantic.fields import FieldInfo
 
 from beltdyn.analyses import ANALYSES
 from beltdyn.contact.surface import KINDS as SURFACES
+from beltdyn.machines import Goods, Support
+from beltdyn.machines.carrying.support import SUPPORTS
 from beltdyn.machines.links.link import LINKS
 from beltdyn.machines.loads.load import LOADS, Load
 from beltdyn.machines.profiles.harmonic import CrankSpeed
@@ -164,6 +166,7 @@ def figures() -> str:
 
 
 KINDS = {"load": names(LOADS), "hub": names(LINKS), "tensioner": names(TENSIONERS), "profile": names(PROFILES)}
+KINDS |= {"support": names(SUPPORTS)}
 KINDS |= {"analysis": analyses(), "figure": figures()}
 """The classes of the machines: `{{ kinds.load }}`."""
 
@@ -187,6 +190,8 @@ KEYS: dict[str, Any] = {
     "load": family(LOADS, Load),
     "arm": table(ArmAsSupplied),
     "hub": family(LINKS),
+    "support": family(SUPPORTS, Support),
+    "goods": table(Goods),
     "tensioner": family(TENSIONERS),
     "profile": family(PROFILES),
     "study": table(ParameterStudy),

@@ -228,6 +228,7 @@ def _outputs(drive: Drive, layout: Layout, time: FloatArray) -> Arrays:
         "compression_loss": still,
         "tensioner_loss": still,
         "coupling_loss": still,
+        "carrying_loss": still,
         "numerical_loss": still,
         "energy_closure": still + 1e-4,
         "step_size": still + 1e-3,

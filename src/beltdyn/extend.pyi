@@ -5,6 +5,7 @@ from beltdyn.contact.surface.kind import Gap, SurfaceKind
 from beltdyn.elements.kind import ElementKind
 from beltdyn.kernel import kernel
 from beltdyn.kinds import Parameter, register
+from beltdyn.machines.carrying.support import LineForce, Support
 from beltdyn.machines.links.link import HubLink, LinkTorque
 from beltdyn.machines.loads.load import Load, LoadTorque, ShaftState, StateRate, nearer_kink
 from beltdyn.machines.profiles.profile import SEGMENT, Profile, Value
@@ -34,6 +35,7 @@ __all__ = [
     "GeneralizedAlpha",
     "HubLink",
     "IntegratorKind",
+    "LineForce",
     "LinkTorque",
     "Load",
     "LoadTorque",
@@ -50,6 +52,7 @@ __all__ = [
     "Stepwise",
     "StretchLaw",
     "Stretching",
+    "Support",
     "SurfaceKind",
     "TensionerForce",
     "Value",

@@ -124,7 +124,7 @@ def register(kind: K) -> K:
     ----------
     kind
         A `FrictionLaw`, `NormalLaw`, `SurfaceKind`, `StretchLaw`, `ElementKind`, `IntegratorKind` or `Analysis`, or a
-        class derived from `Load`, `HubLink`, `Tensioner` or `Profile`.
+        class derived from `Load`, `HubLink`, `Tensioner`, `Support` or `Profile`.
 
     Returns
     -------

@@ -14,6 +14,7 @@ import beltdyn as bd
 import beltdyn.theory
 from beltdyn.analyses import ANALYSES
 from beltdyn.kinds import Registry
+from beltdyn.machines.carrying.support import SUPPORTS
 from beltdyn.machines.links.link import LINKS
 from beltdyn.machines.loads.load import LOADS
 from beltdyn.machines.profiles.profile import PROFILES
@@ -66,9 +67,9 @@ def test_the_reference_tells_of_every_name() -> None:
     sections = dict(re.findall(r"currentmodule:: (\S+)\n(.*?)```", reference, flags=re.DOTALL))
     listed = set(re.findall(r"^    (\w+)$", reference, flags=re.MULTILINE))
     modules = {name for name in dir(bd) if isinstance(getattr(bd, name), ModuleType)}
-    families: list[Registry[Any]] = [LOADS, LINKS, TENSIONERS, PROFILES]
+    families: list[Registry[Any]] = [LOADS, LINKS, TENSIONERS, PROFILES, SUPPORTS]
     kinds = {kind.__name__ for family in families for kind in family.values()}
-    tables = ("load", "hub", "tensioner", "profile", "analysis", "figure")
+    tables = ("load", "hub", "tensioner", "support", "profile", "analysis", "figure")
     assert all(f"{{{{ kinds.{table} }}}}" in reference for table in tables)
     assert set(dir(bd)) - modules - set(ANALYSES) <= listed
     assert kinds <= set(bd.model.__all__)

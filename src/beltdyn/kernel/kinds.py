@@ -110,7 +110,10 @@ class KindRows:
     """
 
     def __init__(
-        self, kinds: KernelKinds[Any], constants: Callable[[Any], np.dtype[np.void] | None], **fields: str
+        self,
+        kinds: KernelKinds[Any],
+        constants: Callable[[Any], np.dtype[np.void] | None],
+        **fields: str | np.dtype[np.void],
     ) -> None:
         self._kinds, self._constants, self._fields = kinds, constants, fields
 

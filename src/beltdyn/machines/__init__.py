@@ -5,6 +5,8 @@ force with exact derivatives.  Each family has a module `kinds`, which imports i
 knows the kinds is made from it.
 """
 
+from beltdyn.machines.carrying import Goods, Guide, Idlers
+from beltdyn.machines.carrying.support import Support
 from beltdyn.machines.links import FrictionClutch, Isolator, OneWayClutch
 from beltdyn.machines.links.link import HubLink
 from beltdyn.machines.loads import (
@@ -53,8 +55,11 @@ __all__ = [
     "FrictionClutch",
     "FunctionLoad",
     "Generator",
+    "Goods",
+    "Guide",
     "Harmonic",
     "HubLink",
+    "Idlers",
     "InductionMotor",
     "Isolator",
     "Load",
@@ -73,6 +78,7 @@ __all__ = [
     "ServoMotor",
     "SlidingTensioner",
     "Step",
+    "Support",
     "Table",
     "Tensioner",
     "Trapezoid",

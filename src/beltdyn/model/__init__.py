@@ -13,7 +13,10 @@ from beltdyn.machines import (
     FrictionClutch,
     FunctionLoad,
     Generator,
+    Goods,
+    Guide,
     Harmonic,
+    Idlers,
     InductionMotor,
     Isolator,
     LoadTable,
@@ -34,6 +37,7 @@ from beltdyn.machines import (
     Table,
     Trapezoid,
 )
+from beltdyn.machines.carrying.support import SUPPORTS
 from beltdyn.machines.links.link import LINKS
 from beltdyn.machines.loads.load import LOADS
 from beltdyn.machines.profiles.profile import PROFILES
@@ -86,7 +90,10 @@ __all__ = [
     "FrictionClutch",
     "FunctionLoad",
     "Generator",
+    "Goods",
+    "Guide",
     "Harmonic",
+    "Idlers",
     "InductionMotor",
     "Installation",
     "Isolator",
@@ -143,7 +150,7 @@ __all__ = [
     "unstable_balance",
 ]
 
-for _family in (LINKS, LOADS, PROFILES, TENSIONERS):
+for _family in (LINKS, LOADS, PROFILES, SUPPORTS, TENSIONERS):
     for _kind in _family.values():
         if _kind.__name__ not in __all__:  # of a file that was added to the package
             globals()[_kind.__name__] = _kind

@@ -13,11 +13,13 @@ from beltdyn.arrays import FloatArray
 from beltdyn.contact.friction import FrictionParameters
 from beltdyn.elements import ELEMENTS, ElementKind
 from beltdyn.errors import ModelError
-from beltdyn.machines import FunctionLoad, MovingTensioner, Tensioner
+from beltdyn.machines import FunctionLoad, Goods, MovingTensioner, Tensioner
+from beltdyn.machines.carrying.registry import AnySupport
 from beltdyn.machines.tensioners.registry import AnyTensioner
 from beltdyn.model.as_supplied import Rotation, as_supplied
 from beltdyn.model.belt import Belt
 from beltdyn.model.carriage import Carriage, check_carriage
+from beltdyn.model.carrying import check_carrying, check_lift
 from beltdyn.model.completion import Completed, complete
 from beltdyn.model.contact import Contact
 from beltdyn.model.duty import DutyPoint, check_duty
@@ -46,8 +48,8 @@ class Drive(Part):
     """A belt drive, validated, with all derived values.
 
     The constructor's arguments are `belt`, `pulley` (a list of pulleys, counter-clockwise), `contact`, `tensioner`,
-    `end` and `duty` (lists), `simulation`, `steady` and `limits`, each a part or a mapping of its arguments, `gravity`,
-    `rotation`, and `name` and `description`.
+    `end`, `support`, `goods` and `duty` (lists), `simulation`, `steady` and `limits`, each a part or a mapping of its
+    arguments, `gravity`, `rotation`, and `name` and `description`.
 
     The parts hold only the given values, from which copies (`replace`) and files are made. Derived values are
     attributes of the drive: `belt_length`, also if the tension is given instead; `path` and `centers`, with pulleys of
@@ -82,6 +84,10 @@ class Drive(Part):
     carriage: Carriage | None = Field(
         None, description="the group [carriage], to which both ends of the belt of a linear axis are clamped"
     )
+    supports: tuple[AnySupport, ...] = Field(
+        (), alias="support", description="the groups [[support]], idlers and guides along spans"
+    )
+    goods: tuple[Goods, ...] = Field((), description="the groups [[goods]], goods that spans carry")
     duty: tuple[DutyPoint, ...] = Field(
         (), description="the groups [[duty]], operating points with their shares of time"
     )
@@ -205,6 +211,35 @@ class Drive(Part):
         if self.given_ends:
             raise ModelError("[[end]] and [carriage] exclude each other: the carriage holds both ends. Remove one")
         return self.carriage.ends(self.pulleys[0].center) if self.pulleys else ()
+
+    @model_validator(mode="after")
+    def _carries_on_spans(self) -> Self:
+        if not self.carries:
+            return self
+        if self.ends:
+            raise ValueError("[[end]] opens the belt, but only closed belts have [[support]] and [[goods]]. Remove one")
+        if not self.frame.stays:
+            raise ValueError(
+                "[[support]] and [[goods]] need a mesh that stays, through which the belt flows; the mesh of this "
+                f"drive travels, {self.frame.reason}. Remove that setting"
+            )
+        check_carrying(self.supports, self.goods, self.spans, self.path, self.gravity)
+        if any(one.curve_radius for one in self.supports):
+            found = self.completed
+            given = self.layout.given._replace(belt=found.belt, contact=found.contact)
+            tension = given.estimate(self.path).tension
+            check_lift(self.supports, self.spans, self.path, self.gravity, self.belt.mass_per_length, tension)
+        return self
+
+    @property
+    def carries(self) -> bool:
+        """Whether spans have supports or goods."""
+        return bool(self.supports or self.goods)
+
+    @property
+    def stays_at_rest(self) -> bool:
+        """Whether its equilibrium at rest needs a mesh that stays: that of teeth, and of what spans carry."""
+        return self.belt.teeth is not None or self.carries
 
     @property
     def title(self) -> str:
@@ -381,6 +416,7 @@ class Drive(Part):
     def breakpoints(self) -> tuple[float, ...]:
         """Instants of kinks and jumps in prescribed functions of time, s, ascending."""
         profiles = [profile for pulley in self.pulleys for profile in pulley.profiles]
+        profiles += [one.schedule for one in self.goods if one.schedule is not None]
         return tuple(sorted({float(t) for profile in profiles for t in profile.breakpoints()}))
 
     @cached_property

@@ -11,10 +11,12 @@ from beltdyn.arrays import BoolArray, FloatArray
 from beltdyn.contact.friction import FrictionParameters
 from beltdyn.elements import ElementKind
 from beltdyn.errors import ModelError
-from beltdyn.machines import MovingTensioner, Tensioner
+from beltdyn.machines import Goods, MovingTensioner, Support, Tensioner
+from beltdyn.machines.carrying.support import OnSpan
 from beltdyn.model.belt import Belt
 from beltdyn.model.carriage import Carriage
 from beltdyn.model.carrier import Carrier, carriers_of, moved
+from beltdyn.model.carrying import Stretch, stretch_of
 from beltdyn.model.completion import take_up
 from beltdyn.model.contact import Contact
 from beltdyn.model.defaults import Choice, critical_damping
@@ -24,7 +26,7 @@ from beltdyn.model.installation import Installation, span_frequencies
 from beltdyn.model.layout import loaded
 from beltdyn.model.path import Path
 from beltdyn.model.pulley import Pulley
-from beltdyn.model.resolution import Laid, graded_mesh, layer_length, layer_lengths
+from beltdyn.model.resolution import CARRIED_ELEMENTS, SPAN_ELEMENTS, Laid, graded_mesh, layer_length, layer_lengths
 from beltdyn.model.simulation import Frame, Simulation
 from beltdyn.model.static_estimate import StaticEstimate
 from beltdyn.model.tensioner_balance import TensionerBalance, all_balances, balance_tensioners
@@ -104,6 +106,25 @@ class Prepared:
         return self.drive.spans
 
     @property
+    def supports(self) -> tuple[Support, ...]:
+        """Idlers and guides along spans."""
+        return self.drive.supports
+
+    @property
+    def goods(self) -> tuple[Goods, ...]:
+        """Goods that spans carry."""
+        return self.drive.goods
+
+    @property
+    def carries(self) -> bool:
+        """Whether spans have supports or goods."""
+        return self.drive.carries
+
+    def stretch(self, one: OnSpan) -> Stretch:
+        """Where a support or goods lie at rest."""
+        return stretch_of(one, self.spans, self.installation.path)
+
+    @property
     def moving_tensioners(self) -> tuple[MovingTensioner, ...]:
         """The spring-loaded tensioners."""
         return tuple(one.tensioner for one in self.carriers)
@@ -120,7 +141,13 @@ class Prepared:
 
     @property
     def installed_tension(self) -> float | None:
-        """Tension at rest that the drive or its nominal position ask for, N; None where the length gives it."""
+        """Tension at rest that the drive or its nominal position ask for, N; None where the length gives it.
+
+        A tensioner of a belt that carries meets its nominal position by the estimated length: weight along slopes
+        changes the tension, and not the length.
+        """
+        if self.carries and self.drive.layout.nominal is not None:
+            return None
         return self.drive.layout.given.belt.installed_tension
 
     @property
@@ -231,7 +258,12 @@ class Prepared:
 
     def graded_lengths(self, fineness: float) -> FloatArray:
         """Lengths of elements graded towards the ends of arcs of the belt at rest, m; see `graded_mesh`."""
-        return graded_mesh(self.belt_length, self.laid.arcs(), self.layer, fineness)
+        return graded_mesh(self.belt_length, self.laid.arcs(), self.layer, fineness, self.elements_per_span)
+
+    @property
+    def elements_per_span(self) -> int:
+        """Least elements per span at a fineness of 1."""
+        return CARRIED_ELEMENTS if self.carries else SPAN_ELEMENTS
 
     def over(self, simulation: Simulation) -> "Prepared":
         """The same drive with other instants of output: nothing else follows from these."""

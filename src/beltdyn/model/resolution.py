@@ -39,8 +39,10 @@ _GROWTH = 0.7
 """Growth of elements away from the end of an arc, over the distance from there."""
 _WIDEST = pi / 3.0
 """Angle of an element on an arc, rad, at most."""
-_FEWEST = 3
+SPAN_ELEMENTS = 3
 """Least elements per span."""
+CARRIED_ELEMENTS = 20
+"""Least elements per span of a belt that carries goods or lies on supports: for waves of stretch along it."""
 _ENOUGH = 0.2
 """Length to resolve over sqrt(T / k_p), if the bending length is shorter: its effect goes with their ratio squared."""
 _KINK = 0.1
@@ -97,19 +99,33 @@ def layer_length(bending: float, sinking: float) -> float:
     return sqrt(bending * sinking) if sinking < bending else max(bending, _ENOUGH * sinking)
 
 
-def graded_mesh(length: float, arcs: list[Arc], layer: float, fineness: float = FINENESS) -> FloatArray:
-    """Divide a closed belt into elements, with layers (m) at the ends of arcs; lengths in m, the first from zero."""
-    first = _FIRST * layer
+def graded_mesh(
+    length: float, arcs: list[Arc], layer: float, fineness: float = FINENESS, per_span: int = SPAN_ELEMENTS
+) -> FloatArray:
+    """Divide a closed belt into elements, with layers (m) at the ends of arcs; lengths in m, the first from zero.
+
+    A span has at least `per_span` elements at a fineness of 1.
+    """
+    first, closer = _FIRST * layer, per_span > SPAN_ELEMENTS
     around = length - arcs[-1].end + arcs[0].start
-    pieces = [_divide(arcs[0].start, first, around / _FEWEST, fineness, (False, True))]
+    pieces = [_divide(arcs[0].start, first, around / per_span, fineness, (False, True), closer=closer)]
     for number, arc in enumerate(arcs):
         kinked = tuple(kink - arc.start for kink in arc.kinks), _KINK * arc.radius
         pieces.append(_divide(arc.end - arc.start, first, _WIDEST * arc.radius, fineness, (True, True), kinked))
         if number + 1 < len(arcs):
             span = arcs[number + 1].start - arc.end
-            pieces.append(_divide(span, first, span / _FEWEST, fineness, (True, True)))
-    pieces.append(_divide(length - arcs[-1].end, first, around / _FEWEST, fineness, (True, False)))
+            pieces.append(_divide(span, first, span / per_span, fineness, (True, True), closer=closer))
+    pieces.append(_divide(length - arcs[-1].end, first, around / per_span, fineness, (True, False), closer=closer))
     return np.concatenate(pieces)
+
+
+def _sampled(length: float, first: float, *, closer: bool) -> FloatArray:
+    """Places on a piece of belt at which its grading is looked at: evenly, and closer at its ends if it is long."""
+    place = np.linspace(0.0, length, _SAMPLES + 1)
+    if not closer or length < _SAMPLES * first:
+        return place
+    near = np.geomspace(0.1 * first, 0.5 * length, _SAMPLES)
+    return np.unique(np.concatenate([place, near, length - near]))
 
 
 def _divide(
@@ -119,6 +135,8 @@ def _divide(
     fineness: float,
     graded: tuple[bool, bool],
     kinked: tuple[tuple[float, ...], float] = ((), 0.0),
+    *,
+    closer: bool = False,
 ) -> FloatArray:
     """Lengths of the elements of a piece of belt, with small ones at those of its ends that are ends of arcs.
 
@@ -126,7 +144,7 @@ def _divide(
     get no node.
     """
     kinks, kink_size = kinked
-    place = np.linspace(0.0, length, _SAMPLES + 1)
+    place = _sampled(length, first, closer=closer)
     from_start, from_end = (away if own else np.inf for own, away in zip(graded, (place, length - place), strict=True))
     size = np.minimum(first + _GROWTH * np.minimum(from_start, from_end), largest)
     for kink in kinks:

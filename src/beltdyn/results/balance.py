@@ -19,6 +19,7 @@ LOSSES: Mapping[str, str] = {
     "compression_loss": "belt compression",
     "tensioner_loss": "tensioners",
     "coupling_loss": "couplings",
+    "carrying_loss": "supports and goods",
     "numerical_loss": "time integration",
 }
 """Recorded works of the losses, and their causes in words."""

@@ -151,6 +151,7 @@ _OUTPUTS = {
     "compression_loss": Variable(_OVER_TIME, "J", "Belt compression loss", core=False),
     "tensioner_loss": Variable(_OVER_TIME, "J", "Tensioner loss"),
     "coupling_loss": Variable(_OVER_TIME, "J", "Coupling loss"),
+    "carrying_loss": Variable(_OVER_TIME, "J", "Work on supports and goods", core=False),
     "numerical_loss": Variable(_OVER_TIME, "J", "Time integration loss"),
     "energy_closure": Variable(_OVER_TIME, "1", "Energy balance error"),
     "step_size": Variable(_OVER_TIME, "s", "Time step", core=False),

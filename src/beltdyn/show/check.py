@@ -57,8 +57,8 @@ def check(drive: Drive, progress: Report | None = None, *, equilibrium: bool | N
     progress : callable, optional
         Called with a `Progress` before compilation and before the search.
     equilibrium : bool, optional
-        Whether to compute the static equilibrium; by default where its kernels are compiled. Belts with teeth are
-        judged by closed forms.
+        Whether to compute the static equilibrium; by default where its kernels are compiled. Belts with teeth, supports
+        or goods are judged by closed forms.
 
     Returns
     -------
@@ -74,7 +74,7 @@ def check(drive: Drive, progress: Report | None = None, *, equilibrium: bool | N
     (2, 2)
     """
     told = advise(drive, install(drive))
-    if drive.belt.teeth is None and (equilibrium or (equilibrium is None and is_compiled(drive))):
+    if not drive.stays_at_rest and (equilibrium or (equilibrium is None and is_compiled(drive))):
         try:
             rest = bring_to_rest(drive, progress)
         except ConvergenceError as error:

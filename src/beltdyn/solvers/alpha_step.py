@@ -11,7 +11,7 @@ after Chung and Hulbert (1993).
 """
 
 from math import inf, isfinite, isnan, sqrt
-from typing import Final, NamedTuple
+from typing import Any, Final, NamedTuple
 
 from beltdyn.kernel import by_type, kernel
 from beltdyn.machines.links.registry import torque_of_kind
@@ -20,7 +20,7 @@ from beltdyn.machines.profiles.functions import NO_SCHEDULE, after_jump, profile
 from beltdyn.solvers.integrator_state import IntegratorState, Settings, allowed_error, motion_of, trial_motion
 from beltdyn.system.arrays import NO_TANGENT, Equations, System, TangentFactors
 from beltdyn.system.assembly import assemble
-from beltdyn.system.frame import Flowing, Travelling
+from beltdyn.system.frame import Flowing, FlowingByArcs, Travelling
 from beltdyn.system.missed_action import extrapolated_load, missed_impulses
 from beltdyn.system.motion import subtract_multipliers, subtract_solution
 from beltdyn.system.ring_matrix import factorise_ring, substitute
@@ -253,7 +253,7 @@ def _none(frame: Travelling, system: System, state: IntegratorState, length: flo
 
 
 @kernel(inline=True)
-def _of_bodies(frame: Flowing, system: System, state: IntegratorState, length: float) -> float:
+def _of_bodies(frame: Any, system: System, state: IntegratorState, length: float) -> float:
     """The part of the change before that fits the change over this step best: of the belt's flow, shafts, tensioners.
 
     Their speeds decide on slip; accelerations of nodes tremble beside them.
@@ -267,7 +267,7 @@ def _of_bodies(frame: Flowing, system: System, state: IntegratorState, length: f
     return min(1.0, max(0.0, along / square)) if square > 0.0 else 0.0
 
 
-_persistence = by_type({Travelling: _none, Flowing: _of_bodies}, "persistence")
+_persistence = by_type({Travelling: _none, Flowing: _of_bodies, FlowingByArcs: _of_bodies}, "persistence")
 
 
 _MAX_ITERATIONS: Final = 16
@@ -359,7 +359,7 @@ def try_step(
         Iterations, or 0 if they did not converge.
     """
     predict(system, method, state, step.length, step.end)
-    allowed = settings.newton_fraction * allowed_error(settings, step.length)
+    allowed = max(settings.newton_fraction * allowed_error(settings, step.length), settings.rounding)
     before, slope, steepest, renewed = inf, 0.0, inf, True
     quick, slowest, growing = state.clock.contraction <= _QUICK, 0.0, 0
     state.clock.contraction = 1.0

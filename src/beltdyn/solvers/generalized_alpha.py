@@ -13,6 +13,7 @@ from beltdyn.solvers.engine import advance, restart
 from beltdyn.solvers.integrator_state import IntegratorState, Settings, Steps, empty_steps, new_state
 from beltdyn.solvers.trajectory import Chunk, Task
 from beltdyn.system.arrays import BodyForces, Equations, System
+from beltdyn.system.frame import FlowingByArcs
 from beltdyn.system.motion import new_equations
 from beltdyn.system.state import crossing_time
 
@@ -25,6 +26,8 @@ _NEWTON_FRACTION = 0.01
 _CROSSINGS = 2.0
 """The drive vibrates on its belt about as slowly as an axial wave crosses it so often.  Until that turns, errors that
 pull the same way add up: a step is long from sqrt(rtol) times this time."""
+_ROUNDING = 1e-10
+"""Of coordinates along a long belt, over its size: rounding of places times the stiffness of short elements."""
 _FINE = 1e-4
 """The default tolerance; looser ones leave vibrations to numerical damping."""
 _NUMERICAL_SHARE = 10.0
@@ -68,10 +71,18 @@ class GeneralizedAlpha:
             output_interval=task.instants.interval,
             numerical_share=_NUMERICAL_SHARE * self.rtol if self.rtol <= _FINE else np.inf,
             averaging_time=period,
+            rounding=_rounding(task.system),
         )
         first_step = min(_FIRST_STEP, settings.max_step)
         state = new_state(task.system, begin, first_step, task.start.position, task.start.velocity)
         return AlphaIntegration(self, task, settings, task.system, state)
+
+
+def _rounding(system: System) -> float:
+    """Change of the position of a long belt, whose coordinates are large, that rounding makes, m; zero of others."""
+    if not isinstance(system.frame, FlowingByArcs):
+        return 0.0
+    return _ROUNDING * float(np.ptp(system.frame.arcs.place, axis=0).max())
 
 
 @dataclass

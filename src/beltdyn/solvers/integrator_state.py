@@ -56,6 +56,8 @@ class Settings(NamedTuple):
     """Part of the losses that numerical damping may take in the mean."""
     averaging_time: float = np.inf
     """Time over which this mean is taken, s."""
+    rounding: float = 0.0
+    """Change of the position below which rounding alone moves nodes, m."""
 
 
 class Trial(NamedTuple):

@@ -18,7 +18,7 @@ from beltdyn.system.arrays import System
 from beltdyn.system.state import State
 
 _TOLERANCE = 0.01
-"""Default tolerance of contact forces of a belt with teeth, whose mesh is graded."""
+"""Default tolerance of contact forces of a belt that needs a graded mesh at rest."""
 
 
 def equilibrium(drive: Drive, *, force_tolerance: float | None = None, progress: Report | None = None) -> StaticResult:
@@ -31,7 +31,7 @@ def equilibrium(drive: Drive, *, force_tolerance: float | None = None, progress:
     force_tolerance
         Tolerance of contact forces, relative to the largest on each pulley, to which a mesh graded towards the ends of
         arcs is refined; by default simulation.force_tolerance. Without either the mesh has equal elements, as many as
-        the drive; of a belt with teeth the mesh is graded, to a tolerance of 0.01.
+        the drive; of a belt with teeth, supports or goods the mesh is graded, to a tolerance of 0.01.
     progress
         Called repeatedly with a `Progress`.
 
@@ -55,7 +55,7 @@ def equilibrium(drive: Drive, *, force_tolerance: float | None = None, progress:
     [27.0, 27.0]
     """
     tolerance = drive.simulation.force_tolerance if force_tolerance is None else force_tolerance
-    if tolerance is not None or drive.belt.teeth is not None:
+    if tolerance is not None or drive.stays_at_rest:
         return _refined(drive, _TOLERANCE if tolerance is None else tolerance, progress)
     prepared = prepare(on_equal_elements(drive))
     rest = rest_of(prepared, progress)
@@ -72,7 +72,7 @@ def _refined(drive: Drive, tolerance: float, progress: Report | None) -> StaticR
             "increase belt.elements."
         )
     prepared, unstable = prepare(drive), tuple[str, ...]()
-    if drive.belt.teeth is None:
+    if not drive.stays_at_rest:
         unstable = bring_to_rest(drive, progress).unstable
     rest, errors = refine_at_rest(stand(bring_to_stand(prepared).prepared), tolerance)
     said = {"drive_as_given": drive.text} | {mesh_error_attribute(name): error for name, error in errors.items()}

@@ -9,6 +9,7 @@ import numpy as np
 
 from beltdyn.arrays import FloatArray
 from beltdyn.kernel import kernel
+from beltdyn.system.arc_mesh import arc_count, change_shifts, largest_shift
 from beltdyn.system.arrays import Equations, Motion, System
 from beltdyn.system.meshing import change_body, change_flow, reach_of
 from beltdyn.system.motion import new_equations
@@ -37,7 +38,7 @@ class SteadyWork(NamedTuple):
 def steady_work(system: System) -> SteadyWork:
     """Make the arrays for a system."""
     given, dof = new_equations(system), len(system.scale)
-    border = int(np.max(system.bodies.unknown, initial=-1)) + 2
+    border = int(np.max(system.bodies.unknown, initial=-1)) + 2 + arc_count(system.frame)
     equations = given._replace(matrix=ring_matrix(dof, system.nodes, border), border_part=np.zeros(border))
     return SteadyWork(equations, np.zeros((system.nodes, dof)), np.zeros(border))
 
@@ -156,6 +157,7 @@ def make_step(
                 change_body(system.rims, motion.velocity, first, body, factor * border_part[unknown])
             else:
                 motion.position[first + body] += factor * border_part[unknown]
+    change_shifts(system.frame, border_part, factor)
     if not at_rest:
         change_flow(system.rims, system.frame.speed, factor * border_part[border_part.size - 1])
 
@@ -170,6 +172,7 @@ def _size(system: System, node_part: FloatArray, border_part: FloatArray) -> flo
     for node in range(system.nodes):
         total += node_part[node, 0] * node_part[node, 0] + node_part[node, 1] * node_part[node, 1]
     size = (total / system.nodes) ** 0.5
+    size = max(size, largest_shift(system.frame, border_part))
     tensioners, speed = system.bodies.size - system.tensioners.size, abs(system.frame.speed[0])
     for body in range(system.bodies.size):
         unknown, reach = system.bodies[body].unknown, system.bodies[body].reach

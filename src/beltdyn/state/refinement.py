@@ -22,6 +22,7 @@ from beltdyn.state.staying import (
     require_one_pulley_at_a_time,
     stand,
 )
+from beltdyn.system.arc_mesh import base_coordinates
 from beltdyn.system.arrays import System
 from beltdyn.system.frame import centreline_places
 from beltdyn.system.observations import Observations
@@ -160,9 +161,14 @@ def _mesh(prepared: Prepared, now: Solution, rule: MeshRule) -> FloatArray:
     """Lengths of elements by a rule, m, with nodes where the belt touches and slides as it does now."""
     if rule.elements:
         return prepared.equal_lengths(round(rule.elements * rule.fineness))
-    kinks = _kinks(now)
-    within = [arc._replace(kinks=tuple(k for k in kinks if arc.start < k < arc.end)) for arc in now.arcs]
-    return graded_mesh(prepared.belt_length, within, rule.layer, rule.fineness)
+    kinks = base_coordinates(now.system, np.array(_kinks(now))).tolist()
+    arcs = [
+        arc._replace(start=float(start), end=float(end))
+        for arc in now.arcs
+        for start, end in [base_coordinates(now.system, np.array([arc.start, arc.end]))]
+    ]
+    within = [arc._replace(kinks=tuple(k for k in kinks if arc.start < k < arc.end)) for arc in arcs]
+    return graded_mesh(prepared.belt_length, within, rule.layer, rule.fineness, prepared.elements_per_span)
 
 
 def _kinks(now: Solution) -> list[float]:

@@ -15,7 +15,9 @@ from beltdyn.parts.messages import listing
 from beltdyn.state.newton import FOUND, SteadyWork, find_steady, make_step, steady_work
 from beltdyn.state.slip_limit import GROSS, Passed, Setting, gross_slip, slip_limit
 from beltdyn.state.staying import TOLERANCE, Standing, anchor_at, transfer
+from beltdyn.system.arc_mesh import fitted, shifts_of
 from beltdyn.system.arrays import System
+from beltdyn.system.build_carrying import with_resistance
 from beltdyn.system.build_staying import loses_in_bending, on_other_mesh, with_bending_loss
 from beltdyn.system.constant_drive import (
     constant_drive,
@@ -111,6 +113,7 @@ class SteadySearch:
         self._supported: int | None = None
         self._held_speed = self._support = 0.0
         self._moments = np.zeros(system.pulleys.size)
+        self._shifts_at_rest = shifts_of(system.frame).copy()
         own = system._replace(rims=on_lengths(system.rims, system.length))
         self.constant, self._tensioners = constant_drive(own, time), system.tensioners
         self._wanted = self.constant.profiles.segment.offset.copy()
@@ -149,7 +152,8 @@ class SteadySearch:
 
     def unknowns(self) -> FloatArray:
         """All that steady running consists of, as one vector: position, velocity, speed of the belt, phases."""
-        parts = self.state.position, self.state.velocity, self.constant.frame.speed, phases(self.constant)
+        frame = self.constant.frame
+        parts = self.state.position, self.state.velocity, frame.speed, phases(self.constant), shifts_of(frame)
         return np.concatenate(parts)
 
     def place(self, unknowns: FloatArray) -> None:
@@ -157,7 +161,10 @@ class SteadySearch:
         size = self.state.position.size
         self.state.position[:], self.state.velocity[:] = unknowns[:size], unknowns[size : 2 * size]
         self.constant.frame.speed[:] = unknowns[2 * size : 2 * size + 1]
-        phases(self.constant)[:] = unknowns[2 * size + 1 :]
+        others = unknowns[2 * size + 1 :]
+        grooves, shifts = phases(self.constant), shifts_of(self.constant.frame)
+        grooves[:], shifts[:] = others[: grooves.size], others[grooves.size :]
+        fitted(self.constant, self.state.position)
 
     def resume(self, tangent: SteadyWork | None = None) -> bool:
         """Find steady running under the required loads from that under others; False if that fails."""
@@ -384,6 +391,7 @@ class SteadySearch:
         """Begin at a setting, from a place at rest, with a belt of a speed (m/s) that sticks to all pulleys."""
         state, running, path = self.state, setting.speed * speed, self.prepared.path
         state.position[:] = place
+        shifts_of(self.constant.frame)[:] = self._shifts_at_rest
         self.constant.frame.speed[0] = running * self.prepared.belt_length / path.length
         state.velocity[self._system.first_body :][: path.count] = running / path.radii
         guess_hubs(self._at(setting), state.velocity)
@@ -454,6 +462,7 @@ class SteadySearch:
         status, iterations = find_steady(system, state.at(0.0), anchor, allowed, _MOST, factorised, self._work)
         self.iterations += iterations
         if status == FOUND:
+            fitted(self.constant, self.state.position)
             self.setting, self._moments = setting, self._work.equations.forces.moment.copy()
             if setting.smoothing == 1.0:
                 self._passed.append(self._here())
@@ -478,6 +487,7 @@ class SteadySearch:
             law=system.law._replace(friction=friction),
             hysteresis=hysteresis,
             profiles=system.profiles._replace(segment=segment),
+            carrying=with_resistance(system.carrying, setting.load),
         )
         return system if setting.bending_loss == 1.0 else with_bending_loss(system, setting.bending_loss)
 

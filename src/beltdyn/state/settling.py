@@ -21,6 +21,7 @@ from beltdyn.solvers.trajectory import Chunk, Integrator, Statistics, Task, driv
 from beltdyn.state.refinement import MeshRule, errors_at_rest, refine_at_rest, steady_from_rest
 from beltdyn.state.search import SteadySearch
 from beltdyn.state.staying import FINER, Standing, anchor_at, bring_to_stand, stand
+from beltdyn.system.arc_mesh import base_lengths, mesh_attributes, shifts_of
 from beltdyn.system.arrays import System
 from beltdyn.system.build_machines import profile_arrays
 from beltdyn.system.build_staying import flowing_system, on_other_mesh
@@ -82,7 +83,7 @@ class Settling:
     ) -> Start:
         """Settle."""
         before = self._before(prepared.drive)
-        slower = system._replace(profiles=profile_arrays(before.counter_clockwise_pulleys))
+        slower = system._replace(profiles=profile_arrays(before.counter_clockwise_pulleys, before.goods))
         task = drive_task(prepared, slower, state, Statistics())
         window = self._window(prepared.pulleys[self.pulley])
         stops = self.lead + window * np.arange(1, np.ceil(self.longest / window) + 1)
@@ -161,7 +162,7 @@ def settle(
 
 def with_angles(prepared: Prepared, system: System, before: System | None = None, time: float = 0.0) -> System:
     """Arrays of a drive whose prescribed angles go on from what they were in another system."""
-    profiles = profile_arrays(prepared.pulleys)
+    profiles = profile_arrays(prepared.pulleys, prepared.goods)
     prescribed = [number for number, pulley in enumerate(prepared.pulleys) if pulley.prescribed]
     integral = interpreted(profile_integral)
     angles = [0.0 if before is None else integral(before.profiles, number, time) for number in prescribed]
@@ -211,7 +212,7 @@ def begin_flowing(prepared: Prepared, progress: Report | None) -> Beginning:
     flowing = with_angles(meshed.rest.prepared, flowing_system(toothed, direction))
     errors = meshed.errors or {"peak pressure": float("nan")}  # not known
     said = {mesh_error_attribute(name): error for name, error in errors.items()} | {DIRECTION: direction}
-    said |= tooth_phases(toothed)
+    said |= tooth_phases(toothed) | mesh_attributes(system)
     return Beginning(meshed.rest.prepared, flowing, with_passage(system, meshed.state, meshed.speed), attributes=said)
 
 
@@ -252,7 +253,8 @@ def _running(meshed: _Meshed, force_tolerance: float | None) -> _Meshed:
         search.run(rest)
     else:
         search, rest, _, errors, _ = steady_from_rest(rest, time, _same_mesh, force_tolerance, bands=False)
-        system = on_other_mesh(rest.prepared, rest.system, search.constant.length)
+        system = on_other_mesh(rest.prepared, rest.system, base_lengths(search.constant))
+        shifts_of(system.frame)[:] = shifts_of(search.constant.frame)
     system = system._replace(rims=search.constant.rims)
     return meshed._replace(rest=rest, system=system, state=search.running(), speed=search.belt_parameter, errors=errors)
 
@@ -265,6 +267,8 @@ def _same_mesh(rest: Standing) -> MeshRule:
 def with_passage(system: System, state: State, speed: float) -> State:
     """Add the length of belt that has passed, zero, and its speed (m/s) to a state on a staying mesh."""
     at = system.first_body + system.bodies.size - system.tensioners.size
-
-    vectors = zip((state.position, state.velocity, state.acceleration), (0.0, speed, 0.0), strict=True)
-    return State(*(np.insert(vector, at, value) for vector, value in vectors))
+    shifts = shifts_of(system.frame)
+    still = np.zeros_like(shifts)
+    passed = (np.append(shifts, 0.0), np.append(still, speed), np.append(still, 0.0))
+    vectors = zip((state.position, state.velocity, state.acceleration), passed, strict=True)
+    return State(*(np.insert(vector, np.full(value.size, at), value) for vector, value in vectors))

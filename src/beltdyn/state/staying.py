@@ -14,7 +14,9 @@ from beltdyn.state.installation import drawn_in, follow, from_starts, looked_at,
 from beltdyn.state.newton import FOUND, find_steady, steady_work
 from beltdyn.state.static import only_tensioners
 from beltdyn.state.tightening import Tightening, begin
+from beltdyn.system.arc_mesh import base_lengths, fitted, shifts_of
 from beltdyn.system.arrays import System
+from beltdyn.system.build_carrying import with_resistance
 from beltdyn.system.build_staying import staying_system
 from beltdyn.system.constant_drive import without_motion
 from beltdyn.system.discretization import nodal_coordinates, point_coordinates
@@ -160,7 +162,8 @@ def _balanced(prepared: Prepared, system: System, state: State, start: float = 1
 def stand_like(prepared: Prepared, like: Standing) -> Standing:
     """Find the equilibrium of a drive that differs a little, in the length of its belt, from that of the other."""
     nodes, bodies = np.split(like.place, [like.system.first_body])
-    system, state = carried(prepared, like.prepared, like.system.length, nodes)
+    system, state = carried(prepared, like.prepared, base_lengths(like.system), nodes)
+    shifts_of(system.frame)[:] = shifts_of(like.system.frame)
     state.position[system.first_body :] += bodies
     try:
         state, tension = _balanced(prepared, system, state)
@@ -213,7 +216,12 @@ def _balance(prepared: Prepared, system: System, state: State, anchor: Anchor, f
 def _found(prepared: Prepared, still: System, state: State, anchor: Anchor) -> bool:
     """Bring a state to equilibrium without friction, if Newton's method converges."""
     tolerance = TOLERANCE * float(np.min(prepared.radii))
-    return find_steady(still, state.at(0.0), anchor, tolerance, _MOST, False, steady_work(still))[0] == FOUND
+    shifts, begun = shifts_of(still.frame), shifts_of(still.frame).copy()
+    found = find_steady(still, state.at(0.0), anchor, tolerance, _MOST, False, steady_work(still))[0] == FOUND
+    if not found:
+        shifts[:] = begun
+    fitted(still, state.position)
+    return found
 
 
 def without_friction(system: System) -> System:
@@ -221,7 +229,9 @@ def without_friction(system: System) -> System:
     pulleys = system.pulleys.copy()
     pulleys["friction"] = 0.0
     tensioners = without_motion(system.tensioners)
-    return unloaded(system._replace(pulleys=pulleys, bodies=only_tensioners(system), tensioners=tensioners))
+    carrying = with_resistance(system.carrying, 0.0)
+    still = system._replace(pulleys=pulleys, bodies=only_tensioners(system), tensioners=tensioners, carrying=carrying)
+    return unloaded(still)
 
 
 def _lying(prepared: Prepared, system: System, factor: float) -> State:
@@ -280,6 +290,9 @@ def _beyond(along: FloatArray, depth: FloatArray, inner: int, outer: int) -> flo
 
 def transfer(system: System, state: State, other: System) -> State:
     """The same curve and motion on another mesh."""
+    shifts_of(other.frame)[:] = shifts_of(system.frame)
+    for one in (system, other):
+        fitted(one, state.position)
     place, slope, bend = centreline_points(system, state.position, point_coordinates(other))
     moved = at_rest(other, nodal_coordinates(other, place, slope, bend))
     for mine, given in zip((moved.position, moved.velocity), (state.position, state.velocity), strict=True):

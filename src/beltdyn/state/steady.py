@@ -21,6 +21,7 @@ from beltdyn.state.newton import SteadyWork
 from beltdyn.state.refinement import MeshRule, against_coarser, is_fine, refine, steady_from_rest
 from beltdyn.state.search import SteadySearch
 from beltdyn.state.staying import FINER, Standing, bring_to_stand, carried
+from beltdyn.system.arc_mesh import MESH_LENGTHS, MESH_SHIFTS, mesh_attributes, shifts_of
 from beltdyn.system.arrays import System
 from beltdyn.system.constant_drive import rigid_links
 from beltdyn.system.meshing import TOOTH_PHASES, has_teeth, phases
@@ -66,13 +67,16 @@ def search_from(prepared: Prepared, start: Run, time: float) -> SteadySearch:
     Its speeds are changed in proportion to those that are prescribed.
     """
     found = start.dataset
-    lengths = np.diff(found.node_coordinate.values, append=start.prepared.belt_length)
+    lengths = found.attrs.get(MESH_LENGTHS)
+    if lengths is None:
+        lengths = np.diff(found.node_coordinate.values, append=start.prepared.belt_length)
     system, state = carried(prepared, start.prepared, lengths, found.nodal_coordinates.values[-1].ravel())
     if system.tensioners.size:
         state.position[-system.tensioners.size :] += found.tensioner_position.values[-1]
     bodies, speeds = state.velocity[system.first_body :], found.pulley_speed.values[-1]
     bodies[: speeds.size] = speeds
     take_along(system, bodies, found.shaft_speed.values[-1])
+    shifts_of(system.frame)[:] = found.attrs.get(MESH_SHIFTS, 0.0)
     search = SteadySearch(prepared, system, state, time)
     if TOOTH_PHASES in found.attrs:
         phases(search.constant)[:] = np.atleast_1d(found.attrs[TOOTH_PHASES])
@@ -315,6 +319,7 @@ def _as_run(prepared: Prepared, instant: float, found: _Found) -> Run:
             **found.band,
             belt_parameter=search.belt_parameter,
             **({TOOTH_PHASES: phases(search.constant)} if has_teeth(search.constant) else {}),
+            **mesh_attributes(search.constant),
             newton_iterations_of_search=search.iterations,
             mesh_rule=np.array(found.rule),
             **{mesh_error_attribute(name): error for name, error in found.errors.items()},

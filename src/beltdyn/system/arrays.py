@@ -58,6 +58,32 @@ class NoCarriage(NamedTuple):
     """Zero."""
 
 
+class Bare(NamedTuple):
+    """A belt that nothing carries between its pulleys."""
+
+    rows: int = 0
+
+
+class Carrying(NamedTuple):
+    """Supports along spans, and goods on them, of a belt on a staying mesh."""
+
+    supports: Records
+    """Rows of `SUPPORT`."""
+    goods: Records
+    """Rows of `GOODS`."""
+    first_support: IntArray
+    """Where the supports of an element begin in `support`, shape (elements + 1,)."""
+    support: IntArray
+    """Numbers of the supports of one element after the other."""
+    first_goods: IntArray
+    """As for supports."""
+    on_element: IntArray
+    """Numbers of the goods of one element after the other."""
+    gravity: FloatArray
+    """m/s^2, shape (2,)."""
+    rule: Quadrature
+
+
 class System(NamedTuple):
     """A belt, its pulleys and what acts on them."""
 
@@ -107,6 +133,8 @@ class System(NamedTuple):
     """How the mesh stands to the belt: `frame.Travelling` or `frame.Staying`."""
     carriage: Any = NoCarriage()
     """What holds both ends of an open belt: `NoCarriage` or `guide.Guided`."""
+    carrying: Bare | Carrying = Bare()
+    """What carries the belt between pulleys, and what it carries; the type says whether there is any."""
 
 
 class Motion(NamedTuple):
@@ -207,7 +235,7 @@ class BodyForces(NamedTuple):
     force: FloatArray
     """Generalized force on each body, but the driver's reaction; N m, or N on a sliding tensioner; shape (D,)."""
     power: FloatArray
-    """Powers in the order of `POWERS`, W, shape (9,)."""
+    """Powers in the order of `POWERS`, W, shape (10,)."""
     stored: FloatArray
     """Energy in the penalty springs, and in the springs of hub chains and tensioners, J, shape (2,)."""
 
@@ -236,6 +264,7 @@ POWERS = (
     "compression_loss",
     "tensioner_loss",
     "coupling_loss",
+    "carrying_loss",
 )
 """Powers integrated over time by a run, by the name of their integral."""
 
@@ -243,7 +272,7 @@ ENERGY_WORKS = (*POWERS, "numerical_loss")
 """Their integrals, and what the damping of the time integrator takes."""
 
 DRIVER_WORK, TORQUE_WORK, FRICTION_LOSS, DAMPING_LOSS, STRETCH_LOSS, BENDING_LOSS = range(6)
-COMPRESSION_LOSS, TENSIONER_LOSS, COUPLING_LOSS = range(6, len(POWERS))
+COMPRESSION_LOSS, TENSIONER_LOSS, COUPLING_LOSS, CARRYING_LOSS = range(6, len(POWERS))
 NUMERICAL_LOSS = len(POWERS)
 """Places of the works in these orders, and of their powers."""
 

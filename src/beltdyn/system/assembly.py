@@ -15,11 +15,13 @@ from beltdyn.contact.contact_force import ContactFactors, contact_force
 from beltdyn.contact.contact_zone import out_of_reach
 from beltdyn.elements.dispatch import elastic_force
 from beltdyn.kernel import by_type, kernel
+from beltdyn.system.arc_mesh import fit_mesh, hold_arcs
+from beltdyn.system.arc_tangent import arcs_element
 from beltdyn.system.arrays import BodyForces, Equations, Motion, RingMatrix, System, TangentFactors
 from beltdyn.system.body_forces import add_contact, add_machines, clear_body_forces, differentiates_forces
 from beltdyn.system.element_state import add_material_damping, centreline, gather, gather_motion
 from beltdyn.system.flow_tangent import flowing_element, hold_mesh, hold_nothing
-from beltdyn.system.frame import Flowing, Travelling
+from beltdyn.system.frame import Flowing, FlowingByArcs, Travelling
 from beltdyn.system.guide import carry_ends
 from beltdyn.system.moving_center import couple_center, keep_drift, moving_center, pulley_state
 from beltdyn.system.ring_matrix import clear
@@ -55,6 +57,7 @@ def assemble(
     wanted = factors.by_acceleration != 0.0 or differentiates_forces(factors)
     clear(matrix, wanted)
     clear_body_forces(forces)
+    fit_mesh(system.frame, system, motion.position)
     for element in range(system.length.size):
         gather_motion(system, element, motion.position, motion.velocity, work.coordinates)
         gather(system, element, motion.acceleration, work.coordinates[2])
@@ -64,6 +67,7 @@ def assemble(
     add_machines(system, motion, factors, matrix.corner, forces)
     _bodies(system, motion.acceleration, factors.by_acceleration, matrix, forces)
     _hold_mesh(system.frame, motion, factors, matrix)
+    hold_arcs(system.frame, system, motion, factors, True, matrix)
     if system.joint:
         _joint(system, motion.acceleration, multipliers, factors.by_acceleration, wanted, matrix)
     add_nodal_loads(system, motion.position, factors.by_position, matrix)
@@ -139,10 +143,12 @@ def _contact(
             couple_center(system, element, center, factor, work.contact, work.drift, matrix)
 
 
-_add_element = by_type({Travelling: _travelling_element, Flowing: flowing_element}, "add_element")
+_add_element = by_type(
+    {Travelling: _travelling_element, Flowing: flowing_element, FlowingByArcs: arcs_element}, "add_element"
+)
 """Add inertia, losses and contact to residual and tangent of an element, which are those of its elasticity."""
 
-_hold_mesh = by_type({Travelling: hold_nothing, Flowing: hold_mesh}, "hold_mesh")
+_hold_mesh = by_type({Travelling: hold_nothing, Flowing: hold_mesh, FlowingByArcs: hold_mesh}, "hold_mesh")
 """Keep a staying mesh in its place along the belt."""
 
 

@@ -11,7 +11,7 @@ from beltdyn.contact.law import ContactLaw
 from beltdyn.contact.normal import NoPull
 from beltdyn.contact.surface import KINDS, SHAPES, RoundRims, ShapedRims
 from beltdyn.errors import ModelError
-from beltdyn.machines import Tensioner
+from beltdyn.machines import Goods, Tensioner
 from beltdyn.model import Belt, Contact, Path, Prepared, Pulley
 from beltdyn.model.hysteresis import Passing, passing_strains, rolling_resistances
 from beltdyn.model.pulley import friction_on, surface_part
@@ -68,6 +68,7 @@ def system_of(prepared: Prepared, belt: Belt, contact: Contact, closure: Closure
         gravity=prepared.gravity,
         passing=passing_strains(prepared) if belt.has_hysteresis else None,
         rolling=rolling_resistances(prepared),
+        goods=prepared.goods,
         **more,
     )
 
@@ -88,6 +89,7 @@ def belt_system(
     masses: Sequence[tuple[int, float]] = (),
     passing: Passing | None = None,
     rolling: FloatArray | None = None,
+    goods: Sequence[Goods] = (),
 ) -> System:
     """Arrays of any belt: closed or open, on pulleys or not, with nodes fixed, loaded or free.
 
@@ -122,6 +124,8 @@ def belt_system(
         How strains pass along a belt with loss factors; see `hysteresis_rows`.
     rolling : ndarray, shape (pulleys,), optional
         Coefficients of rolling resistance; by default there is none.
+    goods
+        Goods on spans, whose schedules are among the profiles.
 
     Returns
     -------
@@ -153,7 +157,7 @@ def belt_system(
     nodes = elements if closure == "shared_node" else elements + 1
     radii = effective_radii(pulleys, belt)
     frictions = [friction_on(pulley, belt, contact) for pulley in pulleys] if contact else []
-    machines = machine_arrays(pulleys, tensioners, path, gravity)
+    machines = machine_arrays(pulleys, tensioners, path, gravity, goods)
     resistances = np.zeros(len(pulleys)) if rolling is None else rolling
     shafts = pulley_arrays(pulleys, radii, frictions, resistances, machines.tensioners)
     bodies = body_arrays(pulleys, radii, tensioners)

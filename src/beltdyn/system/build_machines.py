@@ -7,7 +7,7 @@ import numpy as np
 
 from beltdyn.arrays import FloatArray, IntArray
 from beltdyn.errors import ModelError
-from beltdyn.machines import MovingTensioner, Tensioner
+from beltdyn.machines import Goods, MovingTensioner, Tensioner
 from beltdyn.machines.links.registry import PlacedLink, link_rows
 from beltdyn.machines.loads.shaft import ShaftLoads, shaft_loads
 from beltdyn.machines.profiles.functions import NO_SCHEDULE, Profiles, profile_rows
@@ -32,22 +32,29 @@ def machine_arrays(
     tensioners: Sequence[Tensioner] = (),
     path: Path | None = None,
     gravity: tuple[float, float] = (0.0, 0.0),
+    goods: Sequence[Goods] = (),
 ) -> Machines:
-    """Arrays of everything on and behind the pulleys."""
+    """Arrays of everything on and behind the pulleys, and of the schedules of goods."""
     of_loads, of_links = _switching_numbers(pulleys)
     return Machines(
-        profile_arrays(pulleys),
+        profile_arrays(pulleys, goods),
         shaft_loads([pulley.load for pulley in pulleys], of_loads, body_inertias(pulleys).size),
         link_rows(_placed(pulleys, of_links)),
         _tensioners(pulleys, tensioners, path, gravity),
     )
 
 
-def profile_arrays(pulleys: Sequence[Pulley]) -> Profiles:
+def profile_arrays(pulleys: Sequence[Pulley], goods: Sequence[Goods] = ()) -> Profiles:
     """Arrays of all that is prescribed over time."""
     own = [pulley.speed if pulley.prescribed else pulley.torque for pulley in pulleys]
     switching = [item for pulley in pulleys for item in pulley.switching if item is not None]
+    switching += [one.schedule for one in goods if one.schedule is not None]
     return profile_rows([*own, *switching], [*(pulley.harmonics for pulley in pulleys), *([()] * len(switching))])
+
+
+def scheduled(pulleys: Sequence[Pulley]) -> int:
+    """Number of profiles of pulleys, behind which those of goods come."""
+    return len(pulleys) + sum(item is not None for pulley in pulleys for item in pulley.switching)
 
 
 def pulley_arrays(

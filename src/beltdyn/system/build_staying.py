@@ -9,10 +9,12 @@ from beltdyn.elements.quintic import QUINTIC, Quintic
 from beltdyn.model import Belt, Prepared
 from beltdyn.model.hysteresis import bending_at_points, passing_strains
 from beltdyn.records import records
+from beltdyn.system.arc_mesh import arc_count, staying_by_arcs, with_own_mesh
 from beltdyn.system.arrays import BODY, System
 from beltdyn.system.build import nodal_supports, system_of, weight_forces
+from beltdyn.system.build_carrying import carrying_arrays, on_other_lengths
 from beltdyn.system.discretization import discretize
-from beltdyn.system.frame import flowing, staying
+from beltdyn.system.frame import FlowingByArcs, StayingByArcs, flowing, staying
 from beltdyn.system.hysteresis import hysteresis_rows
 from beltdyn.system.meshing import meshing, on_lengths
 
@@ -28,7 +30,15 @@ def staying_system(prepared: Prepared, lengths: FloatArray) -> System:
     if prepared.belt.bending_loss_factor > 0.0:
         modulus, length = bending_at_points(prepared)
         system = _with_section(system, bending_hysteresis=modulus, passing_length=length)
-    return meshing(prepared, system._replace(frame=staying(system.control, system.length, belt.mass_per_length)))
+    frame = staying(system.control, system.length, belt.mass_per_length)
+    return meshing(prepared, _carrying(prepared, system._replace(frame=frame)))
+
+
+def _carrying(prepared: Prepared, system: System) -> System:
+    """The same with supports and goods, on a mesh that stays at every arc; the one given without any."""
+    if not prepared.carries:
+        return system
+    return staying_by_arcs(prepared, system._replace(carrying=carrying_arrays(prepared, system.length)))
 
 
 def on_other_mesh(prepared: Prepared, system: System, lengths: FloatArray) -> System:
@@ -37,7 +47,7 @@ def on_other_mesh(prepared: Prepared, system: System, lengths: FloatArray) -> Sy
     mesh = discretize(belt, lengths)
     passing = passing_strains(prepared) if belt.has_hysteresis else None
     supports = nodal_supports(lengths.size, len(mesh.scale), (), (), ())
-    return system._replace(
+    other = system._replace(
         **mesh._asdict() | {"element": system.element},
         nodes=lengths.size,
         first_body=lengths.size * len(mesh.scale),
@@ -45,7 +55,9 @@ def on_other_mesh(prepared: Prepared, system: System, lengths: FloatArray) -> Sy
         supports=supports._replace(force=weight_forces(mesh, lengths.size, prepared.gravity)),
         frame=staying(mesh.control, mesh.length, belt.mass_per_length),
         rims=on_lengths(system.rims, lengths),
+        carrying=on_other_lengths(prepared, system.carrying, lengths),
     )
+    return staying_by_arcs(prepared, other) if prepared.carries else other
 
 
 def _staying_belt(prepared: Prepared, elements: int) -> Belt:
@@ -84,13 +96,21 @@ def _with_section(system: System, **numbers: Any) -> System:
 
 
 def flowing_system(system: System, direction: FloatArray) -> System:
-    """The same drive for equations over time: the length of belt passed is the last coordinate of the border.
+    """The same drive for equations over time: lengths of belt that have passed are the last coordinates of the border.
 
     `direction` is the unit vector along the belt at node 0.
     """
     at = system.bodies.size - system.tensioners.size
     last = int(np.max(system.bodies.unknown, initial=-1)) + 1
-    own = records(BODY, inertia=[0.0], kinetic=[0.0], unknown=[last], reach=[1.0])
-    frame = flowing(system.frame, system.mass, system.vectors, system.first_body + at, direction)
+    given, more = system.frame, arc_count(system.frame)
+    own = records(BODY, inertia=np.zeros(more + 1), unknown=last + np.arange(more + 1), reach=np.ones(more + 1))
+    place = system.first_body + at + more
+    if isinstance(given, StayingByArcs):
+        frame: Any = FlowingByArcs(
+            place, given.derivative.copy(), given.growth.copy(), given.inertia.copy(), direction, given.arcs
+        )
+        system = with_own_mesh(system)
+    else:
+        frame = flowing(given, system.mass, system.vectors, place, direction)
     bodies = np.concatenate([system.bodies[:at], own, system.bodies[at:]]).view(np.recarray)
     return system._replace(bodies=bodies, frame=frame)

@@ -12,7 +12,7 @@ from beltdyn.machines.loads.shaft import mean_loads, shaft_torque
 from beltdyn.machines.profiles.functions import PROFILE, profile_value
 from beltdyn.machines.profiles.profile import SEGMENT
 from beltdyn.records import Records, records
-from beltdyn.system.arrays import System
+from beltdyn.system.arrays import Carrying, System
 from beltdyn.system.state import State
 
 # The speed at which motors and loads balance where nothing slips: the start of a search for steady running
@@ -60,6 +60,15 @@ def _pulls(system: System, radii: FloatArray, speed: float) -> FloatArray:
         for p, radius in enumerate(radii)
     ]
     return np.array(found)
+
+
+def without_actions(system: System) -> None:
+    """Take speeds, torques and loads of a constant drive away, in place; goods stay."""
+    kept = np.zeros(system.profiles.segment.size, dtype=bool)
+    if isinstance(system.carrying, Carrying):
+        schedules = np.asarray(system.carrying.goods.schedule)
+        kept[schedules[schedules >= 0]] = True
+    system.profiles.segment.offset[~kept] = 0.0
 
 
 _OF_MOTION = ("damping", "tensioning_friction", "yielding_friction", "stop_damping")

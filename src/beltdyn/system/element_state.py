@@ -10,9 +10,9 @@ from beltdyn.elements.dispatch import damping_force
 from beltdyn.elements.kind import DampingFactors, is_damped
 from beltdyn.kernel import kernel
 from beltdyn.records import blank, record
-from beltdyn.system.arrays import BENDING_LOSS, STRETCH_LOSS, BodyForces, System, TangentFactors
+from beltdyn.system.arrays import BENDING_LOSS, STRETCH_LOSS, Bare, BodyForces, System, TangentFactors
 from beltdyn.system.discretization import element_kind
-from beltdyn.system.frame import Travelling, add_flow, flow_record, flow_speed
+from beltdyn.system.frame import Travelling, add_flow, flow_record
 from beltdyn.system.hysteresis import add_hysteresis, hysteresis_scratch
 from beltdyn.system.moving_center import drift_record
 
@@ -20,7 +20,9 @@ from beltdyn.system.moving_center import drift_record
 def element_workspace(system: System) -> np.record:
     """Make the scratch arrays for one element after the other of a system."""
     count, vectors = system.control.shape[2:]
-    flow = {} if isinstance(system.frame, Travelling) else {"flow": flow_record(vectors, 2 * len(system.scale))}
+    own = flow_record(system.frame, vectors, 2 * len(system.scale))
+    flow = {} if isinstance(system.frame, Travelling) else {"flow": own}
+    carrying = {} if isinstance(system.carrying, Bare) else {"carrying": carrying_record(count, vectors)}
     return blank(
         record(
             **flow,
@@ -31,7 +33,23 @@ def element_workspace(system: System) -> np.record:
             control_velocity=f"({count},2)f8",
             hysteresis=hysteresis_scratch(vectors),
             drift=drift_record(vectors),  # by a change of the velocity of a pulley's center
+            **carrying,
         )
+    )
+
+
+def carrying_record(count: int, vectors: int) -> np.dtype[np.void]:
+    """Kind of the scratch arrays of supports and goods."""
+    return record(
+        weights=f"({count},)f8",  # of control points
+        functions=f"({vectors},)f8",  # shape functions and their derivatives over the belt coordinate
+        rates=f"({vectors},)f8",
+        bends=f"({vectors},)f8",
+        acceleration=f"({2 * vectors},)f8",
+        force="(2,)f8",  # of a meter of span, N/m
+        by_place="(2,2)f8",
+        by_rate="(2,2)f8",  # by the velocity of the mesh
+        by_speed="f8",  # of the resistance, by the velocity along the span
     )
 
 
@@ -75,8 +93,7 @@ def gather_motion(
     """
     gather(system, element, position, coordinates[0])
     gather(system, element, velocity, coordinates[1])
-    speed = flow_speed(system.frame, velocity)
-    add_flow(system.frame, element, system.vectors, speed, coordinates[0], coordinates[1])
+    add_flow(system.frame, element, system.vectors, velocity, coordinates[0], coordinates[1])
 
 
 @kernel(inline=True)

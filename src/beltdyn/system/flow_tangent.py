@@ -5,18 +5,18 @@ the speed of the belt through the mesh.  With F_e and F_v their derivatives by b
 p, q and r times a change of the unknowns has the tangent p F_e + F_v (q + p c D), and for c the column r F_v D e.
 """
 
-from typing import Final, NamedTuple
+from typing import Any, Final, NamedTuple
 
 import numpy as np
 
 from beltdyn.contact.contact_force import ContactFactors, contact_force
 from beltdyn.contact.contact_zone import out_of_reach
 from beltdyn.elements.kind import DampingFactors
-from beltdyn.kernel import kernel
+from beltdyn.kernel import by_type, kernel
 from beltdyn.system.arrays import BENDING_LOSS, STRETCH_LOSS, Equations, Motion, RingMatrix, System, TangentFactors
 from beltdyn.system.body_forces import add_contact, differentiates_forces
 from beltdyn.system.element_state import centreline, loses_in_belt, material_forces
-from beltdyn.system.frame import Flowing, Travelling, flow_speed
+from beltdyn.system.frame import Flowing, FlowingByArcs, Staying, StayingByArcs, Travelling, element_speed
 from beltdyn.system.hysteresis import add_hysteresis_flow
 from beltdyn.system.moving_center import couple_center, keep_drift, moving_center, pulley_state
 from beltdyn.system.supports import couple_rim, take_contact
@@ -83,7 +83,7 @@ def _add_damping(
 ) -> tuple[float, float]:
     """Add the losses of the belt's material, with their tangent through velocities; gives the powers lost, W."""
     own, flow, derivative = work.element, work.flow, system.frame.derivative[element]
-    by_flow = factors.place * flow_speed(system.frame, motion.velocity)
+    by_flow = factors.place * element_speed(system.frame, element, motion.velocity)
     own.by_flow[:] = 0.0
     lost = material_forces(system, element, DampingFactors(factors.place, factors.rate, by_flow, factors.secant), work)
     if factors.place != 0.0 or factors.rate != 0.0:
@@ -100,7 +100,7 @@ def _add_contact(system: System, motion: Motion, element: int, factors: FlowFact
     work, flow, matrix = equations.work, equations.work.flow, equations.matrix
     law, rule = system.law, system.contact
     wanted, piece = factors.place != 0.0 or factors.rate != 0.0, centreline(system, element, 0, work)
-    by_slope = factors.place * flow_speed(system.frame, motion.velocity)
+    by_slope = factors.place * element_speed(system.frame, element, motion.velocity)
     by = ContactFactors(factors.place, factors.rate, factors.turning, by_slope, factors.flow, factors.secant)
     for p in range(system.pulleys.size):
         pulley = pulley_state(system, p, motion.position, motion.velocity)
@@ -121,7 +121,6 @@ def _add_contact(system: System, motion: Motion, element: int, factors: FlowFact
         if center.unknown >= 0:
             drift = factors.place if drifting else 0.0
             couple_center(system, element, center, drift, work.contact, work.drift, matrix)
-        last = matrix.corner.shape[0] - 1
         x = y = 0.0
         for a in range(len(system.vectors)):
             fx, fy = work.contact.by_flow[a, 0], work.contact.by_flow[a, 1]
@@ -129,9 +128,29 @@ def _add_contact(system: System, motion: Motion, element: int, factors: FlowFact
             flow.by_speed[system.vectors[a] + 1] -= fy
             x, y = x + system.shift[a] * fx, y + system.shift[a] * fy
         if center.rim >= 0:
-            matrix.corner[center.rim, last] -= work.contact.moment_by_flow
+            _add_by_flow(system.frame, matrix, element, center.rim, -work.contact.moment_by_flow)
         if center.unknown >= 0:
-            matrix.corner[center.unknown, last] += x * center.x + y * center.y
+            _add_by_flow(system.frame, matrix, element, center.unknown, x * center.x + y * center.y)
+
+
+@kernel(inline=True)
+def _by_flow(frame: Any, matrix: RingMatrix, element: int, row: int, value: float) -> None:
+    matrix.corner[row, matrix.corner.shape[0] - 1] += value
+
+
+@kernel(inline=True)
+def _by_flow_and_shift(frame: FlowingByArcs, matrix: RingMatrix, element: int, row: int, value: float) -> None:
+    arcs, last = frame.arcs, matrix.corner.shape[0] - 1
+    matrix.corner[row, last] += value
+    for arc, share in ((arcs.before[element], 1.0 - arcs.share[element]), (arcs.after[element], arcs.share[element])):
+        if arc >= 0:
+            matrix.corner[row, last - arcs.node.size + arc] += share * value
+
+
+_add_by_flow = by_type(
+    {Staying: _by_flow, Flowing: _by_flow, StayingByArcs: _by_flow, FlowingByArcs: _by_flow_and_shift}, "add_by_flow"
+)
+"""Add a derivative by the flow on an element to the row of a body."""
 
 
 @kernel(inline=True)

@@ -115,6 +115,68 @@ class Flowing(NamedTuple):
     """t, unit vector along which node 0 does not move, shape (2,)."""
 
 
+class ArcMesh(NamedTuple):
+    """What a mesh is made of that stays at every arc, with the lengths of elements where no length has gone over."""
+
+    node: IntArray
+    """Node that stays at each of the P arcs, shape (P,)."""
+    holding: FloatArray
+    """Forces on nodes of a unit of the force that holds the belt at rest, on the arc of the driver, shape (N, 2)."""
+    direction: FloatArray
+    """Unit vector along the belt there, shape (P, 2)."""
+    place: FloatArray
+    """Where it stays if the tensioner of the pulley is at zero, m, shape (P, 2)."""
+    carrier: IntArray
+    """Tensioner of the pulley, -1 without one, shape (P,)."""
+    before: IntArray
+    """Arc that is next to a node on one side, or -1 for node 0, shape (N,)."""
+    after: IntArray
+    """The same on the other side."""
+    share: FloatArray
+    """Share of the arc after in the shift of a node, shape (N,)."""
+    length: FloatArray
+    """m, shape (elements,)."""
+    control: FloatArray
+    """As in a system."""
+    derivative: FloatArray
+    """As in `Staying`."""
+    growth: FloatArray
+    """G, shape (elements, v, v), 1/m."""
+    mass: FloatArray
+    """As in `Flowing`."""
+    inertia: FloatArray
+    """As in `Staying`."""
+
+
+class StayingByArcs(NamedTuple):
+    """The mesh stays in place at every arc, and the belt runs steadily."""
+
+    speed: FloatArray
+    """As for `Staying`."""
+    shift: FloatArray
+    """Length of unstretched belt that has passed each arc beyond what has passed node 0, m, shape (P,)."""
+    derivative: FloatArray
+    """As for `Staying`, of the present lengths of elements."""
+    growth: FloatArray
+    """As in `ArcMesh`, of the present lengths, as are the others."""
+    inertia: FloatArray
+    arcs: ArcMesh
+
+
+class FlowingByArcs(NamedTuple):
+    """The mesh stays in place at every arc; lengths of belt that have passed are coordinates beside those of bodies."""
+
+    place: int
+    """Of that at node 0 in a state; those of the shifts at arcs come before."""
+    derivative: FloatArray
+    """As for `StayingByArcs`."""
+    growth: FloatArray
+    inertia: FloatArray
+    direction: FloatArray
+    """Unit vector along which node 0 does not move, shape (2,)."""
+    arcs: ArcMesh
+
+
 def staying(control: FloatArray, length: FloatArray, mass: float) -> Staying:
     """The frame of a staying mesh, with a belt at rest.
 
@@ -141,11 +203,19 @@ def flowing(given: Staying, mass: FloatArray, vectors: tuple[int, ...], place: i
     return Flowing(place, given.derivative, given.derivative @ given.derivative, own, direction)
 
 
-def flow_record(vectors: int, coordinates: int) -> np.dtype[np.void]:
+def flow_record(frame: Any, vectors: int, coordinates: int) -> np.dtype[np.void]:
     """Kind of the scratch arrays for the derivatives by velocity of one element."""
+    pair, by_arcs = f"({vectors},2)f8", isinstance(frame, StayingByArcs | FlowingByArcs)
+    more = {
+        "still": pair,  # vectors of dv/dt at places of the mesh
+        "moved": pair,  # of the acceleration of material points
+        "by_end": f"{coordinates}f8",  # derivative of the residual with respect to the shift at the second node
+        "powers": f"({vectors},{vectors})f8",  # A A
+    }
     return record(
-        rate=f"({vectors},2)f8",  # vectors D e
+        rate=pair,  # vectors D e
         by_speed=f"{coordinates}f8",  # derivative of the residual with respect to the unknown of the flow
+        **(more if by_arcs else {}),
     )
 
 
@@ -180,9 +250,16 @@ def _own_speed(frame: Flowing, velocity: FloatArray) -> float:
 
 
 flow_speed: Callable[[Any, FloatArray], float] = by_type(
-    {Travelling: _still, Staying: _given_speed, Flowing: _own_speed}, "flow_speed"
+    {
+        Travelling: _still,
+        Staying: _given_speed,
+        Flowing: _own_speed,
+        StayingByArcs: _given_speed,
+        FlowingByArcs: _own_speed,
+    },
+    "flow_speed",
 )
-"""Length of unstretched belt that passes the mesh in a unit of time, m/s, from velocities of shape (n N + D,)."""
+"""Length of unstretched belt that passes node 0 in a unit of time, m/s, from velocities of shape (n N + D,)."""
 
 
 @kernel(inline=True)
@@ -198,7 +275,9 @@ def _passed(frame: Flowing, position: FloatArray) -> float:
 
 
 passed_length: Callable[[Any, FloatArray], float] = by_type(
-    {Travelling: _none_passed, Staying: _none_passed, Flowing: _passed}, "passed_length"
+    {Travelling: _none_passed, Staying: _none_passed, Flowing: _passed}
+    | {StayingByArcs: _none_passed, FlowingByArcs: _passed},
+    "passed_length",
 )
 """Length of unstretched belt that has passed the mesh, m, at a position of shape (n N + D,)."""
 
@@ -209,18 +288,84 @@ def passed_lengths(frame: Any, positions: FloatArray) -> FloatArray:
 
 
 @kernel(inline=True)
+def _shift_at_rest(frame: StayingByArcs, position: FloatArray, arc: int) -> float:
+    """Shift of the mesh at an arc."""
+    return float(frame.shift[arc])
+
+
+@kernel(inline=True)
+def _shift_of_state(frame: FlowingByArcs, position: FloatArray, arc: int) -> float:
+    """The coordinate."""
+    return float(position[frame.place - frame.arcs.node.size + arc])
+
+
+_shift_at: Callable[[Any, FloatArray, int], float] = by_type(
+    {StayingByArcs: _shift_at_rest} | {FlowingByArcs: _shift_of_state}, "shift_at"
+)
+
+
+@kernel(inline=True)
+def node_shift(frame: Any, position: FloatArray, node: int) -> float:
+    """Length of belt that has passed a node beyond what has passed node 0, m, on a mesh that stays at every arc."""
+    arcs, total = frame.arcs, 0.0
+    if arcs.before[node] >= 0:
+        total += (1.0 - arcs.share[node]) * _shift_at(frame, position, arcs.before[node])
+    if arcs.after[node] >= 0:
+        total += arcs.share[node] * _shift_at(frame, position, arcs.after[node])
+    return total
+
+
+@kernel(inline=True)
+def shift_rate(frame: FlowingByArcs, rates: FloatArray, node: int) -> float:
+    """Rate of the shift at a node, from velocities or accelerations of shape (n N + D,)."""
+    return node_shift(frame, rates, node)
+
+
+@kernel(inline=True)
+def _same_at_both(frame: Any, element: int, velocity: FloatArray) -> tuple[float, float]:
+    speed = flow_speed(frame, velocity)
+    return speed, speed
+
+
+@kernel(inline=True)
+def _at_both(frame: FlowingByArcs, element: int, velocity: FloatArray) -> tuple[float, float]:
+    speed, following = velocity[frame.place], (element + 1) % frame.arcs.share.size
+    return speed + shift_rate(frame, velocity, element), speed + shift_rate(frame, velocity, following)
+
+
+flow_at_ends: Callable[[Any, int, FloatArray], tuple[float, float]] = by_type(
+    {Travelling: _same_at_both, Staying: _same_at_both, Flowing: _same_at_both, StayingByArcs: _same_at_both}
+    | {FlowingByArcs: _at_both},
+    "flow_at_ends",
+)
+"""Length of unstretched belt that passes both nodes of an element in a unit of time, m/s."""
+
+
+@kernel(inline=True)
+def element_speed(frame: Any, element: int, velocity: FloatArray) -> float:
+    """Mean of both."""
+    before, after = flow_at_ends(frame, element, velocity)
+    return 0.5 * (before + after)
+
+
+@kernel(inline=True)
 def _no_flow(
-    frame: Travelling, element: int, vectors: tuple[int, ...], speed: float, position: FloatArray, velocity: FloatArray
+    frame: Travelling,
+    element: int,
+    vectors: tuple[int, ...],
+    rates: FloatArray,
+    position: FloatArray,
+    velocity: FloatArray,
 ) -> None:
     """Leave the velocity: nodes move with the belt."""
 
 
 @kernel(inline=True)
 def _flow(
-    frame: Any, element: int, vectors: tuple[int, ...], speed: float, position: FloatArray, velocity: FloatArray
+    frame: Any, element: int, vectors: tuple[int, ...], rates: FloatArray, position: FloatArray, velocity: FloatArray
 ) -> None:
     """Add speed D e to the velocity."""
-    derivative = frame.derivative[element]
+    derivative, speed = frame.derivative[element], flow_speed(frame, rates)
     for a in range(len(vectors)):
         for axis in range(2):
             total = 0.0
@@ -229,7 +374,29 @@ def _flow(
             velocity[vectors[a] + axis] += speed * total
 
 
-add_flow: Callable[[Any, int, tuple[int, ...], float, FloatArray, FloatArray], None] = by_type(
-    {Travelling: _no_flow, Staying: _flow, Flowing: _flow}, "add_flow"
+@kernel(inline=True)
+def _flow_by_arcs(
+    frame: FlowingByArcs,
+    element: int,
+    vectors: tuple[int, ...],
+    rates: FloatArray,
+    position: FloatArray,
+    velocity: FloatArray,
+) -> None:
+    """Add A e to the velocity."""
+    derivative, growth = frame.derivative[element], frame.growth[element]
+    before, after = flow_at_ends(frame, element, rates)
+    for a in range(len(vectors)):
+        for axis in range(2):
+            total = 0.0
+            for b in range(len(vectors)):
+                total += (before * derivative[a, b] + (after - before) * growth[a, b]) * position[vectors[b] + axis]
+            velocity[vectors[a] + axis] += total
+
+
+add_flow: Callable[[Any, int, tuple[int, ...], FloatArray, FloatArray, FloatArray], None] = by_type(
+    {Travelling: _no_flow, Staying: _flow, Flowing: _flow, StayingByArcs: _flow, FlowingByArcs: _flow_by_arcs},
+    "add_flow",
 )
-"""Add to the velocity of an element, shape (2 n,), what the belt's flow at a speed (m/s) gives its material points."""
+"""Add to the velocity of an element, shape (2 n,), what the belt's flow gives its material points; the fourth argument
+are the velocities of the state."""

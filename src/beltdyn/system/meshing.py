@@ -18,7 +18,7 @@ from beltdyn.model.toothing import DISCRETE
 from beltdyn.records import Records, records
 from beltdyn.system.arrays import BodyForces, Motion, NoCarriage, RingMatrix, System, TangentFactors
 from beltdyn.system.body_forces import add_machines
-from beltdyn.system.constant_drive import constant_drive
+from beltdyn.system.constant_drive import constant_drive, without_actions
 from beltdyn.system.frame import Travelling, centreline_places
 from beltdyn.system.moving_center import pulley_center
 from beltdyn.system.state import State
@@ -127,7 +127,7 @@ def unloaded(system: System) -> System:
     if not has_teeth(system):
         return system
     held = constant_drive(system, 0.0)
-    held.profiles.segment.offset[:] = 0.0
+    without_actions(held)
     turning, bodies = turning_grooves(system), held.bodies.copy()
     if isinstance(rims, ToothedRims):
         held = held._replace(rims=rims._replace(table=rims.table.copy()))

@@ -23,7 +23,7 @@ from beltdyn.machines.profiles.functions import (
     schedule_value,
 )
 from beltdyn.system.arrays import COUPLING_LOSS, DRIVER_WORK, TORQUE_WORK, Motion, System
-from beltdyn.system.frame import Flowing, Travelling
+from beltdyn.system.frame import Flowing, FlowingByArcs, Travelling, flow_at_ends
 
 _PARTS: Final = 4
 """A step that holds a wave is seen in so many parts at least,"""
@@ -274,7 +274,44 @@ def _flow_of_step(frame: Flowing, system: System, element: int, before: Motion, 
                 speed[c] += 0.5 * flow * rate
 
 
-_add_flow_of_step = by_type({Travelling: _no_flow, Flowing: _flow_of_step}, "add_flow_of_step")
+@kernel
+def _flow_by_arcs_of_step(
+    frame: FlowingByArcs, system: System, element: int, before: Motion, after: Motion, work: np.record
+) -> None:
+    """The same where lengths of belt go over from one span to another; the element has its length after the step."""
+    vectors, dof, node_j = system.vectors, len(system.scale), (element + 1) % system.nodes
+    derivative, growth, speed = frame.derivative[element], frame.growth[element], work.element.gradient
+    from_i, from_j = flow_at_ends(frame, element, before.position)
+    to_i, to_j = flow_at_ends(frame, element, after.position)
+    passed, more = 0.5 * (to_i - from_i), 0.5 * (to_j - from_j - to_i + from_i)
+    for end in range(2):
+        motion, sign = (before, -1.0) if end == 0 else (after, 1.0)
+        first, last = flow_at_ends(frame, element, motion.velocity)
+        rise, top = flow_at_ends(frame, element, motion.acceleration)
+        for a in range(len(vectors)):
+            for axis in range(2):
+                c, own, change, way = vectors[a] + axis, 0.0, 0.0, 0.0
+                for b in range(len(vectors)):
+                    k = vectors[b] + axis
+                    i = dof * element + k if k < dof else dof * node_j + k - dof
+                    by, grown, moved, speed_b = derivative[a, b], growth[a, b], motion.position[i], motion.velocity[i]
+                    flow = first * by + (last - first) * grown
+                    way += (passed * by + more * grown) * moved
+                    own += flow * moved
+                    change += (rise * by + (top - rise) * grown) * moved + 2.0 * flow * speed_b
+                    for d in range(len(vectors)):
+                        k = vectors[d] + axis
+                        i = dof * element + k if k < dof else dof * node_j + k - dof
+                        change += flow * (first * derivative[b, d] + (last - first) * growth[b, d]) * motion.position[i]
+                work.coordinates[0, c] += way
+                work.coordinates[1, c] += sign * own
+                work.coordinates[2, c] += 0.5 * change
+                speed[c] += 0.5 * own
+
+
+_add_flow_of_step = by_type(
+    {Travelling: _no_flow, Flowing: _flow_of_step, FlowingByArcs: _flow_by_arcs_of_step}, "add_flow_of_step"
+)
 """Make what nodes do in a step what material points do."""
 
 

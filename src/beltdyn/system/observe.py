@@ -14,6 +14,7 @@ from beltdyn.contact.teeth import tooth_at, tooth_push, tooth_traction
 from beltdyn.elements.dispatch import strain_energy, tension
 from beltdyn.kernel import kernel
 from beltdyn.machines.tensioners.registry import tensioner_center
+from beltdyn.system.arc_mesh import fit_mesh
 from beltdyn.system.arrays import BodyForces, System
 from beltdyn.system.element_state import centreline, gather_motion
 from beltdyn.system.hysteresis import hysteresis_tension
@@ -57,6 +58,7 @@ def fill_observations(
         show += shown[k]
         samples.nearest[:] = -1
         begin_walk(samples.walk)
+        fit_mesh(system.frame, system, position[k])
         for element in range(system.length.size):
             gather_motion(system, element, position[k], velocity[k], work.coordinates)
             pull = 0.0

@@ -9,6 +9,7 @@ from beltdyn.contact.contact_force import NO_CONTACT_TANGENT, contact_force
 from beltdyn.contact.contact_zone import out_of_reach
 from beltdyn.kernel import kernel
 from beltdyn.machines.profiles.functions import prescribed_motion
+from beltdyn.system.arc_mesh import fit_mesh
 from beltdyn.system.arrays import NO_TANGENT, BodyForces, Motion, System
 from beltdyn.system.body_forces import (
     add_contact,
@@ -18,6 +19,7 @@ from beltdyn.system.body_forces import (
     keep_body_forces,
     new_body_forces,
 )
+from beltdyn.system.carrying import NO_CARRYING_TANGENT, add_carrying
 from beltdyn.system.element_state import add_material_damping, centreline, element_workspace, gather_motion
 from beltdyn.system.moving_center import pulley_state
 
@@ -94,9 +96,11 @@ def find_body_forces(system: System, motion: Motion, work: np.record, corner: Fl
         Overwritten.
     """
     clear_body_forces(forces)
+    fit_mesh(system.frame, system, motion.position)
     for element in range(system.length.size):
         gather_motion(system, element, motion.position, motion.velocity, work.coordinates)
         add_material_damping(system, element, NO_TANGENT, work, forces)
+        add_carrying(system.carrying, system, motion, element, NO_CARRYING_TANGENT, work, forces)
         for curve in range(system.control.shape[1]):
             piece = centreline(system, element, curve, work)
             for p in range(system.pulleys.size):

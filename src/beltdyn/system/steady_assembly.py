@@ -16,8 +16,11 @@ import numpy as np
 from beltdyn.arrays import FloatArray
 from beltdyn.elements.dispatch import elastic_force
 from beltdyn.kernel import kernel
+from beltdyn.system.arc_mesh import add_holding_force, fit_mesh, hold_arcs
+from beltdyn.system.arc_tangent import add_steady_shifts
 from beltdyn.system.arrays import NO_TANGENT, Equations, Motion, System, TangentFactors
 from beltdyn.system.body_forces import clear_body_forces
+from beltdyn.system.carrying import CarryingFactors, add_carrying
 from beltdyn.system.element_state import gather_motion
 from beltdyn.system.flow_tangent import NO_FLOW_TANGENT, FlowFactors, add_flow_forces, find_rate, scatter_column
 from beltdyn.system.meshing import add_steady_machines, clear_last_row, flow_unknown
@@ -58,13 +61,18 @@ def assemble_steady(system: System, motion: Motion, anchor: Anchor, wanted: bool
     work, matrix, forces = equations.work, equations.matrix, equations.forces
     clear(matrix, wanted)
     clear_body_forces(forces)
+    fit_mesh(system.frame, system, motion.position)
     of_flow = FlowFactors(1.0, 0.0, flow_unknown(system.rims), 1.0, False) if wanted else NO_FLOW_TANGENT
+    of_carrying = CarryingFactors(of_flow.place, of_flow.rate, of_flow.flow, 0.0)
     for element in range(system.length.size):
         gather_motion(system, element, motion.position, motion.velocity, work.coordinates)
         elastic_force(system.element, work.coordinates[0], system.length[element], wanted, work.element)
         find_rate(system, element, work)
         _add_momentum(system, element, work)
+        if wanted:
+            add_steady_shifts(system.frame, system, element, equations)
         add_flow_forces(system, motion, element, of_flow, equations)
+        add_carrying(system.carrying, system, motion, element, of_carrying, work, forces)
         scatter(system, element, wanted, work, matrix)
         if wanted and not anchor.at_rest and flow_unknown(system.rims) != 0.0:
             scatter_column(system, element, equations)
@@ -77,7 +85,8 @@ def assemble_steady(system: System, motion: Motion, anchor: Anchor, wanted: bool
     add_nodal_loads(system, motion.position, factors.by_position, matrix)
     if wanted:
         clear_last_row(system.rims, matrix)
-    _hold(motion, anchor, wanted, equations)
+    _hold(system, motion, anchor, wanted, equations)
+    hold_arcs(system.frame, system, motion, factors, False, matrix)
 
 
 @kernel(inline=True)
@@ -96,7 +105,7 @@ def _add_momentum(system: System, element: int, work: np.record) -> None:
 
 
 @kernel(inline=True)
-def _hold(motion: Motion, anchor: Anchor, wanted: bool, equations: Equations) -> None:
+def _hold(system: System, motion: Motion, anchor: Anchor, wanted: bool, equations: Equations) -> None:
     """The equation that keeps node 0 in its place along the belt."""
     matrix, last = equations.matrix, equations.matrix.corner.shape[0] - 1
     for axis in range(2):
@@ -104,5 +113,5 @@ def _hold(motion: Motion, anchor: Anchor, wanted: bool, equations: Equations) ->
         matrix.border_side[last] += anchor.direction[axis] * away
         if wanted:
             matrix.row[0, last, axis] = anchor.direction[axis]
-            if anchor.at_rest:
-                matrix.column[0, axis, last] = anchor.direction[axis]
+    if wanted and anchor.at_rest:
+        add_holding_force(system.frame, anchor.direction, matrix)

@@ -45,8 +45,8 @@ from beltdyn.solvers.generalized_alpha import AlphaIntegration, GeneralizedAlpha
 from beltdyn.solvers.integrator_state import IntegratorState, Settings, Trial
 from beltdyn.solvers.trajectory import Chunk, Statistics, Task
 from beltdyn.stretch import LAWS as STRETCH_LAWS
-from beltdyn.system.arrays import BodyForces, NoCarriage, Supports, System
-from beltdyn.system.frame import Flowing, Staying, Travelling
+from beltdyn.system.arrays import Bare, BodyForces, Carrying, NoCarriage, Supports, System
+from beltdyn.system.frame import ArcMesh, Flowing, FlowingByArcs, Staying, StayingByArcs, Travelling
 from beltdyn.system.guide import Guided
 from beltdyn.system.state import State
 
@@ -243,7 +243,7 @@ STATE = (IntegratorState, Trial, Profiles)
 
 _SYSTEM = (
     *(System, Supports, Section, Quadrature, ContactLaw, RoundRims, ShapedRims, ToothedRims, ShaftLoads),
-    *(Travelling, Staying, Flowing, State, NoCarriage, Guided),
+    *(Travelling, Staying, Flowing, StayingByArcs, FlowingByArcs, ArcMesh, Bare, Carrying, State, NoCarriage, Guided),
 )
 _INTEGRATION = (AlphaIntegration, GeneralizedAlpha, Settings, Task, Statistics, Instants, Chunk, BodyForces)
 _RECORDING = (*(Observer, FrictionWork, WorkSoFar, MaterialWork, EnergyAccount, FlutterWatch, BandLimit, SlipThrough),)

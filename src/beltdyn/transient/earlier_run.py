@@ -16,6 +16,7 @@ from beltdyn.parts.text_file import entry_name, shorten
 from beltdyn.results import Run, open_run
 from beltdyn.results.schema import runs_steadily
 from beltdyn.state.settling import DIRECTION, Beginning
+from beltdyn.system.arc_mesh import MESH_LENGTHS
 from beltdyn.system.arrays import System
 from beltdyn.system.build import drive_system
 from beltdyn.system.build_staying import flowing_system, staying_system
@@ -54,7 +55,9 @@ def instant_of(run: Run, at: float | str | None, name: str = "at") -> float:
 
 def staying_mesh(prepared: Prepared, run: Run) -> System:
     """The arrays of a drive over time on the mesh of a run that stays, with a belt that does not flow."""
-    lengths = np.diff(run.dataset["node_coordinate"].values, append=prepared.belt_length)
+    lengths = run.dataset.attrs.get(MESH_LENGTHS)
+    if lengths is None:
+        lengths = np.diff(run.dataset["node_coordinate"].values, append=prepared.belt_length)
     return turned_by(prepared, staying_system(prepared, lengths), run.dataset.attrs.get(TOOTH_PHASES))
 
 
@@ -87,7 +90,9 @@ def begin_from(drive: Drive) -> Beginning:
     with _opened(start) as run:
         prepared = prepare(_as_installed(drive, run))
         attributes: dict[str, Any] = {
-            name: run.dataset.attrs[name] for name in (DIRECTION, TOOTH_PHASES) if name in run.dataset.attrs
+            name: run.dataset.attrs[name]
+            for name in (DIRECTION, TOOTH_PHASES, MESH_LENGTHS)
+            if name in run.dataset.attrs
         }
         if prepared.frame.stays:
             direction = np.array(run.dataset.attrs[DIRECTION], dtype=float)

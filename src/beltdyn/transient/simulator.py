@@ -239,7 +239,7 @@ class Simulator:
                 pulleys[number] = pulleys[number].replace(torque={"kind": "constant", "value": value})
         self._pulleys = tuple(pulleys)
         self._wanted.clear()
-        after = profile_arrays(pulleys)
+        after = profile_arrays(pulleys, self.drive.goods)
         prescribed = [number for number, pulley in enumerate(pulleys) if pulley.prescribed]
         angles = [interpreted(profile_integral)(before, number, now) for number in prescribed]
         go_on(after, prescribed, now, angles)

@@ -9,6 +9,7 @@ from beltdyn.arrays import ComplexArray, FloatArray, IntArray
 from beltdyn.model import Drive
 from beltdyn.quadrature import gauss_points
 from beltdyn.state.staying import depths
+from beltdyn.system.arc_mesh import passed_at
 from beltdyn.system.constant_drive import rim_of_bodies
 from beltdyn.system.frame import centreline_points
 from beltdyn.vibration.small_motions import SmallMotions
@@ -148,8 +149,8 @@ def speeds_of(motions: SmallMotions, points: Points, value: complex, vector: Com
     system = motions.system
     shafts, arms = _ways_of_bodies(motions, vector)
     moved, turned = _of_points(motions, points, vector)
-    passed, speed = shafts[-1], motions.state.velocity[system.frame.place]
-    velocity = value * (moved + passed * points.slope) + speed * turned
+    passed, speed = passed_at(system, shafts, points.along), motions.state.velocity[system.frame.place]
+    velocity = value * (moved + passed[:, None] * points.slope) + speed * turned
     root, inertia = np.sqrt(points.weight), np.sqrt(np.asarray(system.bodies.kinetic))
     across, along = (root * np.sum(velocity * direction, axis=1) for direction in (points.normal, points.tangent))
     return across, along, inertia[: shafts.size] * value * shafts, inertia[shafts.size :] * value * arms

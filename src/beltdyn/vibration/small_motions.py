@@ -20,8 +20,9 @@ from beltdyn.state.staying import Standing, anchor_at, bring_to_stand
 from beltdyn.state.steady import search_from
 from beltdyn.system.arrays import System
 from beltdyn.system.build import drive_system
+from beltdyn.system.build_carrying import with_resistance
 from beltdyn.system.build_staying import flowing_system, staying_system, without_hysteresis
-from beltdyn.system.constant_drive import constant_drive, dry_friction_of, rim_of_bodies, twists
+from beltdyn.system.constant_drive import constant_drive, dry_friction_of, rim_of_bodies, twists, without_actions
 from beltdyn.system.meshing import stopped, turning
 from beltdyn.system.state import State
 from beltdyn.system.state_forces import body_forces_at
@@ -149,7 +150,8 @@ def about_rest(drive: Drive) -> SmallMotions:
 def about_standing(rest: Standing) -> SmallMotions:
     """The same as `about_rest` of a drive that is at rest already."""
     held = without_hysteresis(constant_drive(standing(rest.system), 0.0))
-    held.profiles.segment.offset[:] = 0.0
+    held = held._replace(carrying=with_resistance(held.carrying, 0.0))
+    without_actions(held)
     smooth = held.pulleys.copy()
     smooth["friction"] = 0.0
     sliding = _linearised(rest.prepared, held._replace(pulleys=smooth), rest.state, 0.0)

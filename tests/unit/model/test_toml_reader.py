@@ -59,6 +59,8 @@ def test_schema_knows_every_group() -> None:
         "pulley",
         "contact",
         "tensioner",
+        "support",
+        "goods",
         "end",
         "duty",
         "simulation",

@@ -1,0 +1,142 @@
+"""Supports and goods on the spans of a drive: where they lie, and whether the belt can lie on them."""
+
+from collections.abc import Sequence
+from math import hypot
+from typing import NamedTuple
+
+import numpy as np
+
+from beltdyn.arrays import FloatArray
+from beltdyn.machines.carrying.goods import Goods
+from beltdyn.machines.carrying.support import OnSpan, Support
+from beltdyn.model.path import Path
+
+SINKING = 1e-3
+"""How far belt and goods sink into a support without a given stiffness, m."""
+_LEAST_LINE_FORCE = 10.0
+"""Normal force for which that stiffness is made at least, N/m."""
+_STEEPEST = 0.05
+"""Least share of the weight that is normal to a span whose supports carry by weight."""
+_ROUNDING = 1e-6
+"""Of the ends of a span, over its length."""
+
+
+class Stretch(NamedTuple):
+    """Where something lies on a span."""
+
+    span: int
+    origin: FloatArray
+    """Start of the span, m, shape (2,)."""
+    direction: FloatArray
+    """Unit vector along the span, shape (2,)."""
+    start: float
+    """From the start of the span, m."""
+    end: float
+
+    @property
+    def length(self) -> float:
+        """Its length, m."""
+        return self.end - self.start
+
+
+def stretch_of(one: OnSpan, spans: Sequence[tuple[str, str]], path: Path) -> Stretch:
+    """Where something lies on a span of a path."""
+    span = list(spans).index(one.span)
+    length = float(path.span_lengths[span])
+    end = length if one.end is None else min(one.end, length)
+    return Stretch(span, path.span_points[span, 0], path.span_directions[span], one.start, end)
+
+
+def upper_side(direction: FloatArray, gravity: tuple[float, float]) -> FloatArray:
+    """Unit normal of a span against gravity, or its left normal without gravity, shape (2,)."""
+    left = np.array([-direction[1], direction[0]])
+    return -left if left @ np.array(gravity) > 0.0 else left
+
+
+def normal_load(
+    support: Support, goods: Sequence[Goods], belt_mass: float, direction: FloatArray, gravity: tuple[float, float]
+) -> float:
+    """Weight of belt and full goods that presses on a support, N/m."""
+    most = sum(one.mass_per_length for one in goods if one.span == support.span)
+    return (belt_mass + most) * abs(float(upper_side(direction, gravity) @ np.array(gravity)))
+
+
+def stiffness_of(support: Support, load: float) -> float:
+    """Normal stiffness of a support under a load of belt and goods, N/m, in N/m^2."""
+    return support.stiffness or max(load, _LEAST_LINE_FORCE) / SINKING
+
+
+def check_carrying(
+    supports: Sequence[Support],
+    goods: Sequence[Goods],
+    spans: Sequence[tuple[str, str]],
+    path: Path,
+    gravity: tuple[float, float],
+) -> None:
+    """Make sure that supports and goods lie on spans, and that there is a weight to carry."""
+    for group, ones in (("support", supports), ("goods", goods)):
+        for number, one in enumerate(ones, 1):
+            _check_span(f"{group}[{number}]", one, spans, path)
+    for number, support in enumerate(supports, 1):
+        if support.needs_weight:
+            _check_weight(f"support[{number}]", support, stretch_of(support, spans, path), gravity)
+
+
+def _check_span(where: str, one: OnSpan, spans: Sequence[tuple[str, str]], path: Path) -> None:
+    first, second = one.span
+    known = ", ".join(f'["{a}", "{b}"]' for a, b in spans)
+    if first == second and len(spans) > 1:
+        raise ValueError(
+            f'{where}.span = ["{first}", "{second}"] is the arc on a pulley, but only spans are carried. Choose one of '
+            f"{known}; idlers of a convex curve are a pulley of its radius with speed = 0"
+        )
+    if one.span not in spans:
+        raise ValueError(f'{where}.span = ["{first}", "{second}"] is no span of the belt. Choose one of {known}')
+    length = float(path.span_lengths[list(spans).index(one.span)])
+    for key, value in (("start", one.start), ("end", one.end)):
+        if value is not None and value > length * (1.0 + _ROUNDING):
+            raise ValueError(
+                f'{where}.{key} = {value:.6g} m lies beyond the span "{first}-{second}" of {length:.6g} m. Reduce or '
+                "omit it"
+            )
+    if one.start >= length * (1.0 - _ROUNDING):
+        raise ValueError(
+            f'{where}.start = {one.start:.6g} m leaves nothing of the span "{first}-{second}" of {length:.6g} m. '
+            "Reduce or omit it"
+        )
+
+
+def _check_weight(where: str, support: Support, stretch: Stretch, gravity: tuple[float, float]) -> None:
+    size = hypot(*gravity)
+    if size == 0.0:
+        raise ValueError(
+            f'{where} of kind "{support.kind}" carries by weight, but gravity = [0, 0]. Give gravity, such as [0, '
+            '-9.81], or kind = "guide", which also holds the belt down'
+        )
+    if float(upper_side(stretch.direction, gravity) @ np.array(gravity)) > -_STEEPEST * size:
+        first, second = support.span
+        raise ValueError(
+            f'{where} of kind "{support.kind}" carries by weight, but the span "{first}-{second}" is vertical. Omit '
+            'it, or choose kind = "guide"'
+        )
+
+
+def check_lift(
+    supports: Sequence[Support],
+    spans: Sequence[tuple[str, str]],
+    path: Path,
+    gravity: tuple[float, float],
+    belt_mass: float,
+    tension: float,
+) -> None:
+    """Make sure that the tension at rest (N) does not lift the empty belt off a concave curve."""
+    for number, support in enumerate(supports, 1):
+        if support.curve_radius is None or not support.needs_weight:
+            continue
+        load = normal_load(support, (), belt_mass, stretch_of(support, spans, path).direction, gravity)
+        if tension > load * support.curve_radius:
+            raise ValueError(
+                f"support[{number}].curve_radius = {support.curve_radius:.5g} m is too small: the tension at rest of "
+                f"{tension:.4g} N lifts the empty belt of {load:.4g} N/m off the idlers. Give more than "
+                f"{tension / load:.4g} m, or reduce the tension"
+            )

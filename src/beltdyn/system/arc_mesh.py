@@ -1,0 +1,379 @@
+"""A mesh that stays at every arc: lengths of belt go over from one span to another as they stretch.
+
+Where a belt is long, its stretch moves material past pulleys by more than they are wide.  The length of unstretched
+belt that has passed then differs from arc to arc.  It is s + U, with s that at node 0 and U the shift of the mesh at a
+node: that of an arc at all its nodes, zero at node 0, and linear in between over the belt coordinate at rest.  An
+element has the reference length l = l_0 - (U_j - U_i).
+"""
+
+from collections.abc import Callable
+from itertools import pairwise
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from beltdyn.arrays import ComplexArray, FloatArray, IntArray
+from beltdyn.kernel import by_type, kernel
+from beltdyn.machines.tensioners.registry import tensioner_center
+from beltdyn.model import Prepared
+from beltdyn.system.arrays import Motion, RingMatrix, System, TangentFactors
+from beltdyn.system.frame import (
+    ArcMesh,
+    Flowing,
+    FlowingByArcs,
+    Staying,
+    StayingByArcs,
+    Travelling,
+    node_shift,
+)
+from beltdyn.system.moving_center import pulley_center, tensioner_coordinate
+
+_ORDERS = np.array([0, 1, 2, 0, 1, 2])
+"""Of the derivatives that the vectors of a quintic element are."""
+_LAYERS = 8.0
+"""Belt at either end of an arc that moves with it, in layers."""
+
+
+class Zone(NamedTuple):
+    """The belt that moves with an arc."""
+
+    start: float
+    """On the unstretched belt at rest, m."""
+    end: float
+    pulley: int
+
+
+def zones_of(prepared: Prepared) -> list[Zone]:
+    """The belt on every arc, with layers at its ends, in order along the belt."""
+    laid, path, margin = prepared.laid, prepared.installation.path, _LAYERS * prepared.layer
+    found = list[Zone]()
+    for p in range(path.count):
+        size = abs(float(path.radii[p])) * float(path.wrap_angles[p])
+        first = (path.span_start((p - 1) % path.count) + float(path.span_lengths[p - 1]) - laid.start) % path.length
+        shortest = min(float(path.span_lengths[p - 1]), float(path.span_lengths[p])) / laid.stretch
+        beyond = min(margin, 0.2 * shortest)
+        found.append(Zone(first / laid.stretch - beyond, (first + size) / laid.stretch + beyond, p))
+    return sorted(found)
+
+
+def staying_by_arcs(prepared: Prepared, system: System) -> System:
+    """The same drive on a mesh that stays at every arc, with arrays of its own."""
+    frame, lengths = system.frame, system.length.copy()
+    assert isinstance(frame, Staying)
+    vectors = np.array(system.vectors)
+    zones = zones_of(prepared)
+    before, after, share = _shares(prepared, zones, lengths)
+    starts = np.cumsum(lengths) - lengths
+    node = np.zeros(len(zones), dtype=np.int64)
+    place, direction = np.zeros((len(zones), 2)), np.zeros((len(zones), 2))
+    for zone in zones:
+        node[zone.pulley] = int(np.argmin(np.abs(starts - 0.5 * (zone.start + zone.end))))
+        along = prepared.laid.start + prepared.laid.stretch * starts[node[zone.pulley]]
+        place[zone.pulley] = prepared.laid.path.position(np.array([along]))[0]
+        direction[zone.pulley] = prepared.laid.path.tangent(np.array([along]))[0]
+    carrier = np.asarray(system.pulleys.carrier).copy()
+    for p in np.flatnonzero(carrier >= 0):
+        at_rest = np.zeros(system.first_body + system.bodies.size)
+        position = at_rest.copy()
+        position[position.size - carrier.max() - 1 :] = prepared.installation.tensioner_positions
+        place[p] += np.array(pulley_center(system, int(p), at_rest)) - pulley_center(system, int(p), position)
+    growth = _growth(system, frame.derivative, lengths)
+    arcs = ArcMesh(
+        node=node,
+        holding=_holding(prepared, zones, lengths),
+        direction=direction,
+        place=place,
+        carrier=carrier,
+        before=before,
+        after=after,
+        share=share,
+        length=lengths,
+        control=system.control.copy(),
+        derivative=frame.derivative.copy(),
+        growth=growth,
+        mass=np.ascontiguousarray(system.mass[:, vectors[:, None], vectors]),
+        inertia=frame.inertia.copy(),
+    )
+    own = StayingByArcs(
+        frame.speed.copy(), np.zeros(len(zones)), frame.derivative.copy(), growth.copy(), frame.inertia.copy(), arcs
+    )
+    return with_own_mesh(system)._replace(frame=own)
+
+
+def with_own_mesh(system: System) -> System:
+    """The same system with arrays of its own of what follows the lengths of elements."""
+    return system._replace(
+        length=system.length.copy(),
+        control=system.control.copy(),
+        mass=system.mass.copy(),
+        supports=system.supports._replace(force=system.supports.force.copy()),
+    )
+
+
+def _shares(prepared: Prepared, zones: list[Zone], lengths: FloatArray) -> tuple[IntArray, IntArray, FloatArray]:
+    """Arcs on both sides of each node, -1 for node 0, and the share of the second."""
+    starts, length = np.cumsum(lengths) - lengths, prepared.belt_length
+    before, after = np.full(lengths.size, -1), np.full(lengths.size, -1)
+    share = np.zeros(lengths.size)
+    nothing = Zone(0.0, 0.0, -1)
+    for one, other in pairwise([nothing, *zones, Zone(length, length, -1)]):
+        between = (starts >= one.start) & (starts < other.start)
+        before[between], after[between] = one.pulley, other.pulley
+        share[between] = np.clip((starts[between] - one.end) / (other.start - one.end), 0.0, 1.0)
+    return before, after, share
+
+
+def _holding(prepared: Prepared, zones: list[Zone], lengths: FloatArray) -> FloatArray:
+    """A unit of force along the belt, spread evenly over the arc of the driver, on the nodes, shape (N, 2)."""
+    zone = next(one for one in zones if one.pulley == prepared.reference)
+    laid, starts = prepared.laid, np.cumsum(lengths) - lengths
+    tangents = laid.path.tangent(laid.start + laid.stretch * starts)
+    arc = abs(float(laid.path.radii[zone.pulley]) * float(laid.path.wrap_angles[zone.pulley])) / laid.stretch
+    beyond = 0.5 * (zone.end - zone.start - arc)
+    inner = (starts > zone.start + beyond) & (starts < zone.end - beyond)
+    weight = np.where(inner, 0.5 * (lengths + np.roll(lengths, 1)), 0.0)
+    return np.asarray((weight / weight.sum())[:, None] * tangents)
+
+
+def _growth(system: System, derivative: FloatArray, lengths: FloatArray) -> FloatArray:
+    """G: vectors of xi dr/dsigma, less what the growing element does to those of r."""
+    made = np.zeros((lengths.size, 6, 6))
+    made[:, 1, 0], made[:, 2, 1] = 1.0 / lengths, 2.0 / lengths
+    made[:, 3, 3] = made[:, 4, 4] = made[:, 5, 5] = 1.0
+    made[:, 4, 3], made[:, 5, 4] = 1.0 / lengths, 2.0 / lengths
+    return np.ascontiguousarray(made @ derivative - np.diag(_ORDERS) / lengths[:, None, None])
+
+
+# The mesh at a state
+
+
+@kernel
+def _fit(frame: Any, system: System, position: FloatArray) -> None:
+    """Give the elements the lengths that they have at a position of shape (n N + D,)."""
+    arcs, changed, vectors = frame.arcs, False, system.vectors
+    following = node_shift(frame, position, 0)
+    for element in range(system.length.size):
+        shift, following = following, node_shift(frame, position, (element + 1) % system.nodes)
+        length = arcs.length[element] - (following - shift)
+        if length == system.length[element]:
+            continue
+        changed, system.length[element] = True, length
+        ratio, turn = length / arcs.length[element], arcs.length[element] / length
+        for a in range(len(vectors)):
+            of_a = _power(ratio, a % 3)
+            for b in range(len(vectors)):
+                of_b = _power(ratio, b % 3)
+                system.control[element, 0, a, b] = arcs.control[element, 0, a, b] * of_b
+                factor = turn * of_b / of_a
+                frame.derivative[element, a, b] = factor * arcs.derivative[element, a, b]
+                frame.growth[element, a, b] = factor * arcs.growth[element, a, b]
+                frame.inertia[element, a, b] = turn * of_a * of_b * arcs.inertia[element, a, b]
+                mass = ratio * of_a * of_b * arcs.mass[element, a, b]
+                for axis in range(2):
+                    system.mass[element, vectors[a] + axis, vectors[b] + axis] = mass
+    if changed:
+        _weigh(system)
+
+
+@kernel(inline=True)
+def _power(ratio: float, order: int) -> float:
+    return 1.0 if order == 0 else ratio if order == 1 else ratio * ratio
+
+
+@kernel
+def _weigh(system: System) -> None:
+    """Weight of the belt as nodal forces."""
+    force, dof, vectors = system.supports.force, len(system.scale), system.vectors
+    gravity: FloatArray = system.carrying.gravity  # type: ignore[union-attr]
+    force[:] = 0.0
+    for element in range(system.length.size):
+        node_j = (element + 1) % system.nodes
+        for a in range(len(vectors)):
+            c = vectors[a]
+            row = dof * element + c if c < dof else dof * node_j + c - dof
+            mass = system.mass[element, c, vectors[0]] + system.mass[element, c, vectors[3]]
+            force[row] += mass * gravity[0]
+            force[row + 1] += mass * gravity[1]
+
+
+@kernel(inline=True)
+def _as_it_is(frame: Any, system: System, position: FloatArray) -> None:
+    """Elements keep their lengths."""
+
+
+fit_mesh: Callable[[Any, System, FloatArray], None] = by_type(
+    {Travelling: _as_it_is, Staying: _as_it_is, Flowing: _as_it_is, StayingByArcs: _fit, FlowingByArcs: _fit},
+    "fit_mesh",
+)
+"""Give the elements of a system, whose frame is the first argument, the lengths that they have at a position."""
+
+
+def fitted(system: System, position: FloatArray) -> None:
+    """Give the elements their lengths at a position."""
+    if isinstance(system.frame, StayingByArcs | FlowingByArcs):
+        _fit(system.frame, system, position)
+
+
+def base_coordinates(system: System, along: FloatArray) -> FloatArray:
+    """Belt coordinates (m) by the lengths that elements have where no length of belt has gone over."""
+    if not isinstance(system.frame, StayingByArcs | FlowingByArcs):
+        return along
+    now, then = (np.append(0.0, np.cumsum(one)) for one in (system.length, system.frame.arcs.length))
+    return np.asarray(np.interp(along, now, then))
+
+
+def base_lengths(system: System) -> FloatArray:
+    """Lengths of elements where no length of belt has gone over, m."""
+    return system.frame.arcs.length if isinstance(system.frame, StayingByArcs | FlowingByArcs) else system.length
+
+
+MESH_LENGTHS, MESH_SHIFTS = "mesh_lengths", "mesh_shifts"
+"""Attributes of results on such a mesh: lengths of elements where no length of belt has gone over, and shifts, m."""
+
+
+def shifts_of(frame: Any) -> FloatArray:
+    """Shifts of a mesh in steady running or at rest, m; none of another mesh."""
+    return frame.shift if isinstance(frame, StayingByArcs) else np.zeros(0)
+
+
+def mesh_attributes(system: System) -> dict[str, FloatArray]:
+    """What results tell of a mesh that stays at every arc; nothing of another one."""
+    if not isinstance(system.frame, StayingByArcs):
+        return {}
+    return {MESH_LENGTHS: system.frame.arcs.length.copy(), MESH_SHIFTS: system.frame.shift.copy()}
+
+
+def passed_at(system: System, ways: ComplexArray, along: FloatArray) -> ComplexArray:
+    """Lengths of belt that pass places along it (m), shape (q,), from the ways of bodies, the last of which is flow."""
+    passed = np.full(along.size, ways[-1])
+    if isinstance(system.frame, FlowingByArcs):
+        arcs = system.frame.arcs
+        shifts = np.append(ways[-1 - arcs.node.size : -1], 0.0)  # the last is that of node 0, whose number is -1
+        nodes = (1.0 - arcs.share) * shifts[arcs.before] + arcs.share * shifts[arcs.after]
+        ends = np.append(0.0, np.cumsum(system.length))
+        nodes = np.append(nodes, nodes[0])
+        passed += np.interp(along, ends, nodes.real) + 1j * np.interp(along, ends, nodes.imag)
+    return passed
+
+
+def arc_count(frame: Any) -> int:
+    """Number of arcs at which a mesh stays beside node 0."""
+    return len(frame.arcs.node) if isinstance(frame, StayingByArcs | FlowingByArcs) else 0
+
+
+# What holds the mesh at its arcs
+
+
+@kernel(inline=True)
+def first_arc(frame: Any, border: int) -> int:
+    """Place of the first shift in a border, which ends with the flow at node 0."""
+    return int(border - 1 - frame.arcs.node.size)
+
+
+@kernel
+def _hold_arcs(
+    frame: Any, system: System, motion: Motion, factors: TangentFactors, moving: bool, matrix: RingMatrix
+) -> None:
+    """Let the node of each arc keep its place along the belt, against the center of its pulley.
+
+    Of accelerations where the mesh is moving, or of places.
+    """
+    arcs, first = frame.arcs, first_arc(frame, matrix.corner.shape[0])
+    dof = len(system.scale)
+    tie = factors.by_acceleration if factors.by_acceleration != 0.0 else factors.by_position
+    for arc in range(arcs.node.size):
+        node, row, value = arcs.node[arc], first + arc, 0.0
+        tx, ty = arcs.direction[arc]
+        for axis in range(2):
+            t, i = arcs.direction[arc, axis], dof * node + axis
+            value += t * (motion.acceleration[i] if moving else motion.position[i] - arcs.place[arc, axis])
+            if tie != 0.0:
+                matrix.row[node, row, axis] = tie * t
+        if arcs.carrier[arc] >= 0:
+            at = tensioner_coordinate(system, arcs.carrier[arc])
+            item = system.tensioners[arcs.carrier[arc]]
+            center = tensioner_center(item, motion.position[at])
+            along = tx * center.dx + ty * center.dy
+            if moving:
+                square = motion.velocity[at] * motion.velocity[at]
+                value -= along * motion.acceleration[at] + (tx * center.ddx + ty * center.ddy) * square
+            else:
+                zero = tensioner_center(item, 0.0)
+                value -= tx * (center.x - zero.x) + ty * (center.y - zero.y)
+            unknown = system.bodies[at - system.first_body].unknown
+            if unknown >= 0 and tie != 0.0:
+                matrix.corner[row, unknown] = -tie * along
+        matrix.border_side[row] = value
+
+
+@kernel(inline=True)
+def _hold_none(
+    frame: Any, system: System, motion: Motion, factors: TangentFactors, moving: bool, matrix: RingMatrix
+) -> None:
+    """Node 0 alone is held."""
+
+
+hold_arcs: Callable[..., None] = by_type(
+    {Travelling: _hold_none, Staying: _hold_none, Flowing: _hold_none}
+    | {StayingByArcs: _hold_arcs, FlowingByArcs: _hold_arcs},
+    "hold_arcs",
+)
+"""Let the mesh keep its place at every arc; the frame comes first."""
+
+
+@kernel(inline=True)
+def _hold_by_arc(frame: StayingByArcs, direction: FloatArray, matrix: RingMatrix) -> None:
+    holding, last = frame.arcs.holding, matrix.corner.shape[0] - 1
+    matrix.corner[:, last] = 0.0
+    for node in range(holding.shape[0]):
+        for axis in range(2):
+            matrix.column[node, axis, last] = holding[node, axis]
+
+
+@kernel(inline=True)
+def _hold_by_node(frame: Staying, direction: FloatArray, matrix: RingMatrix) -> None:
+    for axis in range(2):
+        matrix.column[0, axis, matrix.corner.shape[0] - 1] = direction[axis]
+
+
+add_holding_force: Callable[[Any, FloatArray, RingMatrix], None] = by_type(
+    {Staying: _hold_by_node, StayingByArcs: _hold_by_arc}, "add_holding_force"
+)
+"""The force that holds a belt at rest, as last unknown: on node 0 along a direction, or at the arc of the driver."""
+
+
+@kernel
+def _change_shifts(frame: StayingByArcs, border_part: FloatArray, factor: float) -> None:
+    first = first_arc(frame, border_part.size)
+    for arc in range(frame.shift.size):
+        frame.shift[arc] += factor * border_part[first + arc]
+
+
+@kernel(inline=True)
+def _no_shifts(frame: Staying, border_part: FloatArray, factor: float) -> None:
+    """No length of belt goes over."""
+
+
+change_shifts: Callable[[Any, FloatArray, float], None] = by_type(
+    {Staying: _no_shifts, StayingByArcs: _change_shifts}, "change_shifts"
+)
+"""Add factor times their part of a solution to the shifts of a mesh."""
+
+
+@kernel
+def _largest_shift(frame: StayingByArcs, border_part: FloatArray) -> float:
+    first, largest = first_arc(frame, border_part.size), 0.0
+    for arc in range(frame.shift.size):
+        largest = max(largest, abs(border_part[first + arc]))
+    return largest
+
+
+@kernel(inline=True)
+def _none_largest(frame: Staying, border_part: FloatArray) -> float:
+    return 0.0
+
+
+largest_shift: Callable[[Any, FloatArray], float] = by_type(
+    {Staying: _none_largest, StayingByArcs: _largest_shift}, "largest_shift"
+)
+"""Largest change of a shift in a solution, m."""

@@ -1,0 +1,98 @@
+"""A mesh that stays at every arc, and what carries its elements: lengths, tangents by differences, flow."""
+
+import numpy as np
+import pytest
+
+from beltdyn.arrays import FloatArray
+from beltdyn.model import prepare
+from beltdyn.state.newton import steady_work
+from beltdyn.state.staying import Standing, anchor_at, bring_to_stand
+from beltdyn.system.arc_mesh import arc_count, base_coordinates, fitted, shifts_of, zones_of
+from beltdyn.system.arrays import Carrying, Motion, RingMatrix, System
+from beltdyn.system.build_carrying import with_resistance
+from beltdyn.system.build_staying import flowing_system
+from beltdyn.system.constant_drive import constant_drive, with_speeds_unknown
+from beltdyn.system.frame import FlowingByArcs, StayingByArcs
+from beltdyn.system.steady_assembly import Anchor, assemble_steady
+from tests.unit.model.test_carrying import conveyor
+
+SPEED = 1.0
+
+
+@pytest.fixture(scope="module")
+def standing() -> Standing:
+    return bring_to_stand(prepare(conveyor()))
+
+
+def side(
+    system: System, anchor: Anchor, position: FloatArray, velocity: FloatArray, *, wanted: bool = False
+) -> RingMatrix:
+    """Residual of steady running, and the matrix."""
+    work = steady_work(system)
+    state = Motion(0.0, position, velocity, np.zeros_like(position))
+    assemble_steady(system, state, anchor, wanted, work.equations)
+    return work.equations.matrix
+
+
+def test_every_pulley_has_a_zone(standing: Standing) -> None:
+    zones = zones_of(standing.prepared)
+    assert sorted(zone.pulley for zone in zones) == [0, 1]
+    assert all(zone.start < zone.end for zone in zones)
+    assert arc_count(standing.system.frame) == 2
+
+
+def test_shifts_lengthen_one_span_by_what_they_take_from_another(standing: Standing) -> None:
+    system, position = standing.system, standing.state.position
+    frame = system.frame
+    assert isinstance(frame, StayingByArcs)
+    fitted(system, position)
+    before, shifts = system.length.copy(), shifts_of(frame).copy()
+    frame.shift[1] += 0.01
+    fitted(system, position)
+    change = system.length - before
+    assert change.sum() == pytest.approx(0.0, abs=1e-12)
+    assert np.abs(change).sum() == pytest.approx(0.02, rel=1e-9)
+    assert base_coordinates(system, np.cumsum(system.length))[-1] == pytest.approx(frame.arcs.length.sum())
+    frame.shift[:] = shifts
+    fitted(system, position)
+    np.testing.assert_allclose(system.length, before, rtol=1e-15)
+
+
+def test_the_tangent_of_steady_running_is_that_of_its_residual(standing: Standing) -> None:
+    system = with_speeds_unknown(constant_drive(standing.system, 1.0))
+    system = system._replace(carrying=with_resistance(system.carrying, 1.0))
+    anchor = anchor_at(standing.state, False)
+    rng = np.random.default_rng(1)
+    position, velocity = standing.state.position.copy(), standing.state.velocity.copy()
+    position[: system.first_body] += 1e-6 * rng.standard_normal(system.first_body)
+    velocity[system.first_body :] = 5.0
+    system.frame.speed[0] = SPEED
+    matrix = side(system, anchor, position, velocity, wanted=True)
+    assert isinstance(system.carrying, Carrying)
+    carried = np.flatnonzero(np.diff(system.carrying.first_support))
+    node = int(carried[carried.size // 2])
+    for c in range(6):
+        step = 1e-7
+        sides = []
+        for sign in (1.0, -1.0):
+            moved = position.copy()
+            moved[6 * node + c] += sign * step
+            sides.append(side(system, anchor, moved, velocity).node_side.copy())
+        found = (sides[0] - sides[1]) / (2.0 * step)
+        np.testing.assert_allclose(matrix.diagonal[node, :, c], found[node], rtol=1e-4, atol=1e-5 * np.abs(found).max())
+    shifts, step = shifts_of(system.frame), 1e-5
+    columns = matrix.column[:, :, matrix.column.shape[2] - 3]
+    sides = []
+    for sign in (1.0, -1.0):
+        shifts[0] += sign * step
+        sides.append(side(system, anchor, position, velocity).node_side.copy())
+        shifts[0] -= sign * step
+    found = (sides[0] - sides[1]) / (2.0 * step)
+    np.testing.assert_allclose(columns, found, atol=2e-3 * np.abs(found).max())  # weight and bending are left out
+
+
+def test_flows_are_coordinates_of_a_system_over_time(standing: Standing) -> None:
+    system = flowing_system(standing.system, np.array([1.0, 0.0]))
+    assert isinstance(system.frame, FlowingByArcs)
+    assert system.bodies.size == standing.system.bodies.size + 3
+    assert system.bodies.unknown.max() == np.asarray(system.bodies.unknown)[system.frame.place - system.first_body]

@@ -1,0 +1,175 @@
+"""Belts that carry, against DIN 22101, Euler's limit, the wave equation, and their energy account."""
+
+import math
+from typing import Any
+
+import numpy as np
+import pytest
+
+import beltdyn as bd
+from beltdyn.errors import ConvergenceError
+
+LENGTH, LIFT, GRAVITY = 1000.0, 20.0, 9.81
+EA, BELT = 72e6, 25.0
+CARRYING, RETURN = (1.2, 22.0), (3.0, 18.0)
+"""Spacing (m) and rotating mass (kg) of idlers."""
+PRELOAD, RADIUS = 90e3, 0.5
+COEFFICIENT = 0.02
+
+
+def idlers(first: str, second: str, line: tuple[float, float], friction: float) -> dict[str, Any]:
+    return {
+        "kind": "idlers",
+        "span": [first, second],
+        "spacing": line[0],
+        "idler_mass": line[1],
+        "friction": friction,
+    }
+
+
+def conveyor(
+    *, lift: float = LIFT, goods: float = 104.0, friction: float = COEFFICIENT, grip: float = 0.4, **more: Any
+) -> bd.Drive:
+    """A conveyor of a kilometer, whose head drum drives and whose tail drum a weight pulls."""
+    carrying, returning = more.pop("lines", (CARRYING, RETURN))
+    pulleys = [
+        {"name": "head", "center": [0.0, lift], "radius": RADIUS, "speed": more.pop("speed", 8.0)},
+        {"name": "tail", "center": [LENGTH, 0.0], "radius": RADIUS}
+        | more.pop("tail", {"inertia": 40.0, "mass": 800.0}),
+    ]
+    slide = {"kind": "sliding", "pulley": "tail", "direction": [1.0, 0.0], "mass": more.pop("slide", 2000.0)}
+    return bd.Drive(
+        gravity=[0.0, -GRAVITY],
+        belt={
+            "width": 1.0,
+            "thickness": 0.016,
+            "axial_stiffness": EA,
+            "bending_stiffness": 20.0,
+            "mass_per_length": BELT,
+            "contact_stiffness": 2e8,
+        },
+        pulley=pulleys,
+        tensioner=[slide | {"preload": PRELOAD, "damping": more.pop("damping", 2e4)}],
+        support=[idlers("tail", "head", carrying, friction), idlers("head", "tail", returning, friction)],
+        goods=[{"span": ["tail", "head"], "mass_per_length": goods}] if goods else [],
+        contact={"friction": grip, "standstill_creep": 1e-4},
+        simulation={"duration": 60.0} | more.pop("simulation", {}),
+        **more,
+    )
+
+
+def main_resistance(lift: float, goods: float) -> float:
+    """DIN 22101: C f L g (m_R + (2 m_G + m_L) cos delta) + H g m_L, with C = 1, N."""
+    rotating = CARRYING[1] / CARRYING[0] + RETURN[1] / RETURN[0]
+    slope = math.hypot(LENGTH, lift)
+    carried = (2.0 * BELT + goods) * LENGTH / slope
+    return COEFFICIENT * slope * GRAVITY * (rotating + carried) + lift * GRAVITY * goods
+
+
+@pytest.mark.parametrize(("lift", "goods"), [(0.0, 104.0), (LIFT, 104.0), (LIFT, 0.0), (-LIFT, 104.0)])
+def test_the_pull_is_the_sum_of_resistances_of_din_22101(lift: float, goods: float) -> None:
+    run = bd.steady_state(conveyor(lift=lift, goods=goods))
+    speed = float(run.dataset.belt_speed[-1].mean())
+    power = float(run.dataset.shaft_torque[-1, 0] * run.dataset.shaft_speed[-1, 0])
+    assert power / speed == pytest.approx(main_resistance(lift, goods), rel=0.01)
+
+
+def drum_tensions(run: bd.Run) -> tuple[float, float]:
+    """Tight and slack tension at the head drum, from the elements next to its arc, N."""
+    seen = run.dataset.isel(field_time=-1)
+    touching = seen.contact_pulley.values.reshape(seen.sizes["element"], -1)
+    on = np.flatnonzero((touching == 0).any(axis=1))
+    tension = seen.belt_tension.values
+    ends = tension[(on.min() - 1) % tension.size], tension[(on.max() + 1) % tension.size]
+    return float(max(ends)), float(min(ends))
+
+
+def test_the_drum_slips_beyond_eulers_limit() -> None:
+    run = bd.steady_state(conveyor())
+    tight, slack = drum_tensions(run)
+    needed = math.log(tight / slack) / float(run.dataset.wrap_angle[-1, 0])
+    assert needed > 0.2
+    assert tight - slack == pytest.approx(main_resistance(LIFT, 104.0), rel=0.01)
+    bd.steady_state(conveyor(grip=1.02 * needed))
+    with pytest.raises(ConvergenceError, match="head"):
+        bd.steady_state(conveyor(grip=0.98 * needed))
+
+
+def test_the_first_longitudinal_mode_is_that_of_two_rods_and_the_take_up() -> None:
+    line, mass, inertia = (1.2, 12.0), 2800.0, 40.0
+    drive = conveyor(
+        lift=0.0, goods=0.0, friction=0.0, lines=(line, line), damping=0.0, tail={"inertia": inertia, "mass": 800.0}
+    )
+    found = bd.modes(drive, count=4).dataset
+    along = BELT + line[1] / line[0]
+    speed = math.sqrt(EA / along)
+
+    def frequency(end: float) -> float:
+        """Least root of end w^2 = 2 EA k cot(k L) with k = w / c, Hz."""
+        from scipy.optimize import brentq
+
+        def imbalance(phase: float) -> float:
+            rate = phase * speed / LENGTH
+            return end * rate**2 - 2.0 * EA * phase / LENGTH / math.tan(phase)
+
+        return float(brentq(imbalance, 1e-6, math.pi / 2.0)) * speed / LENGTH / (2.0 * math.pi)
+
+    expected = sorted((frequency(mass), frequency(inertia / RADIUS**2)))
+    np.testing.assert_allclose(np.sort(found.frequency.values)[:2], expected, rtol=0.005)
+
+
+def test_the_wave_of_a_start_arrives_at_the_tail_after_the_length_over_its_speed() -> None:
+    line, rise = (1.2, 12.0), 0.1
+    speed = {"kind": "cosine_ramp", "start": 0.1, "end": 0.1 + rise, "value": 0.2}
+    drive = conveyor(
+        lift=0.0,
+        goods=0.0,
+        friction=0.0,
+        lines=(line, line),
+        speed=speed,
+        damping=0.0,
+        tail={"inertia": 0.1, "mass": 1.0},
+        slide=1e5,
+        simulation={"duration": 1.0, "output_interval": 1e-3, "max_step": 2e-3},
+    )
+    run = bd.simulate(drive)
+    time, turning = run.dataset.time.values, run.dataset.pulley_speed.values[:, 1]
+    plateau = float(turning[(time > 0.95)].mean())
+    arrival = float(np.interp(0.5 * plateau, turning[time < 0.9], time[time < 0.9]))
+    wave = math.sqrt(EA / (BELT + line[1] / line[0]))
+    assert arrival - (0.1 + 0.5 * rise) == pytest.approx(LENGTH / wave, rel=0.005)
+
+
+def test_energy_is_accounted_for_while_goods_are_loaded_on_a_slope() -> None:
+    ramp = {"kind": "cosine_ramp", "start": 0.2, "end": 1.2, "value": 5.0}
+    drive = bd.Drive(
+        gravity=[0.0, -GRAVITY],
+        belt={"profile": "flat-polyester-fabric", "width": "400 mm", "length": "17.3 m"},
+        pulley=[
+            {"name": "head", "center": [0.0, 1.0], "radius": 0.2, "speed": ramp},
+            {"name": "tail", "center": [8.0, 0.0], "radius": 0.2, "inertia": 0.15, "mass": 20.0},
+        ],
+        tensioner=[
+            {
+                "kind": "sliding",
+                "pulley": "tail",
+                "direction": [1.0, 0.0],
+                "preload": 2500.0,
+                "damping": 2e3,
+                "mass": 10.0,
+            }
+        ],
+        support=[idlers("tail", "head", (0.5, 1.0), 0.03), idlers("head", "tail", (2.0, 1.0), 0.03)],
+        goods=[
+            {
+                "span": ["tail", "head"],
+                "mass_per_length": 30.0,
+                "schedule": {"kind": "cosine_ramp", "start": 1.3, "end": 1.8, "value": 1.0},
+            }
+        ],
+        contact={"friction": 0.4},
+        simulation={"duration": 2.5},
+    )
+    run = bd.simulate(drive)
+    assert float(np.abs(run.dataset.energy_closure).max()) < 2e-4
+    assert float(run.dataset.carrying_loss[-1]) > 0.5 * float(run.dataset.driver_work[-1])
