@@ -6,10 +6,11 @@ from typing import NamedTuple
 
 import numpy as np
 
-from beltdyn.arrays import FloatArray
+from beltdyn.arrays import BoolArray, FloatArray
 from beltdyn.machines.carrying.goods import Goods
 from beltdyn.machines.carrying.support import OnSpan, Support
 from beltdyn.model.path import Path
+from beltdyn.model.resolution import Laid
 
 SINKING = 1e-3
 """How far belt and goods sink into a support without a given stiffness, m."""
@@ -64,6 +65,35 @@ def normal_load(
 def stiffness_of(support: Support, load: float) -> float:
     """Normal stiffness of a support under a load of belt and goods, N/m, in N/m^2."""
     return support.stiffness or max(load, _LEAST_LINE_FORCE) / SINKING
+
+
+def lies_on(laid: Laid, stretch: Stretch, along: FloatArray) -> BoolArray:
+    """Whether places of a laid belt (m) lie on a stretch of a span."""
+    first = (laid.path.span_start(stretch.span) + stretch.start - laid.start) / laid.stretch
+    length = laid.path.length / laid.stretch
+    return np.asarray((along - first) % length <= stretch.length / laid.stretch)
+
+
+def hanging_lengths(supports: Sequence[Support], spans: Sequence[tuple[str, str]], path: Path) -> list[FloatArray]:
+    """Lengths of the parts of each span that no support carries, m."""
+    found = []
+    for span, length in zip(spans, path.span_lengths.tolist(), strict=True):
+        own = [stretch_of(one, spans, path) for one in supports if one.span == span]
+        place, parts = 0.0, list[float]()
+        for start, end in sorted((one.start, one.end) for one in own):
+            parts.append(start - place)
+            place = max(place, end)
+        found.append(np.maximum([*parts, length - place], 0.0))
+    return found
+
+
+def swinging_lengths(supports: Sequence[Support], spans: Sequence[tuple[str, str]], path: Path) -> FloatArray:
+    """Longest length of each span that swings freely, also from idler to idler, m, shape (s,)."""
+    found = [parts.max() for parts in hanging_lengths(supports, spans, path)]
+    for one in supports:
+        span = list(spans).index(one.span)
+        found[span] = max(found[span], one.free_length)
+    return np.array(found)
 
 
 def check_carrying(

@@ -1,6 +1,7 @@
 """The belt at rest on its pulleys: closed-form estimates, or static equilibrium."""
 
 from dataclasses import dataclass
+from math import inf
 
 import numpy as np
 
@@ -43,10 +44,13 @@ class Installation:
     (s,)."""
 
 
-def span_frequencies(belt: Belt, path: Path, tensions: FloatArray, gravity: tuple[float, float]) -> FloatArray:
+def span_frequencies(
+    belt: Belt, path: Path, tensions: FloatArray, gravity: tuple[float, float], lengths: FloatArray
+) -> FloatArray:
     """First frequencies of the spans of a belt of given length, Hz; see `theory.span`.
 
-    The mass of a meter is that of the stretched belt. A slack belt does not swing: zero.
+    The mass of a meter is that of the stretched belt. `lengths` are those that swing, m, shape (s,). A slack belt does
+    not swing: zero. Where supports hold all of it, the frequency is infinite.
     """
     if not tensions.min() > 0.0:
         return np.zeros(path.spans)
@@ -60,6 +64,8 @@ def span_frequencies(belt: Belt, path: Path, tensions: FloatArray, gravity: tupl
             bending=belt.bending_stiffness,
             sag_parameter=sag_parameter(mass * weight, length, tension, belt.local_stiffness(tension)),
         )
-        for length, weight, tension in zip(path.span_lengths.tolist(), across.tolist(), tensions.tolist(), strict=True)
+        if length > 0.0
+        else inf
+        for length, weight, tension in zip(lengths.tolist(), across.tolist(), tensions.tolist(), strict=True)
     ]
     return np.array(found)

@@ -16,7 +16,7 @@ from beltdyn.machines.carrying.support import OnSpan
 from beltdyn.model.belt import Belt
 from beltdyn.model.carriage import Carriage
 from beltdyn.model.carrier import Carrier, carriers_of, moved
-from beltdyn.model.carrying import Stretch, stretch_of
+from beltdyn.model.carrying import Stretch, stretch_of, swinging_lengths
 from beltdyn.model.completion import take_up
 from beltdyn.model.contact import Contact
 from beltdyn.model.defaults import Choice, critical_damping
@@ -224,7 +224,9 @@ class Prepared:
             tensioner_positions=positions,
             path=path,
             hub_loads=hub_loads,
-            span_frequencies=span_frequencies(belt, path, span_tensions, self.gravity),
+            span_frequencies=span_frequencies(
+                belt, path, span_tensions, self.gravity, swinging_lengths(self.supports, self.spans, path)
+            ),
         )
 
     @cached_property

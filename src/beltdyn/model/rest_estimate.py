@@ -15,6 +15,7 @@ import numpy as np
 
 from beltdyn.arrays import FloatArray
 from beltdyn.model.carrier import moved
+from beltdyn.model.carrying import hanging_lengths
 from beltdyn.model.installation import Installation
 from beltdyn.model.path import Path
 from beltdyn.model.prepared import Prepared
@@ -133,7 +134,8 @@ class _Belt:
         """Unstretched length, m."""
         inner = [radius - arc.depth for arc, radius in self._rims]
         path = self._around(inner)
-        sag = float(np.sum((self._across * path.span_lengths / self.tension) ** 2 * path.span_lengths)) / 24.0
+        cubes = np.array([float(np.sum(parts**3)) for parts in self._hanging])
+        sag = float(np.sum((self._across / self.tension) ** 2 * cubes)) / 24.0
         ends = sum(
             2.0 * end_of_contact(arc.depth, r, self._bend) for (arc, _), r in zip(self._rims, inner, strict=True)
         )
@@ -162,13 +164,22 @@ class _Belt:
 
     @property
     def hub_loads(self) -> FloatArray:
-        """Of the spans, and of the weight of the belt up to their middles, N, shape (n, 2)."""
+        """Of the spans, and of the weight of the belt up to their middles, N, shape (n, 2).
+
+        Supports carry the weight across a span.
+        """
         path, pulls = self.spans, self.span_tensions[:, None] * self.spans.span_directions
-        before = np.arange(path.count) - 1
-        carried = path.wrap_angles * np.abs(path.radii) + 0.5 * (
-            path.span_lengths[before] + path.span_lengths[: path.count]
-        )
-        return np.asarray(pulls[: path.count] - pulls[before] + carried[:, None] * self._weight)
+        before, along = np.arange(path.count) - 1, path.span_directions
+        free = np.array([parts.sum() for parts in self._hanging])[:, None]
+        carried = 0.5 * (path.span_lengths[:, None] - free) * (along @ self._weight)[:, None] * along
+        carried += 0.5 * free * self._weight
+        arcs = (path.wrap_angles * np.abs(path.radii))[:, None] * self._weight
+        return np.asarray(pulls[: path.count] - pulls[before] + arcs + carried[: path.count] + carried[before])
+
+    @property
+    def _hanging(self) -> list[FloatArray]:
+        """Lengths of the parts of each span that no support carries, m."""
+        return hanging_lengths(self.prepared.supports, self.prepared.spans, self.spans)
 
     @property
     def _bend(self) -> float:

@@ -6,6 +6,7 @@ from typing import NamedTuple
 import numpy as np
 
 from beltdyn.arrays import FloatArray
+from beltdyn.model.carrying import swinging_lengths
 from beltdyn.model.drive import Drive
 from beltdyn.model.installation import Installation, span_frequencies
 from beltdyn.theory.span import deflection_force, stretching
@@ -57,5 +58,6 @@ def _check(drive: Drive, installation: Installation, state: str, factor: float, 
         deflection = DEFLECTION * length
         more = 0.0 if held else belt.local_stiffness(tension) * stretching(deflection, length) / belt.given_length
         forces.append(deflection_force(deflection, length, tension + more, belt.bending_stiffness) / drive.belt.v_belts)
-    frequencies = span_frequencies(belt, path, tensions, drive.gravity)
+    swinging = swinging_lengths(drive.supports, drive.spans, path)
+    frequencies = span_frequencies(belt, path, tensions, drive.gravity, swinging)
     return TensionCheck(state, float(tensions.mean()), frequencies, np.array(forces))

@@ -1,14 +1,15 @@
 """Means of pulleys, spans and tensioners over the averaging window of a run."""
 
 from dataclasses import dataclass
+from functools import partial
 
 import numpy as np
 
 from beltdyn.model import Prepared
 from beltdyn.results.cycles import Window, mean_window
-from beltdyn.results.mechanics import rim_speeds
+from beltdyn.results.mechanics import pressing_at_arcs, rim_speeds, tensions_at_arcs
 from beltdyn.results.schema import Recorded, names
-from beltdyn.results.slip_safety import slip_safety_of_states
+from beltdyn.results.slip_safety import slip_safety_at_arcs, slip_safety_of_states
 from beltdyn.results.slipping import slip_parts
 from beltdyn.results.utilization import rate, utilization
 
@@ -121,7 +122,9 @@ def pulley_means(recorded: Recorded, prepared: Prepared, window: Window | None =
     single = len(window.time) == 1
     speed = window.mean(recorded, "pulley_speed") if single else window.rate(recorded, "pulley_angle")
     gross, share = (window.mean(recorded, name) for name in ("sliding_speed", "sliding_share"))
-    parts = slip_parts(rim_speeds(speed, prepared), tension, gross, window.end - window.start, prepared)
+    means = partial(window.mean, recorded)
+    pressing, at_arcs = pressing_at_arcs(means, prepared), tensions_at_arcs(means, prepared)
+    parts = slip_parts(rim_speeds(speed, prepared), tension, gross, window.end - window.start, prepared, at_arcs)
     power = window.product(recorded, "shaft_torque", "shaft_speed")
     rating = rate(prepared, speed, power, centers)
     rated = np.full(speed.size, np.nan) if rating is None else rating.power
@@ -134,7 +137,9 @@ def pulley_means(recorded: Recorded, prepared: Prepared, window: Window | None =
         *parts,
         gross,
         share * wrap_angle,
-        slip_safety_of_states(tension, belt_speed, centers, prepared),
+        slip_safety_of_states(tension, belt_speed, centers, prepared)
+        if pressing is None
+        else slip_safety_at_arcs(pressing, centers, prepared),
         wrap_angle,
         np.hypot(hub_force[:, 0], hub_force[:, 1]),
         rated,

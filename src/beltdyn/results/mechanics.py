@@ -4,6 +4,7 @@ Along the last axis lie pulleys, spans or contact points. Span i leaves pulley i
 last one reaches pulley 0.
 """
 
+from collections.abc import Callable
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -60,6 +61,39 @@ def across(spans: FloatArray, prepared: Prepared) -> tuple[FloatArray, FloatArra
     """Values of the spans before and after every pulley, in the direction of ascending belt coordinate."""
     pulleys = len(prepared.pulleys)
     return np.roll(spans, 1, axis=-1)[..., :pulleys], spans[..., :pulleys]
+
+
+Pair = tuple[FloatArray, FloatArray]
+"""Values where the belt reaches and leaves every pulley, each of shape (..., pulleys)."""
+
+
+def pressing_at_arcs(value_of: Callable[[str], FloatArray], prepared: Prepared) -> Pair | None:
+    """Tensions less m v^2 at the ends of arcs, N, of a belt that carries; `value_of` gives recorded variables by name.
+
+    The torque of the belt on the pulley is their difference, and the force on its hub, less the weight of the belt on
+    the arc, their sum. Without supports and goods, the tension of spans says the same.
+    """
+    if not prepared.carries:
+        return None
+    path, pulleys = prepared.path, len(prepared.pulleys)
+    torque, hub_force, centers = (value_of(name) for name in ("pulley_torque", "hub_force", "pulley_center"))
+    spans = span_directions(centers, path.radii, path.ends)
+    reached, left = np.roll(spans, 1, axis=-2)[..., :pulleys, :], spans[..., :pulleys, :]
+    size = np.abs(path.radii) * wrap_angles(spans, path.radii)
+    pull = hub_force - prepared.belt.mass_per_length * size[..., None] * np.array(prepared.gravity)
+    turn = 1.0 - np.sum(reached * left, axis=-1)
+    both = np.divide(np.sum(pull * (left - reached), axis=-1), turn, out=np.full_like(turn, np.nan), where=turn > 0.0)
+    more = -np.array([one.turning for one in prepared.pulleys]) * torque / prepared.radii
+    return 0.5 * (both + more), 0.5 * (both - more)
+
+
+def tensions_at_arcs(value_of: Callable[[str], FloatArray], prepared: Prepared) -> Pair:
+    """Tensions at the ends of arcs, N: those of the spans there, or of a belt that carries, from `pressing_at_arcs`."""
+    pressing = pressing_at_arcs(value_of, prepared)
+    if pressing is None:
+        return across(value_of("span_tension"), prepared)
+    before, after = across(prepared.belt.mass_per_length * value_of("belt_speed") ** 2, prepared)
+    return pressing[0] + before, pressing[1] + after
 
 
 def cells(belt_coordinate: FloatArray, length: float) -> FloatArray:

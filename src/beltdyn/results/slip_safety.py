@@ -23,7 +23,7 @@ from numpy.typing import NDArray
 from beltdyn.arrays import BoolArray, FloatArray, IntArray
 from beltdyn.model import Prepared
 from beltdyn.model.path import span_directions, wrap_angles
-from beltdyn.results.mechanics import across
+from beltdyn.results.mechanics import UNLOADED, across
 from beltdyn.results.tension_balance import Condition, TensionBalance
 
 STATE = ("span_tension", "belt_speed", "pulley_center")
@@ -66,13 +66,34 @@ def slip_safety_of_states(
         return safeties.reshape(*shape, pulleys)
 
 
-def friction_used(tension: FloatArray, belt_speed: FloatArray, centers: FloatArray, prepared: Prepared) -> FloatArray:
+def slip_safety_at_arcs(pressing: tuple[FloatArray, FloatArray], centers: FloatArray, prepared: Prepared) -> FloatArray:
+    """Slip safety of each pulley of a belt that carries, 1 / s at the sum of the present tensions at its arc.
+
+    `pressing` are the tensions less m v^2 before and after each pulley (`mechanics.pressing_at_arcs`), N; centers have
+    shape (..., pulleys, 2), m. NaN as in `slip_safety_of_states`.
+    """
+    before, after = pressing
+    wrap = wrap_angles(span_directions(centers, prepared.path.radii, prepared.path.ends), prepared.path.radii)
+    held, apart = (before + after) * np.tanh(0.5 * prepared.frictions * wrap), np.abs(before - after)
+    loaded = (apart > UNLOADED * np.abs(before + after)) & ~prepared.toothed
+    return np.divide(np.maximum(held, 0.0), apart, out=np.full_like(held, np.nan), where=loaded)
+
+
+def friction_used(
+    tension: FloatArray,
+    belt_speed: FloatArray,
+    centers: FloatArray,
+    prepared: Prepared,
+    pressing: tuple[FloatArray, FloatArray] | None = None,
+) -> FloatArray:
     """Share of friction used by each pulley, ln((T1 - m v^2) / (T2 - m v^2)) / mu theta.
 
-    Parameters and shape of the result are those of `slip_safety_of_states`; 1 or more where the whole arc slides.
+    Parameters and shape of the result are those of `slip_safety_of_states`, and `pressing` is that of
+    `slip_safety_at_arcs`; 1 or more where the whole arc slides.
     """
     wrap = wrap_angles(span_directions(centers, prepared.path.radii, prepared.path.ends), prepared.path.radii)
-    before, after = across(tension - prepared.belt.mass_per_length * belt_speed**2, prepared)
+    lifted = prepared.belt.mass_per_length * belt_speed**2
+    before, after = across(tension - lifted, prepared) if pressing is None else pressing
     with np.errstate(invalid="ignore", divide="ignore"):
         ratio = np.log(np.maximum(before, after) / np.maximum(np.minimum(before, after), 0.0))
         return np.where(prepared.toothed, 0.0, ratio / (prepared.frictions * wrap))

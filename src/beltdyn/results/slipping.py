@@ -53,7 +53,12 @@ class SlipParts(NamedTuple):
 
 
 def slip_parts(
-    rim: FloatArray, tension: FloatArray, gross: FloatArray, elapsed: FloatArray | float, prepared: Prepared
+    rim: FloatArray,
+    tension: FloatArray,
+    gross: FloatArray,
+    elapsed: FloatArray | float,
+    prepared: Prepared,
+    at_arcs: tuple[FloatArray, FloatArray] | None = None,
 ) -> SlipParts:
     """Take slip apart into elastic creep, bending, what the slope of the friction law makes, and sliding.
 
@@ -65,13 +70,15 @@ def slip_parts(
     the span has (`theory.elastic_creep.entry_strain`), on small pulleys by as much as it creeps. The rolling radii have
     a part of that already. A law of friction that starts at zero lets the belt creep where it touches, and on, while it
     bends.
+
+    The tension T is that of spans, or where the belt reaches and leaves the pulleys (`at_arcs`), if it varies.
     """
     law = prepared.belt.stretch_parameters
     stretched = (law.stretch(np.max(tension, axis=-1)) - 1.0) * prepared.belt_length
     driver = prepared.reference
     runs = np.abs(rim[..., driver]) * elapsed > np.maximum(stretched, 0.0)
     rim = np.where(runs[..., None], rim, 0.0)
-    before, after = across(tension, prepared)
+    before, after = across(tension, prepared) if at_arcs is None else at_arcs
     reaching = np.where(rim[..., driver, None] > 0.0, before, after)
     reached, lost = law.stretch(reaching), _entry_loss(reaching, prepared)
     total, sliding = relative_loss(-rim, rim, driver), relative_loss(gross, rim, driver)

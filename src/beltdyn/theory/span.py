@@ -31,6 +31,18 @@ def sag_parameter(weight: float, length: float, tension: float, axial_stiffness:
     return sag**2 * axial_stiffness / (tension * (1.0 + sag**2 / 8.0))
 
 
+def sag_ratio(weight: float, length: float, tension: float) -> float:
+    """Sag of a shallow span over its length, w l / 8 T, with the weight w across it, N/m.
+
+    Examples
+    --------
+    >>> from beltdyn.theory.span import sag_ratio
+    >>> sag_ratio(1000.0, 1.2, 15e3)
+    0.01
+    """
+    return weight * length / (8.0 * tension)
+
+
 def lowest_frequency(
     length: float, tension: float, mass: float, *, bending: float = 0.0, sag_parameter: float = 0.0
 ) -> float:

@@ -7,7 +7,15 @@ import pytest
 
 import beltdyn as bd
 from beltdyn.errors import ModelError
-from beltdyn.model.carrying import SINKING, normal_load, stiffness_of, stretch_of, upper_side
+from beltdyn.model.carrying import (
+    SINKING,
+    hanging_lengths,
+    normal_load,
+    stiffness_of,
+    stretch_of,
+    swinging_lengths,
+    upper_side,
+)
 
 GRAVITY = (0.0, -9.81)
 
@@ -94,3 +102,29 @@ def test_schedules_of_goods_are_breakpoints() -> None:
 def test_a_drive_that_carries_is_written_and_read() -> None:
     drive = conveyor()
     assert bd.loads(bd.dumps(drive)) == drive
+
+
+def test_what_no_support_carries_hangs_and_swings() -> None:
+    """20 m less 2 m at the start, 4 m at the end and a gap of 1 m; from idler to idler where all is carried."""
+    drive = conveyor(support=[IDLERS | {"start": 2.0, "end": 10.0}, IDLERS | {"start": 11.0, "end": 16.0}])
+    length = float(drive.path.span_lengths[1])
+    free, held = hanging_lengths(drive.supports, drive.spans, drive.path)
+    np.testing.assert_allclose(free, [drive.path.span_lengths[0]])
+    np.testing.assert_allclose(held, [2.0, 1.0, length - 16.0])
+    np.testing.assert_allclose(swinging_lengths(drive.supports, drive.spans, drive.path), [free[0], length - 16.0])
+    whole = conveyor(support=[IDLERS | {"spacing": 1.5}])
+    assert swinging_lengths(whole.supports, whole.spans, whole.path)[1] == 1.5
+
+
+def test_a_carried_span_does_not_sag_and_swings_between_its_idlers() -> None:
+    """Its frequency is that of a string of the spacing."""
+    both = [IDLERS, IDLERS | {"span": ["head", "tail"], "spacing": 2.0}]
+    drive = conveyor(support=both, goods=[])
+    _, found = bd.model.estimate_at_rest(bd.model.prepare(drive))
+    mass = drive.belt.mass_per_length
+    for span, spacing in enumerate((2.0, 1.0)):
+        string = np.sqrt(found.span_tensions[span] / mass) / (2.0 * spacing)
+        assert found.span_frequencies[span] == pytest.approx(string, rel=0.01)
+    free, _ = bd.model.estimate_at_rest(bd.model.prepare(conveyor(support=[], goods=[])))
+    carried, _ = bd.model.estimate_at_rest(bd.model.prepare(drive))
+    assert carried.belt_length < free.belt_length

@@ -79,6 +79,11 @@ class Idlers(Support):
         }
 
     @property
+    def free_length(self) -> float:
+        """As in the base."""
+        return self.spacing
+
+    @property
     def rotating_mass(self) -> float:
         """As in the base."""
         return self.idler_mass / self.spacing

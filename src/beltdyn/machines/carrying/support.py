@@ -68,6 +68,11 @@ class Support(OnSpan):
         return {name: getattr(self, name) for name in self.constants.names or ()}
 
     @property
+    def free_length(self) -> float:
+        """Length over which the belt hangs between its parts, m."""
+        return 0.0
+
+    @property
     def rotating_mass(self) -> float:
         """Mass of rotating parts that move with the belt, kg/m."""
         return 0.0

@@ -8,6 +8,7 @@ from dataclasses import replace
 
 from beltdyn.model import Prepared
 from beltdyn.parts.messages import Finding
+from beltdyn.results.checks.carrying import sagging_belt
 from beltdyn.results.checks.contact import (
     deep_penetration,
     large_strain,
@@ -44,6 +45,7 @@ CHECKS: tuple[Check, ...] = (
     numerical_damping,
     unbalanced_powers,
     slack_spans,
+    sagging_belt,
     leaves_pulley,
     lifted_by_speed,
     deep_penetration,

@@ -1,6 +1,7 @@
 """Pulleys in gross slip, or near it."""
 
 from collections.abc import Iterator
+from functools import partial
 from math import ceil, floor
 
 import numpy as np
@@ -8,7 +9,7 @@ import numpy as np
 from beltdyn.parts.messages import Finding, listing
 from beltdyn.results.checks.evidence import Evidence
 from beltdyn.results.incidents import SLIDING_LIMIT, slides_through
-from beltdyn.results.mechanics import rim_speeds
+from beltdyn.results.mechanics import pressing_at_arcs, rim_speeds
 from beltdyn.results.slip_safety import STATE, friction_used
 
 SWEEP_REMEDY = "Raise the tension or the wrap angle, reduce the load, or sweep more slowly or to a lower speed."
@@ -51,7 +52,8 @@ def near_gross_slip(evidence: Evidence) -> Iterator[Finding]:
     worst, number = min(near, key=lambda one: one[0].slip_safety)
     prepared = evidence.prepared
     tension, speed, centers = (evidence.window.mean(evidence.recorded, name) for name in STATE)
-    least = float(friction_used(tension, speed, centers, prepared)[number])
+    at_arcs = pressing_at_arcs(partial(evidence.window.mean, evidence.recorded), prepared)
+    least = float(friction_used(tension, speed, centers, prepared, at_arcs)[number])
     pressing = 1.0 - prepared.belt.mass_per_length * float(np.mean(speed**2)) / float(np.mean(tension))
     missing = LEAST_SLIP_SAFETY / worst.slip_safety - 1.0
     held = listing([f"the tensioner of {one.pulley}" for one in prepared.moving_tensioners] or ["the belt"])

@@ -6,9 +6,9 @@ import xarray as xr
 from beltdyn.results.balance import Balance, power_balance
 from beltdyn.results.cycles import Cycle, Window, plain_window, turn_window
 from beltdyn.results.derived.labels import labelled, window
-from beltdyn.results.mechanics import across, rim_speeds
+from beltdyn.results.mechanics import pressing_at_arcs, rim_speeds, tensions_at_arcs
 from beltdyn.results.run import Run
-from beltdyn.results.slip_safety import slip_safety_of_states
+from beltdyn.results.slip_safety import slip_safety_at_arcs, slip_safety_of_states
 from beltdyn.results.slipping import slip_parts
 
 # Pulley powers over time
@@ -229,7 +229,8 @@ def slips(run: Run, start: float | None = None, end: float | None = None, *, tur
     rim = rim_speeds(speed, run.prepared)
     driver = np.abs(rim[:, run.drive.reference, None])
     rim = np.where(driver > _STANDING * np.max(driver, initial=0.0, where=np.isfinite(driver)), rim, 0.0)
-    parts = slip_parts(rim, tension, gross, np.ptp(run.dataset["time"].values), run.prepared)
+    at_arcs = tensions_at_arcs(lambda name: over.running_means(dataset[name].values), run.prepared)
+    parts = slip_parts(rim, tension, gross, np.ptp(run.dataset["time"].values), run.prepared, at_arcs)
     called = {
         "slip": (parts.slip, "Slip"),
         "creep": (parts.slip - parts.sliding, "Creep"),
@@ -308,7 +309,8 @@ def hub_loads(run: Run, start: float | None = None, end: float | None = None) ->
 def slip_safety(run: Run, start: float | None = None, end: float | None = None) -> xr.DataArray:
     """Slip safety: the factor on all loads at which each pulley reaches gross slip, at each instant.
 
-    See `beltdyn.results.slip_safety.slip_safety_of_states`: 1 at the edge of gross slip, NaN without load.
+    See `beltdyn.results.slip_safety.slip_safety_of_states`: 1 at the edge of gross slip, NaN without load. Of a belt
+    that carries it is the factor on the difference of the tensions at the pulley, at their present sum.
 
     Parameters
     ----------
@@ -329,9 +331,12 @@ def slip_safety(run: Run, start: float | None = None, end: float | None = None) 
     """
     dataset = window(run, start, end)
     tension, speed, centers = (dataset[name].values for name in ("span_tension", "belt_speed", "pulley_center"))
-    return labelled(
-        slip_safety_of_states(tension, speed, centers, run.prepared), dataset["wrap_angle"], "1", "Slip safety"
-    )
+    at_arcs = pressing_at_arcs(lambda name: dataset[name].values, run.prepared)
+    if at_arcs is None:
+        found = slip_safety_of_states(tension, speed, centers, run.prepared)
+    else:
+        found = slip_safety_at_arcs(at_arcs, centers, run.prepared)
+    return labelled(found, dataset["wrap_angle"], "1", "Slip safety")
 
 
 def tension_ratios(run: Run, start: float | None = None, end: float | None = None) -> xr.DataArray:
@@ -355,7 +360,7 @@ def tension_ratios(run: Run, start: float | None = None, end: float | None = Non
     array([1., 1.])
     """
     dataset = window(run, start, end)
-    before, after = across(dataset["span_tension"].values, run.prepared)
+    before, after = tensions_at_arcs(lambda name: dataset[name].values, run.prepared)
     tight, slack = np.maximum(before, after), np.minimum(before, after)
     ratio = np.divide(tight, slack, out=np.full_like(slack, np.nan), where=slack > 0.0)
     return labelled(ratio, dataset["wrap_angle"], "1", "Tension ratio")

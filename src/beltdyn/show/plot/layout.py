@@ -135,7 +135,7 @@ def _at_rest(drive: Drive) -> tuple[Drive, Installation]:
     """The drive, with the length or take-up that was found, and its belt at rest."""
     from beltdyn.state.installation import bring_to_rest
 
-    if drive.belt.teeth is not None:
+    if drive.stays_at_rest:
         return drive, install(drive)
     try:
         rest = bring_to_rest(drive)

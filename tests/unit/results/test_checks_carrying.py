@@ -1,0 +1,95 @@
+"""Belts that sag between idlers, and the tensions at the ends of arcs of a belt that carries."""
+
+from typing import Any
+
+import numpy as np
+import pytest
+
+import beltdyn as bd
+from beltdyn.arrays import FloatArray
+from beltdyn.model.path import span_directions
+from beltdyn.results.checks.carrying import sagging_belt
+from beltdyn.results.checks.evidence import Evidence
+from beltdyn.results.mechanics import pressing_at_arcs, tensions_at_arcs
+from beltdyn.results.slip_safety import friction_used, slip_safety_at_arcs
+
+RAMP = {"kind": "cosine_ramp", "start": 0.2, "end": 0.8, "value": 1.0}
+DRIVE = bd.Drive(
+    gravity=[0.0, -9.81],
+    belt={"profile": "flat-polyester-fabric", "width": "400 mm", "installed_tension": "2 kN"},
+    pulley=[
+        {"name": "head", "center": [0.0, 0.0], "radius": 0.2, "speed": 5.0},
+        {"name": "tail", "center": [20.0, 0.0], "radius": 0.2, "inertia": 0.15},
+    ],
+    support=[{"kind": "idlers", "span": ["tail", "head"], "spacing": 1.0}],
+    goods=[{"span": ["tail", "head"], "mass_per_length": 30.0, "start": 5.0, "end": 15.0, "schedule": RAMP}],
+    contact={"friction": 0.3},
+    simulation={"duration": 1.0},
+)
+PREPARED = bd.model.prepare(DRIVE)
+FULL = (DRIVE.belt.mass_per_length + 30.0) * 9.81 / 8.0
+"""Tension times sag over spacing, N, under goods."""
+
+
+def said(tension: FloatArray) -> list[str]:
+    """What is said of tensions at 0 and 1 s along the belt."""
+    place = np.linspace(0.0, PREPARED.belt_length, tension.shape[1], endpoint=False)
+    recorded: Any = {"field_time": np.array([0.0, 1.0]), "belt_tension": tension, "element_coordinate": place}
+    evidence: Any = Evidence(recorded, PREPARED, None)  # type: ignore[arg-type]
+    return [str(one) for one in sagging_belt(evidence)]
+
+
+def test_a_belt_under_goods_sags_by_their_weight_over_its_tension() -> None:
+    """1 % at the tension of the rule; goods are there at 1 s alone."""
+    assert not said(np.full((2, 400), 1.01 * FULL / 0.01))
+    (text,) = said(np.full((2, 400), FULL / 0.02))
+    assert text.startswith("the belt sags between idlers by 0.02 of the spacing of support[1], tail-head, at t = 1 s")
+    assert f"Raise the least tension to {FULL / 0.01:.3g} N" in text
+    assert "place idlers 2 times as close" in text
+
+
+def test_where_nothing_is_carried_on_idlers_a_belt_may_hang() -> None:
+    place = np.linspace(0.0, PREPARED.belt_length, 400, endpoint=False)
+    first = (PREPARED.laid.path.span_start(1) - PREPARED.laid.start) / PREPARED.laid.stretch % PREPARED.belt_length
+    away = (place - first) % PREPARED.belt_length > 20.1
+    assert not said(np.where(away, 1.0, 1e6) * np.ones((2, 1)))
+
+
+def recorded(before: FloatArray, after: FloatArray) -> dict[str, FloatArray]:
+    """Torque and hub forces of a belt that presses with some tensions, with the weight of its arcs."""
+    directions = span_directions(PREPARED.path.centers, PREPARED.path.radii, None)
+    reached, left = np.roll(directions, 1, axis=0), directions
+    weight = DRIVE.belt.mass_per_length * np.abs(PREPARED.path.radii) * PREPARED.path.wrap_angles * -9.81
+    hub = after[:, None] * left - before[:, None] * reached
+    hub[:, 1] += weight
+    return {
+        "pulley_torque": (after - before) * PREPARED.radii,
+        "hub_force": hub,
+        "pulley_center": PREPARED.path.centers,
+        "belt_speed": np.full(2, 3.0),
+    }
+
+
+def test_tensions_at_arcs_follow_from_torque_and_hub_force() -> None:
+    before, after = np.array([3000.0, 1200.0]), np.array([1000.0, 1150.0])
+    values = recorded(before, after)
+    found = pressing_at_arcs(values.__getitem__, PREPARED)
+    assert found is not None
+    np.testing.assert_allclose(found, (before, after), rtol=1e-9)
+    lifted = DRIVE.belt.mass_per_length * 9.0
+    np.testing.assert_allclose(tensions_at_arcs(values.__getitem__, PREPARED), (before + lifted, after + lifted))
+    safety = slip_safety_at_arcs(found, PREPARED.path.centers, PREPARED)
+    wrap = PREPARED.path.wrap_angles[0]
+    grip = float(PREPARED.frictions[0]) * wrap
+    assert safety[0] == pytest.approx(4000.0 * np.tanh(0.5 * grip) / 2000.0)
+    used = friction_used(np.zeros(2), np.zeros(2), PREPARED.path.centers, PREPARED, found)
+    assert used[0] == pytest.approx(np.log(3.0) / grip)
+
+
+def test_without_supports_the_tension_of_spans_says_the_same() -> None:
+    plain = bd.model.prepare(DRIVE.replace(support=[], goods=[]))
+    spans = {"span_tension": np.array([10.0, 20.0])}
+    assert pressing_at_arcs(spans.__getitem__, plain) is None
+    before, after = tensions_at_arcs(spans.__getitem__, plain)
+    np.testing.assert_array_equal(before, [20.0, 10.0])
+    np.testing.assert_array_equal(after, [10.0, 20.0])
