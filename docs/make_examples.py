@@ -14,6 +14,7 @@ from types import MappingProxyType
 from typing import NamedTuple
 
 import example_axes as axes
+import example_conveyors as carrying
 import example_numbers as by_hand
 import example_teeth as toothed
 import example_tensioners as tensioned
@@ -66,6 +67,8 @@ EXAMPLES: Mapping[str, Example] = MappingProxyType(
         "printer_axis": Example(("carriage_error", "span_tensions"), axes.printer_axis),
         "gantry_axis": Example(("carriage_error",), axes.gantry_axis),
         "servo_axis": Example(("speeds", "span_tensions"), toothed.servo_axis),
+        "conveyor_1km": Example(("torques", "span_tensions", "tensioners"), carrying.conveyor_1km),
+        "package_conveyor": Example(("speeds", "span_tensions"), carrying.package_conveyor),
         "slip_through": Example(("speeds", "torques", "slip_safety", "slip"), by_hand.slip_through),
         "accessory_drive": Example(
             ("speeds", "span_tensions", "tensioners", "slip", "hub_loads"), accessory.numbers, accessory.study

@@ -22,8 +22,9 @@ def new(
         The drive file to write, by default drive.toml or EXAMPLE.toml; it must not exist.
     example
         Write an example instead of the plain two-pulley drive: accessory_drive, alternator_drive, band_brake,
-        conveyor, crossed_belt, fan_direct_start, flat_belt_idler, gantry_axis, printer_axis, servo_axis,
-        slip_through, tensioner_stop, timing_drive, two_pulley, unequal_radii or washing_machine.
+        conveyor, conveyor_1km, crossed_belt, fan_direct_start, flat_belt_idler, gantry_axis, package_conveyor,
+        printer_axis, servo_axis, slip_through, tensioner_stop, timing_drive, two_pulley, unequal_radii or
+        washing_machine.
     """
     if example is None:
         name, text = "drive", files("beltdyn.cli").joinpath("new_drive.toml").read_text(encoding="utf-8")
