@@ -85,6 +85,7 @@ def at_teeth(run: bd.Run, window: slice) -> tuple[FloatArray, FloatArray]:
     return orders, 2.0 * np.abs(waves @ (weights * laid)) / weights.sum()
 
 
+@pytest.mark.slow
 def test_single_teeth_of_a_printer_leave_bands_a_pitch_apart() -> None:
     """Vertical banding: at 300 mm/s the meshing frequency is 150 Hz, whatever the speed a wave of 2 mm on the print."""
     changes = {"simulation.duration": 0.35, "simulation.output_interval": 2e-4, "simulation.rtol": 1e-3}

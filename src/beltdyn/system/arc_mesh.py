@@ -124,13 +124,17 @@ def _shares(prepared: Prepared, zones: list[Zone], lengths: FloatArray) -> tuple
 
 
 def _holding(prepared: Prepared, zones: list[Zone], lengths: FloatArray) -> FloatArray:
-    """A unit of force along the belt, spread evenly over the arc of the driver, on the nodes, shape (N, 2)."""
+    """A unit of force along the belt, spread evenly over the arc of the driver, on the nodes, shape (N, 2).
+
+    On a mesh without a node inside that arc, the one next to it has it all.
+    """
     zone = next(one for one in zones if one.pulley == prepared.reference)
     laid, starts = prepared.laid, np.cumsum(lengths) - lengths
     tangents = laid.path.tangent(laid.start + laid.stretch * starts)
     arc = abs(float(laid.path.radii[zone.pulley]) * float(laid.path.wrap_angles[zone.pulley])) / laid.stretch
     beyond = 0.5 * (zone.end - zone.start - arc)
     inner = (starts > zone.start + beyond) & (starts < zone.end - beyond)
+    inner[np.argmin(np.abs(starts - 0.5 * (zone.start + zone.end)))] = True
     weight = np.where(inner, 0.5 * (lengths + np.roll(lengths, 1)), 0.0)
     return np.asarray((weight / weight.sum())[:, None] * tangents)
 

@@ -10,7 +10,7 @@ from beltdyn.state.staying import Standing, anchor_at, bring_to_stand
 from beltdyn.system.arc_mesh import arc_count, base_coordinates, fitted, shifts_of, zones_of
 from beltdyn.system.arrays import Carrying, Motion, RingMatrix, System
 from beltdyn.system.build_carrying import with_resistance
-from beltdyn.system.build_staying import flowing_system
+from beltdyn.system.build_staying import flowing_system, staying_system
 from beltdyn.system.constant_drive import constant_drive, with_speeds_unknown
 from beltdyn.system.frame import FlowingByArcs, StayingByArcs
 from beltdyn.system.steady_assembly import Anchor, assemble_steady
@@ -96,3 +96,11 @@ def test_flows_are_coordinates_of_a_system_over_time(standing: Standing) -> None
     assert isinstance(system.frame, FlowingByArcs)
     assert system.bodies.size == standing.system.bodies.size + 3
     assert system.bodies.unknown.max() == np.asarray(system.bodies.unknown)[system.frame.place - system.first_body]
+
+
+def test_a_mesh_without_a_node_on_the_arc_of_the_driver_holds_the_belt_there_too() -> None:
+    """Four equal elements of 10 m, as before a mesh is graded."""
+    prepared = prepare(conveyor())
+    frame = staying_system(prepared, prepared.equal_lengths(4)).frame
+    assert isinstance(frame, StayingByArcs)
+    assert np.linalg.norm(frame.arcs.holding, axis=1).sum() == pytest.approx(1.0)

@@ -140,6 +140,7 @@ def test_the_wave_of_a_start_arrives_at_the_tail_after_the_length_over_its_speed
     assert arrival - (0.1 + 0.5 * rise) == pytest.approx(LENGTH / wave, rel=0.005)
 
 
+@pytest.mark.slow
 def test_energy_is_accounted_for_while_goods_are_loaded_on_a_slope() -> None:
     ramp = {"kind": "cosine_ramp", "start": 0.2, "end": 1.2, "value": 5.0}
     drive = bd.Drive(

@@ -12,7 +12,15 @@ from beltdyn.parts.quantity import Coordinate, LineDamping, LineStiffness, Name
 
 
 class LineForce(NamedTuple):
-    """Force against the motion of the belt on a meter of a support, N/m, and its derivatives."""
+    """Force against the motion of the belt on a meter of a support, N/m, and its derivatives.
+
+    Examples
+    --------
+    >>> from beltdyn.extend import LineForce
+    >>> friction, normal = 0.02, 1200.0  # idlers under a loaded belt
+    >>> LineForce(friction * normal, by_normal=friction, by_speed=0.0).force
+    24.0
+    """
 
     force: float
     by_normal: float
@@ -37,7 +45,14 @@ class OnSpan(Part):
 
 
 class Support(OnSpan):
-    """What carries the belt along a span, spread evenly over its length."""
+    """What carries the belt along a span, spread evenly over its length.
+
+    Examples
+    --------
+    >>> conveyor = bd.example("conveyor_1km")
+    >>> [(one.kind, one.span, one.spacing) for one in conveyor.supports]
+    [('idlers', ('tail', 'head'), 1.2), ('idlers', ('head', 'tail'), 3.0)]
+    """
 
     constants: ClassVar[np.dtype[np.void]]
     """Record of its constants; by default these are the fields of the same names."""
