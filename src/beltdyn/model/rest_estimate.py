@@ -134,8 +134,11 @@ class _Belt:
         """Unstretched length, m."""
         inner = [radius - arc.depth for arc, radius in self._rims]
         path = self._around(inner)
-        cubes = np.array([float(np.sum(parts**3)) for parts in self._hanging])
-        sag = float(np.sum((self._across / self.tension) ** 2 * cubes)) / 24.0
+        sag = sum(
+            float(np.sum((across * parts / self.tension) ** 2 * parts))
+            for across, parts in zip(self._across.tolist(), self._hanging(path), strict=True)
+        )
+        sag /= 24.0
         ends = sum(
             2.0 * end_of_contact(arc.depth, r, self._bend) for (arc, _), r in zip(self._rims, inner, strict=True)
         )
@@ -170,16 +173,15 @@ class _Belt:
         """
         path, pulls = self.spans, self.span_tensions[:, None] * self.spans.span_directions
         before, along = np.arange(path.count) - 1, path.span_directions
-        free = np.array([parts.sum() for parts in self._hanging])[:, None]
+        free = np.array([parts.sum() for parts in self._hanging(path)])[:, None]
         carried = 0.5 * (path.span_lengths[:, None] - free) * (along @ self._weight)[:, None] * along
         carried += 0.5 * free * self._weight
         arcs = (path.wrap_angles * np.abs(path.radii))[:, None] * self._weight
         return np.asarray(pulls[: path.count] - pulls[before] + arcs + carried[: path.count] + carried[before])
 
-    @property
-    def _hanging(self) -> list[FloatArray]:
-        """Lengths of the parts of each span that no support carries, m."""
-        return hanging_lengths(self.prepared.supports, self.prepared.spans, self.spans)
+    def _hanging(self, path: Path) -> list[FloatArray]:
+        """Lengths of the parts of each span of a path that no support carries, m."""
+        return hanging_lengths(self.prepared.supports, self.prepared.spans, path)
 
     @property
     def _bend(self) -> float:
