@@ -151,7 +151,8 @@ def _toleranced(given: Any, path: str) -> Iterator[tuple[str, str]]:
             yield from _toleranced(inner, f"{path}.{key}" if path else str(key))
     elif isinstance(given, list | tuple):
         for number, inner in enumerate(given, 1):
-            yield from _toleranced(inner, f"{path}[{entry_name(inner) or number}]")
+            if not isinstance(inner, int | float):  # of which long tables are made
+                yield from _toleranced(inner, f"{path}[{entry_name(inner) or number}]")
     elif isinstance(given, Part):
         for inside, text in given.toleranced.items():
             yield f"{path}.{inside}", text

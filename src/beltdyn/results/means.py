@@ -7,9 +7,9 @@ import numpy as np
 
 from beltdyn.model import Prepared
 from beltdyn.results.cycles import Window, mean_window
-from beltdyn.results.mechanics import pressing_at_arcs, rim_speeds, tensions_at_arcs
+from beltdyn.results.mechanics import rim_speeds, tensions_at_arcs
 from beltdyn.results.schema import Recorded, names
-from beltdyn.results.slip_safety import slip_safety_at_arcs, slip_safety_of_states
+from beltdyn.results.slip_safety import slip_safety_of
 from beltdyn.results.slipping import slip_parts
 from beltdyn.results.utilization import rate, utilization
 
@@ -112,18 +112,14 @@ class SpanSummary:
 def pulley_means(recorded: Recorded, prepared: Prepared, window: Window | None = None) -> tuple[PulleySummary, ...]:
     """Average the pulleys over a window."""
     window = mean_window(recorded, prepared) if window is None else window
-    belt_torque, shaft_torque, wrap_angle, hub_force, tension, belt_speed, centers = (
-        window.mean(recorded, name)
-        for name in (
-            *("pulley_torque", "shaft_torque", "wrap_angle", "hub_force"),
-            *("span_tension", "belt_speed", "pulley_center"),
-        )
+    means = partial(window.mean, recorded)
+    belt_torque, shaft_torque, wrap_angle, hub_force, tension, centers = map(
+        means, ("pulley_torque", "shaft_torque", "wrap_angle", "hub_force", "span_tension", "pulley_center")
     )
     single = len(window.time) == 1
-    speed = window.mean(recorded, "pulley_speed") if single else window.rate(recorded, "pulley_angle")
-    gross, share = (window.mean(recorded, name) for name in ("sliding_speed", "sliding_share"))
-    means = partial(window.mean, recorded)
-    pressing, at_arcs = pressing_at_arcs(means, prepared), tensions_at_arcs(means, prepared)
+    speed = means("pulley_speed") if single else window.rate(recorded, "pulley_angle")
+    gross, share = map(means, ("sliding_speed", "sliding_share"))
+    at_arcs = tensions_at_arcs(means, prepared)
     parts = slip_parts(rim_speeds(speed, prepared), tension, gross, window.end - window.start, prepared, at_arcs)
     power = window.product(recorded, "shaft_torque", "shaft_speed")
     rating = rate(prepared, speed, power, centers)
@@ -137,9 +133,7 @@ def pulley_means(recorded: Recorded, prepared: Prepared, window: Window | None =
         *parts,
         gross,
         share * wrap_angle,
-        slip_safety_of_states(tension, belt_speed, centers, prepared)
-        if pressing is None
-        else slip_safety_at_arcs(pressing, centers, prepared),
+        slip_safety_of(means, prepared),
         wrap_angle,
         np.hypot(hub_force[:, 0], hub_force[:, 1]),
         rated,

@@ -23,7 +23,7 @@ from numpy.typing import NDArray
 from beltdyn.arrays import BoolArray, FloatArray, IntArray
 from beltdyn.model import Prepared
 from beltdyn.model.path import span_directions, wrap_angles
-from beltdyn.results.mechanics import UNLOADED, across
+from beltdyn.results.mechanics import UNLOADED, across, pressing_at_arcs
 from beltdyn.results.tension_balance import Condition, TensionBalance
 
 STATE = ("span_tension", "belt_speed", "pulley_center")
@@ -64,6 +64,18 @@ def slip_safety_of_states(
         balance = TensionBalance(prepared, *flat, centers.reshape(-1, pulleys, 2), rough)
         safeties = np.where(prepared.toothed, np.nan, _safeties(balance))
         return safeties.reshape(*shape, pulleys)
+
+
+def slip_safety_of(value_of: Callable[[str], FloatArray], prepared: Prepared) -> FloatArray:
+    """Slip safety of each pulley: `slip_safety_of_states`, or of a belt that carries `slip_safety_at_arcs`.
+
+    `value_of` gives recorded variables by name.
+    """
+    pressing = pressing_at_arcs(value_of, prepared)
+    tension, belt_speed, centers = (value_of(name) for name in STATE)
+    if pressing is None:
+        return slip_safety_of_states(tension, belt_speed, centers, prepared)
+    return slip_safety_at_arcs(pressing, centers, prepared)
 
 
 def slip_safety_at_arcs(pressing: tuple[FloatArray, FloatArray], centers: FloatArray, prepared: Prepared) -> FloatArray:

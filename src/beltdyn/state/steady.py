@@ -21,7 +21,7 @@ from beltdyn.state.newton import SteadyWork
 from beltdyn.state.refinement import MeshRule, against_coarser, is_fine, refine, steady_from_rest
 from beltdyn.state.search import SteadySearch
 from beltdyn.state.staying import FINER, Standing, bring_to_stand, carried
-from beltdyn.system.arc_mesh import MESH_LENGTHS, MESH_SHIFTS, mesh_attributes, shifts_of
+from beltdyn.system.arc_mesh import MESH_SHIFTS, lengths_of, mesh_attributes, shifts_of
 from beltdyn.system.arrays import System
 from beltdyn.system.constant_drive import rigid_links
 from beltdyn.system.meshing import TOOTH_PHASES, has_teeth, phases
@@ -67,9 +67,7 @@ def search_from(prepared: Prepared, start: Run, time: float) -> SteadySearch:
     Its speeds are changed in proportion to those that are prescribed.
     """
     found = start.dataset
-    lengths = found.attrs.get(MESH_LENGTHS)
-    if lengths is None:
-        lengths = np.diff(found.node_coordinate.values, append=start.prepared.belt_length)
+    lengths = lengths_of(found, start.prepared.belt_length)
     system, state = carried(prepared, start.prepared, lengths, found.nodal_coordinates.values[-1].ravel())
     if system.tensioners.size:
         state.position[-system.tensioners.size :] += found.tensioner_position.values[-1]

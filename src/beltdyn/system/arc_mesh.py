@@ -8,7 +8,7 @@ element has the reference length l = l_0 - (U_j - U_i).
 
 from collections.abc import Callable
 from itertools import pairwise
-from typing import Any, NamedTuple
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
@@ -27,6 +27,9 @@ from beltdyn.system.frame import (
     node_shift,
 )
 from beltdyn.system.moving_center import pulley_center, tensioner_coordinate
+
+if TYPE_CHECKING:
+    import xarray as xr
 
 _ORDERS = np.array([0, 1, 2, 0, 1, 2])
 """Of the derivatives that the vectors of a quintic element are."""
@@ -245,6 +248,12 @@ def mesh_attributes(system: System) -> dict[str, FloatArray]:
     if not isinstance(system.frame, StayingByArcs):
         return {}
     return {MESH_LENGTHS: system.frame.arcs.length.copy(), MESH_SHIFTS: system.frame.shift.copy()}
+
+
+def lengths_of(dataset: "xr.Dataset", belt_length: float) -> FloatArray:
+    """Lengths of the elements of a result where no length of belt has gone over, m."""
+    lengths = dataset.attrs.get(MESH_LENGTHS)
+    return np.asarray(np.diff(dataset["node_coordinate"].values, append=belt_length) if lengths is None else lengths)
 
 
 def passed_at(system: System, ways: ComplexArray, along: FloatArray) -> ComplexArray:

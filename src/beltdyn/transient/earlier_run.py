@@ -16,7 +16,7 @@ from beltdyn.parts.text_file import entry_name, shorten
 from beltdyn.results import Run, open_run
 from beltdyn.results.schema import runs_steadily
 from beltdyn.state.settling import DIRECTION, Beginning
-from beltdyn.system.arc_mesh import MESH_LENGTHS
+from beltdyn.system.arc_mesh import MESH_LENGTHS, lengths_of
 from beltdyn.system.arrays import System
 from beltdyn.system.build import drive_system
 from beltdyn.system.build_staying import flowing_system, staying_system
@@ -55,9 +55,7 @@ def instant_of(run: Run, at: float | str | None, name: str = "at") -> float:
 
 def staying_mesh(prepared: Prepared, run: Run) -> System:
     """The arrays of a drive over time on the mesh of a run that stays, with a belt that does not flow."""
-    lengths = run.dataset.attrs.get(MESH_LENGTHS)
-    if lengths is None:
-        lengths = np.diff(run.dataset["node_coordinate"].values, append=prepared.belt_length)
+    lengths = lengths_of(run.dataset, prepared.belt_length)
     return turned_by(prepared, staying_system(prepared, lengths), run.dataset.attrs.get(TOOTH_PHASES))
 
 

@@ -6,9 +6,9 @@ import xarray as xr
 from beltdyn.results.balance import Balance, power_balance
 from beltdyn.results.cycles import Cycle, Window, plain_window, turn_window
 from beltdyn.results.derived.labels import labelled, window
-from beltdyn.results.mechanics import pressing_at_arcs, rim_speeds, tensions_at_arcs
+from beltdyn.results.mechanics import rim_speeds, tensions_at_arcs
 from beltdyn.results.run import Run
-from beltdyn.results.slip_safety import slip_safety_at_arcs, slip_safety_of_states
+from beltdyn.results.slip_safety import slip_safety_of
 from beltdyn.results.slipping import slip_parts
 
 # Pulley powers over time
@@ -330,12 +330,7 @@ def slip_safety(run: Run, start: float | None = None, end: float | None = None) 
     ('time', 'pulley')
     """
     dataset = window(run, start, end)
-    tension, speed, centers = (dataset[name].values for name in ("span_tension", "belt_speed", "pulley_center"))
-    at_arcs = pressing_at_arcs(lambda name: dataset[name].values, run.prepared)
-    if at_arcs is None:
-        found = slip_safety_of_states(tension, speed, centers, run.prepared)
-    else:
-        found = slip_safety_at_arcs(at_arcs, centers, run.prepared)
+    found = slip_safety_of(lambda name: dataset[name].values, run.prepared)
     return labelled(found, dataset["wrap_angle"], "1", "Slip safety")
 
 
