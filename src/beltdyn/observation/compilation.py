@@ -44,7 +44,7 @@ def usable_cores() -> int:
 
 def compile_kernels(system: System, state: State) -> None:
     """Call every kernel that static equilibrium, generalized-alpha and observation need, on no work at all."""
-    with _second_process(system, state):
+    with ahead(compile_solving, system, state):
         compile_observing(system)
     compile_solving(system, state)
 
@@ -63,7 +63,7 @@ def compile_observing(system: System) -> None:
 
 def compile_for_rest(system: System, state: State) -> None:
     """Call the kernels that static equilibrium needs."""
-    with _second_process(system, state):
+    with ahead(compile_solving, system, state):
         _compile_looking(system)
     compile_solving(system, state)
 
@@ -119,21 +119,11 @@ def _report(process: "subprocess.Popen[str]") -> None:
 
 
 @contextmanager
-def _second_process(system: System, state: State) -> Iterator[None]:
-    """Compile what solves the equations in another process meanwhile, if that is of use.
+def ahead(function: Callable[..., object], system: System, *others: object) -> Iterator[None]:
+    """Let another process compile meanwhile what is needed next, where that is not compiled; see `beside`.
 
     Kernels depend on the classes of elements, laws and surfaces, so that the other process needs the system.
     """
-    if holds_kernels(kernel_cache()):
-        yield
-        return
-    with beside(compile_solving, system, state):
-        yield
-
-
-@contextmanager
-def ahead(function: Callable[..., object], system: System, *others: object) -> Iterator[None]:
-    """Let another process compile meanwhile what is needed next, where that is not compiled; see `beside`."""
     kind = function, tuple(map(type, system))
     if _helps or kind in _compiled:
         yield

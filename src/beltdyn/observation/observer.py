@@ -21,7 +21,7 @@ from beltdyn.solvers.flutter import Flutter, FlutterWatch
 from beltdyn.solvers.trajectory import Chunk
 from beltdyn.system.arrays import BENDING_LOSS, ENERGY_WORKS, STRETCH_LOSS, System
 from beltdyn.system.discretization import curve_lengths
-from beltdyn.system.frame import Flowing, FlowingByArcs, Travelling
+from beltdyn.system.frame import OverTime, Travelling
 from beltdyn.system.moving_center import pulley_speeds
 from beltdyn.system.observations import OBSERVED
 from beltdyn.system.observe import observe_motion
@@ -94,7 +94,7 @@ class Observer:
         self._friction_work = FrictionWork(prepared, np.outer(lengths, system.contact.weights).ravel(), len(lengths))
         self._material_work = MaterialWork(lengths)
         self._energy = EnergyAccount()
-        self._flutter = None if isinstance(system.frame, Flowing | FlowingByArcs) else FlutterWatch(system)
+        self._flutter = None if isinstance(system.frame, OverTime) else FlutterWatch(system)
         self._jumps = JumpWatch(system, belt_coordinate) if isinstance(system.rims, ToothedRims) else None
 
     def see(self, states: Chunk, shown: BoolArray) -> Seen:
@@ -144,7 +144,7 @@ class Observer:
         Where the belt flows through the mesh, it is spread on what passes in each step, whichever states are shown.
         """
         frame = self._system.frame
-        if isinstance(frame, Flowing | FlowingByArcs):
+        if isinstance(frame, OverTime):
             on_arc, on_mesh = self._friction_work.take(touch, np.ones_like(shown))
             return on_arc[shown], self._material_work.take(on_mesh, states.position[:, frame.place])[shown]
         on_arc, on_belt = self._friction_work.take(touch, shown)

@@ -27,7 +27,7 @@ from beltdyn.solvers.progress import Pace, Phase, Progress, Report
 from beltdyn.solvers.trajectory import Chunk, Statistics, interpolated
 from beltdyn.system.arrays import System
 from beltdyn.system.discretization import curve_lengths, element_kind, point_coordinates
-from beltdyn.system.frame import Flowing, FlowingByArcs, Travelling
+from beltdyn.system.frame import FlowingByArcs, OverTime, Travelling
 from beltdyn.system.single_teeth import tooth_coordinates
 from beltdyn.system.state import laid
 
@@ -101,7 +101,7 @@ def _bodies(prepared: Prepared, system: System) -> tuple[str, ...]:
         if load.state_lag is not None
     ]
     flow = [f"belt at {name}" for name in names] if isinstance(system.frame, FlowingByArcs) else []
-    flow += ["belt"] if isinstance(system.frame, Flowing | FlowingByArcs) else []
+    flow += ["belt"] if isinstance(system.frame, OverTime) else []
     tensioners = (f"{names[pulley]} tensioner" for pulley in system.tensioners.pulley)
     return (*names, *hubs, *lags, *flow, *tensioners, *_carriages(prepared))
 

@@ -19,7 +19,7 @@ from beltdyn.solvers.eigenvalues import arnoldi, unit_masses
 from beltdyn.solvers.engine import linearise
 from beltdyn.system.arc_mesh import arc_count
 from beltdyn.system.arrays import Motion, System, TangentFactors
-from beltdyn.system.frame import Flowing, FlowingByArcs
+from beltdyn.system.frame import OverTime
 from beltdyn.system.motion import new_equations, no_multipliers
 from beltdyn.system.moving_center import pulley_speeds
 from beltdyn.system.ring_matrix import entries, places
@@ -48,7 +48,7 @@ class Vibrations:
         self.size = system.first_body + len(self._equations.matrix.corner)
         multipliers = self.size - len(system.scale) * system.joint
         self._ties = np.maximum(self._rows, self._columns) >= multipliers
-        if isinstance(system.frame, Flowing | FlowingByArcs):
+        if isinstance(system.frame, OverTime):
             self._ties |= self._rows >= self.size - 1 - arc_count(system.frame)
 
     def tangents(

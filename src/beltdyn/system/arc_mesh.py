@@ -19,6 +19,7 @@ from beltdyn.model import Prepared
 from beltdyn.system.arrays import Motion, RingMatrix, System, TangentFactors
 from beltdyn.system.frame import (
     ArcMesh,
+    ByArcs,
     Flowing,
     FlowingByArcs,
     Staying,
@@ -217,13 +218,13 @@ fit_mesh: Callable[[Any, System, FloatArray], None] = by_type(
 
 def fitted(system: System, position: FloatArray) -> None:
     """Give the elements their lengths at a position."""
-    if isinstance(system.frame, StayingByArcs | FlowingByArcs):
+    if isinstance(system.frame, ByArcs):
         _fit(system.frame, system, position)
 
 
 def base_coordinates(system: System, along: FloatArray) -> FloatArray:
     """Belt coordinates (m) by the lengths that elements have where no length of belt has gone over."""
-    if not isinstance(system.frame, StayingByArcs | FlowingByArcs):
+    if not isinstance(system.frame, ByArcs):
         return along
     now, then = (np.append(0.0, np.cumsum(one)) for one in (system.length, system.frame.arcs.length))
     return np.asarray(np.interp(along, now, then))
@@ -231,7 +232,7 @@ def base_coordinates(system: System, along: FloatArray) -> FloatArray:
 
 def base_lengths(system: System) -> FloatArray:
     """Lengths of elements where no length of belt has gone over, m."""
-    return system.frame.arcs.length if isinstance(system.frame, StayingByArcs | FlowingByArcs) else system.length
+    return system.frame.arcs.length if isinstance(system.frame, ByArcs) else system.length
 
 
 MESH_LENGTHS, MESH_SHIFTS = "mesh_lengths", "mesh_shifts"
@@ -271,7 +272,7 @@ def passed_at(system: System, ways: ComplexArray, along: FloatArray) -> ComplexA
 
 def arc_count(frame: Any) -> int:
     """Number of arcs at which a mesh stays beside node 0."""
-    return len(frame.arcs.node) if isinstance(frame, StayingByArcs | FlowingByArcs) else 0
+    return len(frame.arcs.node) if isinstance(frame, ByArcs) else 0
 
 
 # What holds the mesh at its arcs

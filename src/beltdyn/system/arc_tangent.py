@@ -20,8 +20,8 @@ from beltdyn.kernel import by_type, kernel
 from beltdyn.system.arc_mesh import first_arc
 from beltdyn.system.arrays import Equations, Motion, System, TangentFactors
 from beltdyn.system.body_forces import differentiates_forces
-from beltdyn.system.carrying import CarryingFactors, add_carrying, find_accelerations
-from beltdyn.system.flow_tangent import NO_FLOW_TANGENT, FlowFactors, add_flow_forces, find_rate, scatter_column
+from beltdyn.system.carrying import CarryingFactors, add_to_element, find_accelerations, has_any
+from beltdyn.system.flow_tangent import add_flow_forces, find_rate, flow_factors, scatter_column
 from beltdyn.system.frame import ArcMesh, FlowingByArcs, Staying, StayingByArcs, flow_at_ends
 
 
@@ -44,10 +44,7 @@ def arcs_element(
         Changed in place.
     """
     work, flow = equations.work, equations.work.flow
-    wanted, differentiated = factors.by_acceleration != 0.0 or differentiates_forces(factors), NO_FLOW_TANGENT
-    if differentiates_forces(factors):
-        place, rate = factors.by_position, factors.by_velocity
-        differentiated = FlowFactors(place, rate, rate, rate, factors.secant)
+    wanted, differentiated = factors.by_acceleration != 0.0 or differentiates_forces(factors), flow_factors(factors)
     find_rate(system, element, work)
     flow.by_speed[:], flow.by_end[:] = 0.0, 0.0
     if wanted and factors.by_position != 0.0 and not keeps_length(frame.arcs, element, (element + 1) % system.nodes):
@@ -55,8 +52,9 @@ def arcs_element(
     find_accelerations(frame, system, motion, element, work)
     _add_inertia(frame, system, motion, factors, element, wanted, work)
     add_flow_forces(system, motion, element, differentiated, equations)
-    by = CarryingFactors(factors.by_position, factors.by_velocity, factors.by_velocity, factors.by_acceleration)
-    add_carrying(system.carrying, system, motion, element, by, work, equations.forces)
+    if has_any(system.carrying, element):
+        by = CarryingFactors(factors.by_position, factors.by_velocity, factors.by_velocity, factors.by_acceleration)
+        add_to_element(system.carrying, system, motion, element, by, work, equations.forces)
     if wanted:
         scatter_column(system, element, equations)
         scatter_shifts(frame, system, element, work.flow.by_speed, equations)

@@ -285,13 +285,8 @@ def _add_tangent(
         xy = carry.by_place[0, 1] * place + carry.by_rate[0, 1] * own - lasting * ux * uy
         yx = carry.by_place[1, 0] * place + carry.by_rate[1, 0] * own - lasting * ux * uy
         yy = carry.by_place[1, 1] * place + carry.by_rate[1, 1] * own - riding - lasting * uy * uy
-        column = vectors[b]
         for a in range(len(vectors)):
-            share, row = weight * carry.functions[a], vectors[a]
-            tangent[row, column] -= share * xx
-            tangent[row, column + 1] -= share * xy
-            tangent[row + 1, column] -= share * yx
-            tangent[row + 1, column + 1] -= share * yy
+            _subtract(tangent, vectors[a], vectors[b], weight * carry.functions[a], (xx, xy, yx, yy))
 
 
 @kernel(inline=True)
@@ -300,13 +295,20 @@ def _add_stretching(system: System, fx: float, fy: float, inertia: _Inertia, wei
     carry, tangent, vectors = work.carrying, work.element.tangent, system.vectors
     for b in range(len(vectors)):
         by_x, by_y = weight * carry.rates[b] * inertia.x, weight * carry.rates[b] * inertia.y
-        column = vectors[b]
+        block = (fx * by_x, fx * by_y, fy * by_x, fy * by_y)
         for a in range(len(vectors)):
-            row, shape = vectors[a], carry.functions[a]
-            tangent[row, column] -= shape * fx * by_x
-            tangent[row, column + 1] -= shape * fx * by_y
-            tangent[row + 1, column] -= shape * fy * by_x
-            tangent[row + 1, column + 1] -= shape * fy * by_y
+            _subtract(tangent, vectors[a], vectors[b], carry.functions[a], block)
+
+
+@kernel(inline=True)
+def _subtract(
+    tangent: FloatArray, row: int, column: int, share: float, block: tuple[float, float, float, float]
+) -> None:
+    """Subtract a share of a block xx, xy, yx, yy, for two vectors of an element."""
+    tangent[row, column] -= share * block[0]
+    tangent[row, column + 1] -= share * block[1]
+    tangent[row + 1, column] -= share * block[2]
+    tangent[row + 1, column + 1] -= share * block[3]
 
 
 @kernel(inline=True)
@@ -341,9 +343,16 @@ def _flow_at(flows: tuple[float, float], rates: tuple[float, float], xi: float) 
     return _Flow(flows[0] + (flows[1] - flows[0]) * xi, rates[0] + (rates[1] - rates[0]) * xi, xi)
 
 
+@kernel(inline=True)
+def has_any(carrying: Any, element: int) -> bool:
+    """Whether anything may carry an element, or is carried by it."""
+    supports, goods = carrying.first_support, carrying.first_goods
+    return bool(supports[element] != supports[element + 1] or goods[element] != goods[element + 1])
+
+
 @kernel
-def _add(
-    carrying: Carrying,
+def add_to_element(
+    carrying: Any,
     system: System,
     motion: Motion,
     element: int,
@@ -360,7 +369,8 @@ def _add(
     system, motion
         A belt on a staying mesh, and its state.
     element
-        Which one; its coordinates and the velocities of its material points are in the workspace.
+        Which one; its coordinates, the velocities of its material points and what `find_accelerations` finds are in
+        the workspace.
     factors
         Of the tangent.
     work
@@ -370,9 +380,6 @@ def _add(
     """
     first, last = carrying.first_support[element], carrying.first_support[element + 1]
     first_goods, last_goods = carrying.first_goods[element], carrying.first_goods[element + 1]
-    if first == last and first_goods == last_goods:
-        return
-    find_accelerations(system.frame, system, motion, element, work)
     flows, rates = flow_at_ends(system.frame, element, motion.velocity), _flow_rates(system.frame, element, motion)
     rule, length, carry, taken = carrying.rule, system.length[element], work.carrying, 0.0
     for k in range(first, last):
@@ -400,6 +407,22 @@ def _add(
                 weight = length * (stop - start) * rule.weights[point]
                 taken += _add_point(system, here, flow, inertia, weight, factors, work)
     forces.power[CARRYING_LOSS] += taken
+
+
+@kernel
+def _add(
+    carrying: Carrying,
+    system: System,
+    motion: Motion,
+    element: int,
+    factors: CarryingFactors,
+    work: np.record,
+    forces: BodyForces,
+) -> None:
+    """The same, with its accelerations, where there is anything."""
+    if has_any(carrying, element):
+        find_accelerations(system.frame, system, motion, element, work)
+        add_to_element(carrying, system, motion, element, factors, work, forces)
 
 
 @kernel(inline=True)

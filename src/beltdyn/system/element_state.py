@@ -45,7 +45,6 @@ def carrying_record(count: int, vectors: int) -> np.dtype[np.void]:
         functions=f"({vectors},)f8",  # shape functions and their derivatives over the belt coordinate
         rates=f"({vectors},)f8",
         bends=f"({vectors},)f8",
-        acceleration=f"({2 * vectors},)f8",
         force="(2,)f8",  # of a meter of span, N/m
         by_place="(2,2)f8",
         by_rate="(2,2)f8",  # by the velocity of the mesh

@@ -166,6 +166,15 @@ def scatter_column(system: System, element: int, equations: Equations) -> None:
 # An element of a staying mesh while the belt flows through it at a speed that changes: its equations of motion
 
 
+@kernel(inline=True)
+def flow_factors(factors: TangentFactors) -> FlowFactors:
+    """Factors of the forces of an element through which the belt flows, for those of the equations of motion."""
+    if not differentiates_forces(factors):
+        return NO_FLOW_TANGENT
+    place, rate = factors.by_position, factors.by_velocity
+    return FlowFactors(place, rate, rate, rate, factors.secant)
+
+
 @kernel
 def flowing_element(
     frame: Flowing, system: System, motion: Motion, factors: TangentFactors, element: int, equations: Equations
@@ -185,10 +194,7 @@ def flowing_element(
         Changed in place.
     """
     work, flow = equations.work, equations.work.flow
-    wanted, differentiated = factors.by_acceleration != 0.0 or differentiates_forces(factors), NO_FLOW_TANGENT
-    if differentiates_forces(factors):
-        place, rate = factors.by_position, factors.by_velocity
-        differentiated = FlowFactors(place, rate, rate, rate, factors.secant)
+    wanted, differentiated = factors.by_acceleration != 0.0 or differentiates_forces(factors), flow_factors(factors)
     find_rate(system, element, work)
     flow.by_speed[:] = 0.0
     _add_inertia(frame, system, motion, factors, element, wanted, work)

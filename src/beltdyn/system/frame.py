@@ -177,6 +177,12 @@ class FlowingByArcs(NamedTuple):
     arcs: ArcMesh
 
 
+OverTime = Flowing | FlowingByArcs
+"""A mesh that stays, in equations over time."""
+ByArcs = StayingByArcs | FlowingByArcs
+"""A mesh that stays at every arc."""
+
+
 def staying(control: FloatArray, length: FloatArray, mass: float) -> Staying:
     """The frame of a staying mesh, with a belt at rest.
 
@@ -205,7 +211,7 @@ def flowing(given: Staying, mass: FloatArray, vectors: tuple[int, ...], place: i
 
 def flow_record(frame: Any, vectors: int, coordinates: int) -> np.dtype[np.void]:
     """Kind of the scratch arrays for the derivatives by velocity of one element."""
-    pair, by_arcs = f"({vectors},2)f8", isinstance(frame, StayingByArcs | FlowingByArcs)
+    pair, by_arcs = f"({vectors},2)f8", isinstance(frame, ByArcs)
     more = {
         "still": pair,  # vectors of dv/dt at places of the mesh
         "moved": pair,  # of the acceleration of material points
@@ -284,7 +290,7 @@ passed_length: Callable[[Any, FloatArray], float] = by_type(
 
 def passed_lengths(frame: Any, positions: FloatArray) -> FloatArray:
     """Lengths of unstretched belt that have passed the mesh in k states, m, shape (k,); `positions` are theirs."""
-    return positions[:, frame.place] if isinstance(frame, Flowing) else np.zeros(len(positions))
+    return positions[:, frame.place] if isinstance(frame, OverTime) else np.zeros(len(positions))
 
 
 @kernel(inline=True)
@@ -306,19 +312,16 @@ _shift_at: Callable[[Any, FloatArray, int], float] = by_type(
 
 @kernel(inline=True)
 def node_shift(frame: Any, position: FloatArray, node: int) -> float:
-    """Length of belt that has passed a node beyond what has passed node 0, m, on a mesh that stays at every arc."""
+    """Length of belt that has passed a node beyond what has passed node 0, m, on a mesh that stays at every arc.
+
+    From velocities or accelerations of shape (n N + D,) its rate.
+    """
     arcs, total = frame.arcs, 0.0
     if arcs.before[node] >= 0:
         total += (1.0 - arcs.share[node]) * _shift_at(frame, position, arcs.before[node])
     if arcs.after[node] >= 0:
         total += arcs.share[node] * _shift_at(frame, position, arcs.after[node])
     return total
-
-
-@kernel(inline=True)
-def shift_rate(frame: FlowingByArcs, rates: FloatArray, node: int) -> float:
-    """Rate of the shift at a node, from velocities or accelerations of shape (n N + D,)."""
-    return node_shift(frame, rates, node)
 
 
 @kernel(inline=True)
@@ -330,7 +333,7 @@ def _same_at_both(frame: Any, element: int, velocity: FloatArray) -> tuple[float
 @kernel(inline=True)
 def _at_both(frame: FlowingByArcs, element: int, velocity: FloatArray) -> tuple[float, float]:
     speed, following = velocity[frame.place], (element + 1) % frame.arcs.share.size
-    return speed + shift_rate(frame, velocity, element), speed + shift_rate(frame, velocity, following)
+    return speed + node_shift(frame, velocity, element), speed + node_shift(frame, velocity, following)
 
 
 flow_at_ends: Callable[[Any, int, FloatArray], tuple[float, float]] = by_type(

@@ -1,15 +1,13 @@
 """A guide along a span, on which the belt slides: mu (n + p) against the motion."""
 
-from collections.abc import Mapping
-from math import tanh
-from typing import Any, Literal
+from typing import Literal
 
 import numpy as np
 from pydantic import Field
 
 from beltdyn.kernel import kernel
 from beltdyn.kinds import register
-from beltdyn.machines.carrying.support import LineForce, Support
+from beltdyn.machines.carrying.support import LineForce, Support, dry_resistance
 from beltdyn.parts.quantity import Ratio, Speed, Stiffness
 from beltdyn.records import record
 
@@ -33,10 +31,8 @@ def guide_resistance(constants: np.record, normal: float, speed: float) -> LineF
     speed
         v, m/s.
     """
-    rise = tanh(speed / constants.creep_speed)
-    dry = constants.friction * (normal + constants.pressing)
-    by_speed = dry * (1.0 - rise * rise) / constants.creep_speed
-    return LineForce(dry * rise, constants.friction * rise, by_speed)
+    limit = constants.friction * (normal + constants.pressing)
+    return dry_resistance(limit, constants.friction, speed, constants.creep_speed)
 
 
 @register
@@ -58,7 +54,3 @@ class Guide(Support):
         0.0, ge=0, description="the normal force of clamping, besides that of weight and curvature, in N/m"
     )
     creep_speed: Speed = Field(0.01, gt=0, description="the speed at which friction reaches 76 %, in m/s")
-
-    def values(self, weight: float) -> Mapping[str, Any]:
-        """As in the base."""
-        return {"friction": self.friction, "pressing": self.pressing, "creep_speed": self.creep_speed}

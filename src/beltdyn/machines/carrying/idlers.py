@@ -1,7 +1,6 @@
 """Idlers, spread over a span: C f (n + m_R g) + r + l v against the motion (DIN 22101, main resistance)."""
 
 from collections.abc import Mapping
-from math import tanh
 from typing import Any, Literal
 
 import numpy as np
@@ -9,7 +8,7 @@ from pydantic import Field
 
 from beltdyn.kernel import kernel
 from beltdyn.kinds import register
-from beltdyn.machines.carrying.support import LineForce, Support
+from beltdyn.machines.carrying.support import LineForce, Support, dry_resistance
 from beltdyn.parts.quantity import Length, LineDamping, Mass, Ratio, Speed, Stiffness
 from beltdyn.records import record
 
@@ -34,10 +33,9 @@ def idler_resistance(constants: np.record, normal: float, speed: float) -> LineF
     speed
         v, m/s.
     """
-    rise = tanh(speed / constants.creep_speed)
-    dry = constants.friction * normal + constants.constant
-    by_speed = dry * (1.0 - rise * rise) / constants.creep_speed + constants.linear
-    return LineForce(dry * rise + constants.linear * speed, constants.friction * rise, by_speed)
+    limit = constants.friction * normal + constants.constant
+    dry = dry_resistance(limit, constants.friction, speed, constants.creep_speed)
+    return LineForce(dry.force + constants.linear * speed, dry.by_normal, dry.by_speed + constants.linear)
 
 
 @register

@@ -1,12 +1,13 @@
 """The contract of what carries a span between its pulleys: keys, constants, and resistance against motion."""
 
 from collections.abc import Callable, Mapping
+from math import tanh
 from typing import TYPE_CHECKING, Any, ClassVar, NamedTuple, Self
 
 import numpy as np
 from pydantic import Field, model_validator
 
-from beltdyn.kernel import KernelKinds
+from beltdyn.kernel import KernelKinds, kernel
 from beltdyn.parts.part import Part
 from beltdyn.parts.quantity import Coordinate, LineDamping, LineStiffness, Name
 
@@ -26,6 +27,23 @@ class LineForce(NamedTuple):
     by_normal: float
     by_speed: float
     """N s/m^2."""
+
+
+@kernel(inline=True)
+def dry_resistance(limit: float, friction: float, speed: float, creep_speed: float) -> LineForce:
+    """Friction that reaches 76 % of its limit at the creep speed (m/s); the limit grows by friction with normal force.
+
+    Parameters
+    ----------
+    limit
+        N/m.
+    friction
+        Derivative of the limit by the normal force.
+    speed, creep_speed
+        m/s.
+    """
+    rise = tanh(speed / creep_speed)
+    return LineForce(limit * rise, friction * rise, limit * (1.0 - rise * rise) / creep_speed)
 
 
 class OnSpan(Part):
