@@ -47,11 +47,12 @@ def pytest_addoption(parser: pytest.Parser) -> None:
 @pytest.fixture(autouse=True)
 def _own_kinds() -> Iterator[None]:
     """What a test registers is forgotten behind it: checkpoints, schemas and kernels know of all kinds."""
-    before = [(registry, set(registry)) for registry in Registry.families]
+    before = {id(registry): set(registry) for registry in Registry.families}
     yield
-    for registry, known in before:
-        for name in set(registry) - known:
-            registry.forget(name)
+    for registry in Registry.families:  # some were imported meanwhile
+        for name in set(registry) - before.get(id(registry), set()):
+            if registry.is_own(name):
+                registry.forget(name)
 
 
 @pytest.fixture

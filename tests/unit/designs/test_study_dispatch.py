@@ -6,14 +6,12 @@ import signal
 import warnings
 from collections.abc import Callable, Mapping
 from contextlib import suppress
-from functools import partial
 from pathlib import Path
 from threading import Event, Thread
 
 import numpy as np
 import pytest
 
-from beltdyn.analyses import ANALYSES
 from beltdyn.designs.point_work import Outcome, PointWork
 from beltdyn.designs.processes import LocalProcesses
 from beltdyn.designs.study import Dispatch, study
@@ -153,7 +151,6 @@ def test_a_study_on_a_cluster_outlives_thirty_kills(
     dask = pytest.importorskip("dask")
     work = tiny_work(seconds=0.1)
     register(work.analysis)
-    request.addfinalizer(partial(ANALYSES.forget, work.analysis.name))
     widths = np.linspace(0.0131, 0.02, 300).round(7).tolist()
     plan = ParameterStudy(
         analysis=work.analysis.name,

@@ -3,7 +3,6 @@
 import pickle
 import subprocess
 import sys
-from collections.abc import Iterator
 from pathlib import Path
 from typing import Any, Literal, NamedTuple, cast
 
@@ -15,7 +14,6 @@ from pydantic import Field
 import beltdyn as bd
 from beltdyn.errors import ModelError
 from beltdyn.extend import FrictionLaw, Load, LoadTorque, Parameter, Stretching, StretchLaw, kernel, record, register
-from beltdyn.kinds import Registry
 from beltdyn.model import Drive
 from beltdyn.parts.kind_fields import chosen_kinds
 
@@ -56,7 +54,7 @@ def pulled(constants: np.record, _numbers: Any, _shaft: Any) -> LoadTorque:
 
 
 @pytest.fixture
-def own(drive: Drive) -> Iterator[Drive]:
+def own(drive: Drive) -> Drive:
     """The paper's drive with an own friction law, stretch law and load, registered behind its first use."""
     slope = Parameter("slope", "kg/(m*s)", "the slope of the friction force")
     shift = Parameter("shift", "m/s", "the shift", above=None, default=0.5)
@@ -72,14 +70,11 @@ def own(drive: Drive) -> Iterator[Drive]:
         pull: float = Field(description="the torque, in N*m")
 
     driver, driven = drive.pulleys
-    yield drive.replace(
+    return drive.replace(
         belt=drive.belt.replace(stretch_law="cubic", growth=30.0, limit="2 kN"),
         contact=drive.contact.replace(friction_law="sloped", slope="3e4 kg/(m*s)", creep_rate_factor=None),
         pulley=[driver, driven.replace(torque=None, load=[{"kind": "pull", "pull": -2.0}])],
     )
-    for registry in Registry.families:
-        for name in [name for name in registry if registry.is_own(name)]:
-            registry.forget(name)
 
 
 def test_own_laws_take_their_keys(own: Drive) -> None:

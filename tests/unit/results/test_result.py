@@ -11,7 +11,7 @@ from beltdyn.errors import ModelError
 from beltdyn.model import Drive
 from beltdyn.results import Result, Run, Variable, build_result, open_result, open_run
 from beltdyn.show import plot
-from beltdyn.show.plot.registry import FIGURES, always, figure
+from beltdyn.show.plot.registry import always, figure
 from beltdyn.show.plot.style import axes_or_new
 
 LOADS = np.array([1.0, 2.0, 4.0])
@@ -81,14 +81,11 @@ def test_its_figures_are_those_of_its_kind(grip: Result, run: Run, tmp_path: Pat
         ax.plot(result.dataset["torque"], result.dataset["slip"])
         return ax
 
-    try:
-        assert [path.name for path in plot.save_all(grip, tmp_path)] == ["curve_of_grip.png"]
-        with pytest.raises(
-            ModelError,
-            match=r"of run; these are of grip\. Available figures: curve_of_grip\.",
-        ):
-            plot.save_all(grip, tmp_path, ["speeds"])
-        with pytest.raises(ModelError, match="'curve_of_grip' shows results of grip; these are of run"):
-            plot.save_all(run, tmp_path, ["curve_of_grip"])
-    finally:
-        FIGURES.forget("curve_of_grip")
+    assert [path.name for path in plot.save_all(grip, tmp_path)] == ["curve_of_grip.png"]
+    with pytest.raises(
+        ModelError,
+        match=r"of run; these are of grip\. Available figures: curve_of_grip\.",
+    ):
+        plot.save_all(grip, tmp_path, ["speeds"])
+    with pytest.raises(ModelError, match="'curve_of_grip' shows results of grip; these are of run"):
+        plot.save_all(run, tmp_path, ["curve_of_grip"])
