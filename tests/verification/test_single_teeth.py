@@ -1,4 +1,4 @@
-"""Belts with single teeth: against spread teeth, backlash, energy.
+"""Belts with single teeth: against spread teeth, backlash, energy, jumps.
 
 Teeth without flanks hold while the belt touches the rim, as spread ones do, so that both share a load alike. Two
 pulleys of 24 teeth have ten teeth in mesh.
@@ -12,6 +12,7 @@ import pytest
 import beltdyn as bd
 from beltdyn.arrays import FloatArray
 from beltdyn.results import Run, derived, tooth_loads
+from beltdyn.show.report.build import verdict
 
 AXIAL, TOOTH, PITCH, TEETH = 1e5, 1e6, 8e-3, 24
 SPEED, BEGUN, TENSION = 100.0, 0.02, 200.0
@@ -128,3 +129,51 @@ def test_reversal_takes_up_the_backlash() -> None:
 
     # half on each pulley to either side
     assert reversal(backlash) - reversal(0.0) == pytest.approx(2.0 * backlash, rel=0.02)
+
+
+@pytest.fixture(scope="module")
+def jumped() -> Run:
+    """Pulleys of 24 teeth with steep flanks, and a torque of forty times the load for a few milliseconds."""
+    load = {
+        "kind": "table",
+        "times": [0.0, 0.01, 0.015, 0.02, 0.025, 1.0],
+        "values": [-1.0, -1.0, -40.0, -40.0, -1, -1],
+    }
+    given = drive(-1.0, tension=100.0, speed=50.0, tooth_stiffness=2e5, flank_angle=0.6, tooth_height=2e-3)
+    driver, driven = given.pulleys
+    return bd.simulate(
+        given.replace(
+            belt=given.belt.merged({"teeth": 60, "elements": 60, "stretch_damping_time": 2e-5}),
+            pulley=[driver.merged({"speed": 50.0}), driven.merged({"center": [0.144, 0.0], "torque": load})],
+            simulation={
+                "duration": 0.06,
+                "start": "steady",
+                "rtol": 1e-3,
+                "output_interval": 1e-4,
+                "field_interval": 5e-4,
+            },
+        )
+    )
+
+
+def test_a_belt_jumps_under_overload_and_runs_on(jumped: Run) -> None:
+    events = bd.results.jumps(jumped)
+    assert events
+    assert all(0.01 < one.time < 0.03 for one in events)
+    error = derived.transmission_error(jumped).sel(pulley="driven")
+    # the driven pulley has fallen back by whole pitches; after the overload its windup swings about that of its load
+    back = {"driven": 1, "driver": -1}
+    lost = sum(one.teeth * back[one.name] for one in events)
+    assert float(error.sel(time=slice(0.05, None)).mean()) / PITCH == pytest.approx(-lost, abs=0.1)
+    assert float(jumped.dataset.pulley_speed.sel(time=slice(0.05, None)).mean("time")[1]) == pytest.approx(
+        50.0, rel=0.05
+    )
+
+
+def test_a_jump_is_told_and_in_the_verdict(jumped: Run) -> None:
+    assert any("the belt jumps" in one for one in jumped.warnings)
+    assert "the belt jumped grooves of" in verdict([jumped])[1]
+
+
+def test_the_energy_account_closes_over_a_jump(jumped: Run) -> None:
+    assert float(np.abs(jumped.dataset.energy_closure).max()) < 1e-3

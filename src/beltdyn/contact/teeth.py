@@ -12,8 +12,9 @@ and the force on the belt along t is R_p / rho times
 
 with the moment -R_p q on the pulley: of a potential but for its damper.  Flanks of the angle phi to the normal push the
 belt off by tan(phi) |q|, without what the damper adds.  Where it has lifted off the rim by z, they have z tan(phi) more
-play to both sides, and a tooth of height h has the stiffness k (1 - (z / h)^2), so that it enters and leaves its groove
-smoothly, and the force keeps a potential.
+play to both sides, and a tooth of height h has the stiffness k (1 - (z / h)^2)^2, so that it enters and leaves its
+groove smoothly.  Where crests meet, midway between two grooves, q goes through zero over a part of the pitch.  The
+force has a potential: a belt that loads push off rides on the crests, and comes down in other grooves.
 
 Spread teeth act at every point that touches.  Single teeth act at their middles alone, a pitch apart, each with the
 force of a pitch of spread ones.
@@ -31,6 +32,8 @@ from beltdyn.kernel import by_type, kernel
 
 LOOSE: Final = 1e-3
 """Stiffness of a tooth within its backlash over that beyond it: lands hold an idle pulley in its place."""
+CREST: Final = 0.2
+"""Part of half a pitch, up to where crests meet, over which the force of a tooth goes to zero."""
 
 
 class NoTeeth(NamedTuple):
@@ -79,57 +82,79 @@ def misfit_of(surface: Toothed, normal_x: float, normal_y: float, along: float) 
     return surface.pitch_radius * (angle - surface.groove * floor(angle / surface.groove + 0.5))
 
 
+class _Hold(NamedTuple):
+    """Potential of a tooth over its stiffness at |delta| and half a play g, m^2, and its derivatives."""
+
+    potential: float
+    pull: float
+    """By |delta|, m."""
+    wedge: float
+    """By -g, m."""
+    stiffness: float
+    """Of `pull` by |delta|."""
+    mixed: float
+    """Of `wedge` by |delta|."""
+    by_gap: float
+    """Of `wedge` by -g."""
+
+
+@kernel(inline=True)
+def _hold(off: float, gap: float, half_pitch: float) -> _Hold:
+    """A tooth that is off its groove (m) by less than half a pitch."""
+    last = (1.0 - CREST) * half_pitch
+    seat = min(off, last)
+    beyond = max(seat - gap, 0.0)
+    held = 1.0 - LOOSE if seat > gap else 0.0
+    potential = 0.5 * ((1.0 - LOOSE) * beyond * beyond + LOOSE * seat * seat)
+    pull, wedge = (1.0 - LOOSE) * beyond + LOOSE * seat, held * beyond
+    if off <= last:
+        return _Hold(potential, pull, wedge, held + LOOSE, held, held)
+    width = half_pitch - last
+    left = (half_pitch - off) / width
+    way = 0.5 * width * (1.0 - left * left)
+    return _Hold(potential + pull * way, pull * left, wedge + held * way, -pull / width, held * left, held)
+
+
 @kernel
 def tooth_of(surface: Toothed, here: Approach, speed: float, along: float) -> Tooth:
     """Force of teeth at a material coordinate (m) on a pulley of a speed (rad/s), over their pitch."""
     misfit = misfit_of(surface, here.normal_x, here.normal_y, along)
     rate = surface.pitch_radius * (speed - here.circumferential / here.lever)
-    lift, flank, stiffness = max(-here.penetration, 0.0), surface.flank, surface.stiffness
-    gap, sense = surface.half_gap + flank * lift, 1.0 if misfit > 0.0 else -1.0
-    held = abs(misfit) >= gap
-    beyond, slope, damping = 0.0, 0.0, surface.damping
-    push = push_slope = lift_slope = push_lift = 0.0
-    if held:
-        beyond, slope = abs(misfit) - gap, stiffness
-        push, push_slope = flank * stiffness * beyond, sense * flank * stiffness
-    if lift == 0.0:
-        force = (1.0 - LOOSE) * sense * stiffness * beyond + LOOSE * stiffness * misfit
-        slope += LOOSE * (stiffness - slope)
-    else:
-        left, falls = _left_of_height(lift, surface.height)
-        fades = falls * lift
-        damping *= left if held else 0.0
-        slope *= left
-        force = sense * slope * beyond
-        push = slope * beyond * flank - 0.5 * stiffness * fades * beyond * beyond
-        push_slope = sense * (slope * flank - stiffness * fades * beyond)
-        lift_slope = sense * (stiffness * fades * beyond - slope * flank)
-        push_lift = 2.0 * stiffness * fades * beyond * flank - slope * flank * flank
-        push_lift -= 0.5 * stiffness * falls * beyond * beyond
-        if held:
-            lift_slope += surface.damping * fades * rate
+    lift, flank, sense = max(-here.penetration, 0.0), surface.flank, 1.0 if misfit > 0.0 else -1.0
+    hold = _hold(abs(misfit), surface.half_gap + flank * lift, 0.5 * surface.pitch_radius * surface.groove)
+    left, falls, bends = _left_of_height(lift, surface.height)
+    pull, push = left * hold.pull, left * flank * hold.wedge - falls * hold.potential
+    push_slope = left * flank * hold.mixed - falls * hold.pull
+    lift_slope = push_lift = 0.0
+    if lift > 0.0:
+        push_lift = flank * (2.0 * falls * hold.wedge - left * flank * hold.by_gap) - bends * hold.potential
+        lift_slope = surface.damping * falls * rate - sense * surface.stiffness * push_slope
     return Tooth(
-        force + damping * rate,
-        slope,
-        damping,
+        sense * surface.stiffness * pull + left * surface.damping * rate,
+        surface.stiffness * left * hold.stiffness,
+        left * surface.damping,
         surface.pitch_radius,
         surface.rate,
         surface.by_flow,
         rate,
-        push,
-        push_slope,
+        surface.stiffness * push,
+        sense * surface.stiffness * push_slope,
         lift_slope,
-        push_lift,
+        surface.stiffness * push_lift,
         here.radial,
     )
 
 
 @kernel(inline=True)
-def _left_of_height(lift: float, height: float) -> tuple[float, float]:
-    """What is left of the stiffness of a lifted tooth, 1 - (z / h)^2, and its derivative by z over z, 1/m^2."""
-    if height == 0.0 or lift >= height:
-        return 0.0, 0.0
-    return 1.0 - (lift / height) ** 2, -2.0 / (height * height)
+def _left_of_height(lift: float, height: float) -> tuple[float, float, float]:
+    """What is left of the stiffness of a lifted tooth, (1 - (z / h)^2)^2, and its derivatives by z, 1/m and 1/m^2."""
+    if lift == 0.0:
+        return 1.0, 0.0, 0.0
+    if lift >= height:
+        return 0.0, 0.0, 0.0
+    part = lift / height
+    inside = 1.0 - part * part
+    return inside * inside, -4.0 * inside * part / height, 4.0 * (2.0 * part * part - inside) / (height * height)
 
 
 @kernel

@@ -14,6 +14,8 @@ from beltdyn.system.meshing import toothed_pulleys
 from beltdyn.system.moving_center import pulley_state
 
 _TURNS = 2.0 * np.pi
+_BESIDE = 1.01
+"""Distance from the shaft, over that of the nearest point, of points that stand for a belt that has left a pulley."""
 _STICKS = 0.7
 """Pitches by which teeth are off the grooves that hold them before they count as held by the next ones."""
 
@@ -87,23 +89,24 @@ class JumpWatch:
             self._follow(row, time, self._off(pulley, position, places - centers[:, None, pulley]))
 
     def _off(self, pulley: int, position: FloatArray, places: FloatArray) -> FloatArray:
-        """Mean misfit in pitches, -1/2 to 1/2, NaN where no tooth is in a groove; shape (k,)."""
+        """Mean misfit of the teeth in grooves, or of the nearest ones, in pitches, -1/2 to 1/2; shape (k,)."""
         system, row = self._system, self._table[pulley]
+        away = np.hypot(places[:, :, 0], places[:, :, 1])
         reach = system.rims.radius[pulley] + (row.height if row.spacing > 0.0 else 0.0)
-        here = np.sum(places**2, axis=2) <= reach**2
-        state, point = np.nonzero(here)
+        nearest = np.min(away, axis=1, keepdims=True)
+        state, point = np.nonzero(away <= np.maximum(reach, _BESIDE * nearest))
         angle = row.phase + position[:, system.first_body + pulley] - row.rate * passed_lengths(system.frame, position)
         direction = np.arctan2(places[state, point, 1], places[state, point, 0])
         ahead = (angle[state] - direction + row.rate * self._along[point]) / row.groove
         size = len(position)
         mean = [np.bincount(state, one(_TURNS * ahead), size) for one in (np.cos, np.sin)]
-        return np.where(np.any(here, axis=1), np.arctan2(mean[1], mean[0]) / _TURNS, np.nan)
+        return np.asarray(np.arctan2(mean[1], mean[0]) / _TURNS)
 
     def _follow(self, row: int, time: FloatArray, off: FloatArray) -> None:
         """Go on with the misfits of a pulley."""
         sense = 1 if self._table.rate[self._pulleys[row]] > 0.0 else -1
-        for number in np.flatnonzero(np.isfinite(off)).tolist():
-            self._last[row] += (off[number] - self._last[row] + 0.5) % 1.0 - 0.5
+        for number, here in enumerate(off.tolist()):
+            self._last[row] += (here - self._last[row] + 0.5) % 1.0 - 0.5
             if abs(self._last[row] - self._held[row]) > _STICKS:
                 change = int(np.sign(self._last[row] - self._held[row]))
                 self._held[row] += change

@@ -13,7 +13,7 @@ from beltdyn.contact.law import ContactLaw, PulleyState
 from beltdyn.contact.normal import NoPull
 from beltdyn.contact.penetration import approach
 from beltdyn.contact.surface import Toothed
-from beltdyn.contact.teeth import LOOSE, Tooth, tooth_at, tooth_of, tooth_traction
+from beltdyn.contact.teeth import CREST, LOOSE, Tooth, tooth_at, tooth_of, tooth_traction
 from beltdyn.quadrature import gauss_points
 
 LENGTH, RULE = 0.06, gauss_points(6)
@@ -72,10 +72,11 @@ def answer(*arguments: Any, **more: Any) -> FloatArray:
 
 @pytest.mark.parametrize("damping", [0.0, 300.0])
 @pytest.mark.parametrize("factors", [(1.0, 0.0), (0.0, 1.0), (1.0, 300.0)])
+@pytest.mark.parametrize("phase", [0.01, 0.46 * GROOVE], ids=["seated", "on the crests"])
 @SPACINGS
-def test_tangent(factors: tuple[float, float], damping: float, spacing: float) -> None:
+def test_tangent(factors: tuple[float, float], damping: float, spacing: float, phase: float) -> None:
     control, rates = sunk()
-    one, step = pulley(damping=damping, spacing=spacing), 1e-8 if factors[0] else 1e-5
+    one, step = pulley(phase, damping, spacing=spacing), 1e-8 if factors[0] else 1e-5
     work, _ = act(control, rates, one, factors)
     tangent = np.block([[work.xx, work.xy], [work.yx, work.yy]])
     columns = []
@@ -163,11 +164,41 @@ def pushed(one: PulleyState, angle: float, distance: float) -> Tooth:
 def test_flanks_push_the_belt_off_and_let_it_go_as_it_lifts() -> None:
     one = pulley(phase=0.0, speed=0.0)
     seated, lifted = pushed(one, -0.01, RIM), pushed(one, -0.01, 0.102)
-    assert seated.push == pytest.approx(0.3 * seated.traction, rel=1e-12)
+    assert seated.push == pytest.approx(0.3 * (1.0 - LOOSE) * seated.traction, rel=1e-12)
     beyond = 0.1005 * 0.01 - 0.3 * 0.002
-    assert lifted.traction == pytest.approx(2e6 * (1.0 - 0.4**2) * beyond, rel=1e-9)  # by 2 of 5 mm
-    assert lifted.push == pytest.approx(0.3 * lifted.traction + 2e6 * 0.002 / 0.005**2 * beyond**2, rel=1e-9)
-    assert pushed(one, -0.01, 0.104).traction == 0.0  # play of 1.2 mm on each side of a tooth that is off by 1 mm
+    left = 1.0 - 0.4**2  # by 2 of 5 mm
+    pull = (1.0 - LOOSE) * beyond + LOOSE * 0.1005 * 0.01
+    stored = 0.5 * ((1.0 - LOOSE) * beyond**2 + LOOSE * (0.1005 * 0.01) ** 2)
+    assert lifted.traction == pytest.approx(2e6 * left**2 * pull, rel=1e-9)
+    wedged = 0.3 * (1.0 - LOOSE) * 2e6 * left**2 * beyond
+    assert lifted.push == pytest.approx(wedged + 2e6 * 4.0 * left * 0.002 / 0.005**2 * stored, rel=1e-9)
+    # play of 1.2 mm on each side of a tooth that is off by 1 mm
+    assert abs(pushed(one, -0.01, 0.104).traction) < LOOSE * seated.traction
+    assert pushed(one, -0.01, 0.1051).traction == 0.0
+
+
+@pytest.mark.parametrize("distance", [0.1 + 1e-9, 0.102, 0.1049])
+def test_the_force_of_a_tooth_has_a_potential(distance: float) -> None:
+    """The work on a path around a groove is that back on another one."""
+    one = pulley(phase=0.0, speed=0.0, half_gap=2e-4)
+    step, angles = 1e-6, np.linspace(0.0, GROOVE, 4001)
+    inner, outer = ([pushed(one, -a, r) for a in angles] for r in (distance, distance + step))
+    off = np.array([0.5 * (a.push + b.push) for a, b in zip(inner, outer, strict=True)]) * step
+    along = 0.1005 * np.diff(angles)
+    work = [np.array([one.traction for one in row]) for row in (inner, outer)]
+    stored = [np.concatenate([[0.0], np.cumsum(0.5 * (row[1:] + row[:-1]) * along)]) for row in work]
+    lost = stored[0] - stored[1] - (off - off[0])
+    assert np.abs(stored[0]).max() > 0.0
+    np.testing.assert_allclose(lost, 0.0, atol=1e-3 * np.abs(off).max())
+
+
+def test_the_force_of_a_tooth_is_even_where_crests_meet_and_where_it_leaves() -> None:
+    one = pulley(phase=0.0, speed=0.0)
+    size = pushed(one, -0.5 * (1.0 - CREST) * GROOVE, RIM).traction
+    for beside in (0.5 - 1e-9, 0.5 + 1e-9):
+        assert abs(pushed(one, -beside * GROOVE, RIM).traction) < 1e-6 * size
+    leaving = pushed(one, -0.3 * GROOVE, 0.105 - 1e-8)
+    assert max(abs(leaving.traction), leaving.push) < 1e-4 * size
 
 
 def test_a_single_tooth_has_the_force_of_a_pitch_of_spread_ones() -> None:

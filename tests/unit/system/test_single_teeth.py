@@ -82,9 +82,24 @@ def test_a_groove_that_passes_is_a_jump(system: System, state: State) -> None:
     assert watch.events[0][0] == pytest.approx(0.7 / 2.2, abs=0.02)
 
 
+def lift(places: np.ndarray, by: float) -> None:
+    """Take points off the driven pulley, in place."""
+    places[..., 0] -= 0.28
+    places *= 1.0 + by
+    places[..., 0] += 0.28
+
+
 def test_windup_and_a_free_belt_are_no_jumps(system: System, state: State) -> None:
     watch = JumpWatch(system, np.linspace(0.45, 0.5, 7))
     position, centers, places = turned(system, state, 0.4 * 2.0 * np.pi / 36, 50)
-    places[20:25] += 1.0
+    lift(places[20:25], 0.5)
     watch.take(np.linspace(0.0, 1.0, 50), position, centers, places)
     assert watch.events == []
+
+
+def test_grooves_that_pass_under_a_belt_that_is_off_are_jumps(system: System, state: State) -> None:
+    watch = JumpWatch(system, np.linspace(0.45, 0.5, 7))
+    position, centers, places = turned(system, state, 2.2 * 2.0 * np.pi / 36, 100)
+    lift(places[10:95], 0.2)
+    watch.take(np.linspace(0.0, 1.0, 100), position, centers, places)
+    assert [(pulley, teeth) for _, pulley, teeth in watch.events] == [(1, 1), (1, 1)]

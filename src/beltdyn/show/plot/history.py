@@ -11,7 +11,7 @@ from beltdyn.errors import ModelError
 from beltdyn.parts.quantity import RPM
 from beltdyn.results import Run, derived
 from beltdyn.results.balance import largest_closure, losses_of
-from beltdyn.results.incidents import GROSS_SLIP, SLACK, STOP, incidents
+from beltdyn.results.incidents import GROSS_SLIP, JUMP, SLACK, STOP, incidents
 from beltdyn.show.plot.legends import name_lines
 from beltdyn.show.plot.registry import figure, over_time
 from beltdyn.show.plot.style import SHADE, Dash, axes_or_new, color, dash, label, note, reserve, set_log_scale, unit
@@ -106,7 +106,7 @@ def torques(run: Run, ax: Axes | None = None) -> Axes:
 def span_tensions(run: Run, ax: Axes | None = None) -> Axes:
     """Draw the tensions of the spans over time, marked where the mesh does not resolve them.
 
-    Gross slip, a slack span and a tensioner on a stop are shaded.
+    Gross slip, a slack span, a jump of a toothed belt and a tensioner on a stop are shaded.
 
     Parameters
     ----------
@@ -130,7 +130,7 @@ def span_tensions(run: Run, ax: Axes | None = None) -> Axes:
         reserve(ax, f"off by about {run.resolution.errors['tension']:.0%} with {run.drive.elements} elements")
     lines(run.dataset["span_tension"], ax)
     draw_limits(run, ax, "largest_tension", "least_tension")
-    return mark_incidents(run, ax, (GROSS_SLIP, SLACK, STOP))
+    return mark_incidents(run, ax, (GROSS_SLIP, SLACK, JUMP, STOP))
 
 
 @figure(over_time)
@@ -188,7 +188,7 @@ def draw_limits(run: Run, ax: Axes, *keys: str) -> None:
 
 
 def mark_incidents(run: Run, ax: Axes, kinds: Collection[str]) -> Axes:
-    """Shade the periods in which a belt slides through or goes slack, or a tensioner lies on a stop, and name them.
+    """Shade the periods in which a belt slides, goes slack or jumps, or a tensioner lies on a stop, and name them.
 
     Periods that are closer than a hundredth of the run are drawn as one.
     """
