@@ -31,7 +31,9 @@ from beltdyn.model import (
     Pulley,
     Simulation,
     Steady,
+    Unwinder,
     WeightEnd,
+    Winder,
 )
 from beltdyn.model.belt_form import Nominal, Sold, Stiffnesses
 from beltdyn.model.duty import DutyPoint
@@ -185,6 +187,8 @@ KEYS: dict[str, Any] = {
     "limits": table(Limits),
     "end": family({"fixed": FixedEnd, "pulled": PulledEnd, "weight": WeightEnd}),
     "carriage": table(Carriage),
+    "unwinder": table(Unwinder),
+    "winder": table(Winder),
     "harmonic": table(Harmonic),
     "crank": table(CrankSpeed),
     "load": family(LOADS, Load),

@@ -65,6 +65,7 @@ from beltdyn.model.tensioner_balance import TensionerBalance
 from beltdyn.model.toml_reader import example, json_schema, load, loads
 from beltdyn.model.toml_writer import dumps
 from beltdyn.model.toothing import Toothing
+from beltdyn.model.web import Unwinder, Winder
 
 __all__ = [
     "ERROR_LIMITS",
@@ -128,7 +129,9 @@ __all__ = [
     "TensionerBalance",
     "Toothing",
     "Trapezoid",
+    "Unwinder",
     "WeightEnd",
+    "Winder",
     "advise",
     "alignment",
     "describe_time",

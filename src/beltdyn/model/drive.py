@@ -33,6 +33,7 @@ from beltdyn.model.routing import radii, span_names
 from beltdyn.model.simulation import Frame, Limits, Simulation, Steady, choose_frame, element_of
 from beltdyn.model.tooth_rating import RatedTeeth
 from beltdyn.model.toothing import DISCRETE
+from beltdyn.model.web import Unwinder, Winder, check_rollers
 from beltdyn.parts.change import changed_arguments
 from beltdyn.parts.kind_fields import Chosen, chosen_kinds
 from beltdyn.parts.part import Part
@@ -88,6 +89,8 @@ class Drive(Part):
         (), alias="support", description="the groups [[support]], idlers and guides along spans"
     )
     goods: tuple[Goods, ...] = Field((), description="the groups [[goods]], goods that spans carry")
+    unwinder: Unwinder | None = Field(None, description="the group [unwinder], where the web of a line enters")
+    winder: Winder | None = Field(None, description="the group [winder], where the web of a line leaves")
     duty: tuple[DutyPoint, ...] = Field(
         (), description="the groups [[duty]], operating points with their shares of time"
     )
@@ -125,6 +128,15 @@ class Drive(Part):
     @classmethod
     def _takes_what_suppliers_give(cls, data: Any, info: ValidationInfo) -> Any:
         return as_supplied(data, info)
+
+    @model_validator(mode="after")
+    def _has_both_ends_of_a_web(self) -> Self:
+        missing = "winder" if self.winder is None else "unwinder"
+        if (self.unwinder is None) != (self.winder is None):
+            raise ValueError(f"[{missing}] is missing: a web line has an unwinder and a winder. Give both")
+        if self.is_web and (self.given_ends or self.carriage is not None):
+            raise ValueError("[unwinder] and [winder] exclude [[end]] and [carriage]. Remove one of them")
+        return self
 
     @model_validator(mode="after")
     def _duty_fits_the_pulleys(self) -> Self:
@@ -175,7 +187,7 @@ class Drive(Part):
                 f'belt.toothing.law = "{DISCRETE}" is incompatible with simulation.frame = "staying": single teeth '
                 'travel with their mesh. Omit frame, or set law = "spread"'
             )
-        if self.ends and frame.stays:
+        if self.ends and frame.stays and not self.is_web:
             raise ValueError(
                 'simulation.frame = "staying" is incompatible with an open belt: no belt flows past its ends. Set '
                 'simulation.frame = "travelling", or omit it'
@@ -203,9 +215,32 @@ class Drive(Part):
         check_carriage(self.carriage, self.path, senses, self.path_ends, self.simulation.end)
         return self
 
+    @model_validator(mode="after")
+    def _is_a_whole_web_line(self) -> Self:
+        if not self.is_web:
+            return self
+        check_rollers(self.counter_clockwise_pulleys)
+        if self.belt.crossed:
+            raise ValueError("belt.crossed = true is incompatible with [unwinder] and [winder]. Omit it")
+        if self.belt.teeth is not None:
+            raise ValueError("belt.teeth is incompatible with [unwinder] and [winder]: a web has no teeth. Remove it")
+        if self.belt.has_hysteresis or self.belt.bending_loss_factor:
+            raise ValueError(
+                "loss factors of the belt are incompatible with [unwinder] and [winder]. Omit them, or give "
+                "stretch_damping_time and bending_damping_time"
+            )
+        return self
+
+    @property
+    def is_web(self) -> bool:
+        """Whether it is a web line, from an unwinder to a winder."""
+        return self.unwinder is not None and self.winder is not None
+
     @property
     def ends(self) -> tuple[End, ...]:
-        """The ends of an open belt, as given or clamped to the carriage."""
+        """The ends of an open belt, as given, clamped to the carriage, or held by unwinder and winder."""
+        if self.unwinder is not None and self.winder is not None:
+            return self.unwinder.end, self.winder.end
         if self.carriage is None:
             return self.given_ends
         if self.given_ends:
@@ -323,7 +358,7 @@ class Drive(Part):
     @cached_property
     def frame(self) -> Frame:
         """The mesh of runs over time, with the reason."""
-        return choose_frame(self.simulation, self.belt, self.contact, bool(self.ends))
+        return choose_frame(self.simulation, self.belt, self.contact, bool(self.ends) and not self.is_web)
 
     @property
     def element_kind(self) -> ElementKind:
@@ -335,6 +370,8 @@ class Drive(Part):
         """The belt laid around its pulleys, before its state is computed."""
         graded = self.frame.stays and self.simulation.mesh == "auto"
         belt = self.belt.replace(discretization=self.element_kind.name)
+        if self.unwinder is not None and belt.length is None and belt.installed_tension is None:
+            belt = belt.replace(installed_tension=self.unwinder.tension)
         return lay_out(Given(belt, self.pulleys, self.contact, self.tensioners, self.path_ends, graded))
 
     @cached_property

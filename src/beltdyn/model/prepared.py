@@ -296,6 +296,11 @@ class Prepared:
         belt = belt.replace(discretization=given.discretization)
         return self.replace(belt=belt, contact=self.contact, tensioner=tensioners)
 
+    def with_length(self, length: float) -> "Prepared":
+        """Prepare the drive with an unstretched length of its belt, m, in place of what gave it."""
+        belt = self.belt.replace(length=length, discretization=self.drive.belt.discretization)
+        return self.replace(belt=belt, contact=self.contact)
+
     def taken_up(self, distance: float) -> tuple[Tensioner, ...]:
         """The tensioners, with the take-up of the fixed one increased so that the path is longer by a distance, m."""
         return take_up(self.drive.completed, distance)

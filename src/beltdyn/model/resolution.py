@@ -65,7 +65,7 @@ class Arc(NamedTuple):
 
 
 class Laid(NamedTuple):
-    """A belt on the path of a drive; its coordinate is zero in the middle of a span."""
+    """A belt on the path of a drive; its coordinate is zero in the middle of a span, or at the end of an open path."""
 
     path: Path
     start: float
@@ -75,7 +75,9 @@ class Laid(NamedTuple):
 
     @classmethod
     def on(cls, path: Path, length: float, span: int) -> "Laid":
-        """Lay a belt of an unstretched length (m) on a path, from the middle of a span."""
+        """Lay a belt of an unstretched length (m) on a path from the middle of a span, or on an open one."""
+        if path.ends is not None:
+            return cls(path, 0.0, path.length / length)
         return cls(path, path.span_start(span) + 0.5 * float(path.span_lengths[span]), path.length / length)
 
     def arcs(self) -> list[Arc]:
@@ -83,7 +85,7 @@ class Laid(NamedTuple):
         found = list[Arc]()
         for p, (radius, wrap) in enumerate(zip(self.path.radii, self.path.wrap_angles, strict=True)):
             size = abs(float(radius))
-            arrives = self.path.span_start((p - 1) % self.path.count) + float(self.path.span_lengths[p - 1])
+            arrives = self.path.span_start((p - 1) % self.path.spans) + float(self.path.span_lengths[p - 1])
             first = (arrives - self.start) % self.path.length
             found.append(Arc(first / self.stretch, (first + size * float(wrap)) / self.stretch, size))
         return sorted(found)

@@ -8,13 +8,14 @@ from typing import Final, NamedTuple
 import numpy as np
 
 from beltdyn.arrays import FloatArray
-from beltdyn.kernel import kernel
+from beltdyn.kernel import by_type, kernel
 from beltdyn.system.arc_mesh import arc_count, change_shifts, largest_shift
-from beltdyn.system.arrays import Equations, Motion, System
+from beltdyn.system.arrays import Equations, Motion, NoCarriage, System
 from beltdyn.system.meshing import change_body, change_flow, reach_of
 from beltdyn.system.motion import new_equations
 from beltdyn.system.ring_matrix import factorise_ring, ring_matrix, substitute
 from beltdyn.system.steady_assembly import Anchor, assemble_steady
+from beltdyn.system.web import WebLine, change_content, content, set_content, way_of_content
 
 FOUND: Final = 0
 NOT_FOUND: Final = 1
@@ -38,9 +39,51 @@ class SteadyWork(NamedTuple):
 def steady_work(system: System) -> SteadyWork:
     """Make the arrays for a system."""
     given, dof = new_equations(system), len(system.scale)
-    border = int(np.max(system.bodies.unknown, initial=-1)) + 2 + arc_count(system.frame)
+    border = int(np.max(system.bodies.unknown, initial=-1)) + 2 + arc_count(system.frame) + content(system).size
     equations = given._replace(matrix=ring_matrix(dof, system.nodes, border), border_part=np.zeros(border))
     return SteadyWork(equations, np.zeros((system.nodes, dof)), np.zeros(border))
+
+
+# The derivative by the content of a web line, by central differences
+
+_PART: Final = 1e-6
+"""Change of the content."""
+
+
+@kernel(inline=True)
+def _nothing_more(carriage: NoCarriage, system: System, motion: Motion, anchor: Anchor, work: SteadyWork) -> None:
+    """A belt has no content to find."""
+
+
+@kernel
+def _add_content(line: WebLine, system: System, motion: Motion, anchor: Anchor, work: SteadyWork) -> None:
+    """Add the column of the content; at rest there is none."""
+    if anchor.at_rest:
+        return
+    equations, matrix, own = work.equations, work.equations.matrix, line.content[0]
+    last = matrix.corner.shape[0] - 2
+    _copy(matrix.node_side, matrix.border_side, work.ahead_node, work.ahead_border)
+    for sense in (1.0, -1.0):
+        set_content(line, system, own * (1.0 + sense * _PART))
+        assemble_steady(system, motion, anchor, False, equations)
+        share = sense / (2.0 * _PART * own)
+        for node in range(system.nodes):
+            for c in range(len(system.scale)):
+                matrix.column[node, c, last] += share * matrix.node_side[node, c]
+        for k in range(last + 2):
+            matrix.corner[k, last] += share * matrix.border_side[k]
+    set_content(line, system, own)
+    _copy(work.ahead_node, work.ahead_border, matrix.node_side, matrix.border_side)
+
+
+_add_column = by_type({NoCarriage: _nothing_more, WebLine: _add_content}, "add_column")
+
+
+@kernel(inline=True)
+def _linearise(system: System, motion: Motion, anchor: Anchor, work: SteadyWork) -> None:
+    """Residual and tangent."""
+    assemble_steady(system, motion, anchor, True, work.equations)
+    _add_column(system.carriage, system, motion, anchor, work)
 
 
 @kernel
@@ -52,7 +95,7 @@ def find_steady(
     Parameters
     ----------
     system
-        A closed belt in a staying mesh; the speed of its frame is changed in place.
+        A closed belt in a staying mesh, or a web line; the speed of its frame, and the content, are changed in place.
     motion
         The state, changed in place.
     anchor
@@ -74,7 +117,10 @@ def find_steady(
     """
     equations = work.equations
     node_part, border_part = equations.node_part, equations.border_part
-    assemble_steady(system, motion, anchor, not factorised, equations)
+    if factorised:
+        assemble_steady(system, motion, anchor, False, equations)
+    else:
+        _linearise(system, motion, anchor, work)
     if most == 0 and not factorise_ring(equations.matrix, True):
         return SINGULAR, 0
     for iteration in range(1, most + 1):
@@ -99,7 +145,7 @@ def find_steady(
         if ahead <= tolerance:
             make_step(system, motion, anchor.at_rest, -1.0, work.ahead_node, work.ahead_border)
             return FOUND, iteration
-        assemble_steady(system, motion, anchor, True, equations)
+        _linearise(system, motion, anchor, work)
     return NOT_FOUND, most
 
 
@@ -116,12 +162,18 @@ def _once_more(system: System, motion: Motion, anchor: Anchor, work: SteadyWork)
     if not ahead <= size:
         make_step(system, motion, anchor.at_rest, 1.0, work.ahead_node, work.ahead_border)
         return ahead
-    for node in range(system.nodes):
-        for c in range(len(system.scale)):
-            work.ahead_node[node, c] = node_part[node, c]
-    for k in range(border_part.size):
-        work.ahead_border[k] = border_part[k]
+    _copy(node_part, border_part, work.ahead_node, work.ahead_border)
     return ahead
+
+
+@kernel(inline=True)
+def _copy(nodes: FloatArray, border: FloatArray, to_nodes: FloatArray, to_border: FloatArray) -> None:
+    """Copy what belongs to the unknowns of nodes, shape (N, n), and to the others, shape (m,)."""
+    for node in range(nodes.shape[0]):
+        for c in range(nodes.shape[1]):
+            to_nodes[node, c] = nodes[node, c]
+    for k in range(border.size):
+        to_border[k] = border[k]
 
 
 @kernel(inline=True)
@@ -160,6 +212,7 @@ def make_step(
     change_shifts(system.frame, border_part, factor)
     if not at_rest:
         change_flow(system.rims, system.frame.speed, factor * border_part[border_part.size - 1])
+        change_content(system.carriage, system, factor, border_part)
 
 
 @kernel(inline=True)
@@ -179,4 +232,4 @@ def _size(system: System, node_part: FloatArray, border_part: FloatArray) -> flo
         if unknown >= 0:
             scale = reach_of(system.rims, body, reach, speed) if body < tensioners else reach
             size = max(size, scale * abs(border_part[unknown]))
-    return float(size)
+    return float(max(size, way_of_content(system.carriage, border_part)))

@@ -33,6 +33,7 @@ from beltdyn.system.meshing import fit_phases, has_teeth, led_by, mesh_speeds, o
 from beltdyn.system.observe import observe
 from beltdyn.system.ring_matrix import clear, substitute
 from beltdyn.system.state import State
+from beltdyn.system.web import content, rebased, set_content
 
 # Continuation: from a solution to that of another problem in steps, each from a guess by those before
 
@@ -151,20 +152,23 @@ class SteadySearch:
         return float(self.constant.frame.speed[0])
 
     def unknowns(self) -> FloatArray:
-        """All that steady running consists of, as one vector: position, velocity, speed of the belt, phases."""
-        frame = self.constant.frame
-        parts = self.state.position, self.state.velocity, frame.speed, phases(self.constant), shifts_of(frame)
-        return np.concatenate(parts)
+        """All that steady running consists of: position, velocity, speed of the belt, phases, shifts, content."""
+        own, here, frame = self.constant, self.state, self.constant.frame
+        return np.concatenate(
+            [here.position, here.velocity, frame.speed, phases(own), shifts_of(frame), content(own)]
+        )
 
     def place(self, unknowns: FloatArray) -> None:
         """Put the search in its place."""
         size = self.state.position.size
         self.state.position[:], self.state.velocity[:] = unknowns[:size], unknowns[size : 2 * size]
         self.constant.frame.speed[:] = unknowns[2 * size : 2 * size + 1]
-        others = unknowns[2 * size + 1 :]
-        grooves, shifts = phases(self.constant), shifts_of(self.constant.frame)
-        grooves[:], shifts[:] = others[: grooves.size], others[grooves.size :]
-        fitted(self.constant, self.state.position)
+        others, own = unknowns[2 * size + 1 :], self.constant
+        grooves, shifts = phases(own), shifts_of(own.frame)
+        grooves[:], shifts[:] = others[: grooves.size], others[grooves.size :][: shifts.size]
+        if content(own).size:
+            set_content(own.carriage, own, float(unknowns[-1]))
+        fitted(own, self.state.position)
 
     def resume(self, tangent: SteadyWork | None = None) -> bool:
         """Find steady running under the required loads from that under others; False if that fails."""
@@ -211,6 +215,15 @@ class SteadySearch:
             raise self._refusal()
         if driver is not None:
             self._release(driver)
+        self._keep_content()
+
+    def _keep_content(self) -> None:
+        """Take the content of a web line that was found for the length of its belt."""
+        found = content(self.constant)
+        if found.size and found[0] != 1.0:
+            self.prepared = self.prepared.with_length(float(np.sum(self.constant.length)))
+            self.constant = rebased(self.constant)
+            self._hold(self._held)
 
     def _run_up(self, place: FloatArray, speed: float, gentle: Setting) -> bool:
         """Continue from rest to the required speeds and loads; if that fails, first without bending losses.
@@ -307,6 +320,7 @@ class SteadySearch:
             )
         if self._motor is not None and not self._balance(self._motor):
             raise self._refusal()
+        self._keep_content()
 
     def friction_band(self, known: Mapping[str, FloatArray] | None = None) -> dict[str, FloatArray]:
         """Ends of the bands in which dry friction may hold tensioners, m or rad; empty without friction.

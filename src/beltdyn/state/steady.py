@@ -306,7 +306,7 @@ def _as_run(prepared: Prepared, instant: float, found: _Found) -> Run:
         duration=duration, output_interval=duration, field_interval=None, start="equilibrium", start_at=None
     )
     title = f"{drive.title} in steady running, as at {instant:g} s"
-    mesh = mesh_used(drive, STAYING, search.constant.nodes)
+    mesh = mesh_used(drive, STAYING, search.constant.length.size)
     with Recording(search.prepared.over(turns), search.constant, None, title, None, **mesh) as recording:
         recording.start(search.prepared, search.constant, ())
         recording.take(_running(search.constant, search.running(), duration))
@@ -327,7 +327,7 @@ def _as_run(prepared: Prepared, instant: float, found: _Found) -> Run:
 
 def require_steady(drive: Drive) -> None:
     """Make sure that a drive may run steadily."""
-    if drive.ends:
+    if drive.ends and not drive.is_web:
         modes = "; `beltdyn stroke` has stiffness and modes of the axis at rest" if drive.carriage else ""
         raise ModelError(f"an open belt has no steady running. Simulate it with `beltdyn simulate`{modes}.")
     shaped = [pulley.name for pulley in drive.pulleys if pulley.surface and pulley.surface.kind != "circle"]

@@ -17,15 +17,21 @@ from beltdyn.system.discretization import discretize
 from beltdyn.system.frame import FlowingByArcs, StayingByArcs, flowing, staying
 from beltdyn.system.hysteresis import hysteresis_rows
 from beltdyn.system.meshing import meshing, on_lengths
+from beltdyn.system.web import web_line
 
 _STAYING_ELASTIC, _STAYING_CONTACT = 8, 12
 """Gauss points of an element that stays, for elastic forces and for contact."""
+HELD = ((0, 0), (0, 1), (-1, 0), (-1, 1))
+"""Nodes and coordinates that the ends of a web line hold."""
 
 
 def staying_system(prepared: Prepared, lengths: FloatArray) -> System:
-    """Arrays of a drive with a closed belt on a staying mesh of quintic elements with hysteresis, without flow."""
+    """Arrays of a closed belt or a web line on a staying mesh of quintic elements with hysteresis, without flow."""
     belt = _staying_belt(prepared, lengths.size)
     contact = prepared.contact.replace(sampling="distributed", integration="zone", quadrature_points=_STAYING_CONTACT)
+    if prepared.ends:
+        system = system_of(prepared, belt, contact, "open", lengths=lengths, fixed=HELD)
+        return _as_web(prepared, system._replace(frame=staying(system.control, system.length, belt.mass_per_length)))
     system = system_of(prepared, belt, contact, "shared_node", lengths=lengths)
     if prepared.belt.bending_loss_factor > 0.0:
         modulus, length = bending_at_points(prepared)
@@ -43,6 +49,9 @@ def _carrying(prepared: Prepared, system: System) -> System:
 
 def on_other_mesh(prepared: Prepared, system: System, lengths: FloatArray) -> System:
     """The arrays of `staying_system` on another mesh, with the same machines."""
+    if prepared.ends:
+        given = ("law", "profiles", "shaft_loads", "bodies", "tensioners")
+        return staying_system(prepared, lengths)._replace(**{name: getattr(system, name) for name in given})
     belt = _staying_belt(prepared, lengths.size)
     mesh = discretize(belt, lengths)
     passing = passing_strains(prepared) if belt.has_hysteresis else None
@@ -58,6 +67,15 @@ def on_other_mesh(prepared: Prepared, system: System, lengths: FloatArray) -> Sy
         carrying=on_other_lengths(prepared, system.carrying, lengths),
     )
     return staying_by_arcs(prepared, other) if prepared.carries else other
+
+
+def _as_web(prepared: Prepared, system: System) -> System:
+    """The arrays of an open belt as those of a web line."""
+    drive = prepared.drive
+    assert drive.unwinder is not None
+    assert drive.winder is not None
+    orders = np.array([0.0, 1.0, 2.0, 0.0, 1.0, 2.0])
+    return web_line(system, np.array([drive.unwinder.tension, drive.winder.tension]), orders)
 
 
 def _staying_belt(prepared: Prepared, elements: int) -> Belt:

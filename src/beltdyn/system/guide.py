@@ -31,6 +31,7 @@ from beltdyn.system.arrays import (
     System,
     TangentFactors,
 )
+from beltdyn.system.web import WebLine, push_web
 
 GUIDE = record(
     body="i8",  # its number
@@ -108,7 +109,9 @@ def _push(
         corner[unknown, unknown] -= factors.by_position * own.by_position + factors.by_velocity * own.by_velocity
 
 
-push_carriage: Callable[..., None] = by_type({NoCarriage: _push_nothing, Guided: _push}, "push_carriage")
+push_carriage: Callable[..., None] = by_type(
+    {NoCarriage: _push_nothing, Guided: _push, WebLine: push_web}, "push_carriage"
+)
 """Add the forces on a carriage to those on bodies, their power and, if it is wanted, their tangent."""
 
 

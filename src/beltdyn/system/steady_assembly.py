@@ -15,17 +15,18 @@ import numpy as np
 
 from beltdyn.arrays import FloatArray
 from beltdyn.elements.dispatch import elastic_force
-from beltdyn.kernel import kernel
+from beltdyn.kernel import by_type, kernel
 from beltdyn.system.arc_mesh import add_holding_force, fit_mesh, hold_arcs
 from beltdyn.system.arc_tangent import add_steady_shifts
-from beltdyn.system.arrays import NO_TANGENT, Equations, Motion, System, TangentFactors
+from beltdyn.system.arrays import NO_TANGENT, Equations, Motion, NoCarriage, System, TangentFactors
 from beltdyn.system.body_forces import clear_body_forces
 from beltdyn.system.carrying import CarryingFactors, add_carrying
 from beltdyn.system.element_state import gather_motion
 from beltdyn.system.flow_tangent import NO_FLOW_TANGENT, FlowFactors, add_flow_forces, find_rate, scatter_column
 from beltdyn.system.meshing import add_steady_machines, clear_last_row, flow_unknown
 from beltdyn.system.ring_matrix import clear
-from beltdyn.system.supports import add_nodal_loads, scatter
+from beltdyn.system.supports import add_nodal_loads, hold_fixed, scatter
+from beltdyn.system.web import WebLine, hold_web
 
 
 class Anchor(NamedTuple):
@@ -46,8 +47,8 @@ def assemble_steady(system: System, motion: Motion, anchor: Anchor, wanted: bool
     Parameters
     ----------
     system
-        A closed belt in a staying mesh; unknowns of its bodies are the speeds of pulleys and the places of
-        tensioners.
+        A closed belt in a staying mesh, or a web line; unknowns of its bodies are the speeds of pulleys and the places
+        of tensioners.
     motion
         The state; its nodes and tensioners have no velocity.
     anchor
@@ -55,8 +56,8 @@ def assemble_steady(system: System, motion: Motion, anchor: Anchor, wanted: bool
     wanted
         Whether the tangent is.
     equations
-        With one unknown more than the system's bodies have. Residual and body forces are overwritten, and the tangent
-        if it is wanted.
+        With one unknown more than the system's bodies have, two of a web line. Residual and body forces are
+        overwritten, and the tangent if it is wanted.
     """
     work, matrix, forces = equations.work, equations.matrix, equations.forces
     clear(matrix, wanted)
@@ -85,7 +86,9 @@ def assemble_steady(system: System, motion: Motion, anchor: Anchor, wanted: bool
     add_nodal_loads(system, motion.position, factors.by_position, matrix)
     if wanted:
         clear_last_row(system.rims, matrix)
-    _hold(system, motion, anchor, wanted, equations)
+    if system.supports.any_fixed:
+        hold_fixed(system, matrix)
+    _hold(system.carriage, system, motion, anchor, wanted, equations)
     hold_arcs(system.frame, system, motion, factors, False, matrix)
 
 
@@ -105,7 +108,9 @@ def _add_momentum(system: System, element: int, work: np.record) -> None:
 
 
 @kernel(inline=True)
-def _hold(system: System, motion: Motion, anchor: Anchor, wanted: bool, equations: Equations) -> None:
+def _hold_belt(
+    carriage: NoCarriage, system: System, motion: Motion, anchor: Anchor, wanted: bool, equations: Equations
+) -> None:
     """The equation that keeps node 0 in its place along the belt."""
     matrix, last = equations.matrix, equations.matrix.corner.shape[0] - 1
     for axis in range(2):
@@ -115,3 +120,15 @@ def _hold(system: System, motion: Motion, anchor: Anchor, wanted: bool, equation
             matrix.row[0, last, axis] = anchor.direction[axis]
     if wanted and anchor.at_rest:
         add_holding_force(system.frame, anchor.direction, matrix)
+
+
+@kernel(inline=True)
+def _hold_line(
+    line: WebLine, system: System, motion: Motion, anchor: Anchor, wanted: bool, equations: Equations
+) -> None:
+    """The equations of the ends of a web line, which keep the mesh in its place."""
+    hold_web(line, system, motion, anchor.at_rest, wanted, equations)
+
+
+_hold = by_type({NoCarriage: _hold_belt, WebLine: _hold_line}, "hold")
+"""What keeps the mesh in its place."""

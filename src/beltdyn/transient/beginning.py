@@ -108,8 +108,9 @@ def settled(drive: Drive, integrator: Integrator) -> tuple[Drive, Frame]:
 
 
 def compile_ahead(drive: Drive) -> None:
-    """Compile the kernels of a run once, before several processes need them."""
-    compile_kernels(*_before_run(prepare(drive)))
+    """Compile the kernels of a run once, before several processes need them; a web line has none."""
+    if not drive.is_web:
+        compile_kernels(*_before_run(prepare(drive)))
 
 
 def compile_solving_ahead(prepared: Prepared) -> AbstractContextManager[None]:
@@ -130,6 +131,11 @@ def _before_run(prepared: Prepared) -> tuple[System, State]:
 
 def mesh_of(prepared: Prepared, integrator: Integrator, progress: Report | None = None) -> Beginning:
     """The mesh of a run, with the state on it where the mesh is found by that."""
+    if prepared.drive.is_web:
+        raise ModelError(
+            "a web line has no run over time: more or less web enters it than leaves. Find how it runs steadily with "
+            "`beltdyn steady-state`."
+        )
     settings, staying = prepared.simulation, prepared.frame.stays
     if staying and not isinstance(integrator, GeneralizedAlpha):
         raise ModelError(

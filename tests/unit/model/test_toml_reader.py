@@ -54,6 +54,8 @@ def test_schema_knows_every_group() -> None:
     assert set(schema["properties"]) == {
         "author",
         "carriage",
+        "unwinder",
+        "winder",
         "project",
         "belt",
         "pulley",

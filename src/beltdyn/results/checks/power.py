@@ -85,8 +85,10 @@ def _spoiled(balance: Balance, power: float) -> str:
 
 
 def driving_loads(evidence: Evidence) -> Iterator[Finding]:
-    """Loads that put power in, in a drive with a motor or a prescribed speed."""
+    """Loads that put power in, in a drive with a motor or a prescribed speed; rollers of a web line may."""
     prepared = evidence.prepared
+    if prepared.drive.is_web:
+        return
     motors = [pulley.prescribed or any(one.driven_speed for one in pulley.load) for pulley in prepared.pulleys]
     most = max(evidence.power, *(abs(one.power) for one in evidence.pulleys))
     if not any(motors):
@@ -159,8 +161,10 @@ def unbalanced_powers(evidence: Evidence) -> Iterator[Finding]:
     """Mean shaft powers that do not balance over whole belt turns although the energy balance closes.
 
     Torques of prescribed shafts ripple as elements pass. Outputs that meet each of them at the same place give a mean
-    torque and power that are off.
+    torque and power that are off. Through a web line power comes in and goes out with the web.
     """
+    if evidence.prepared.drive.is_web:
+        return
     balance = evidence.balance
     missing = balance.power_in - balance.power_out - balance.lost - balance.stored
     closes = abs(largest_closure(evidence.recorded)[1]) <= CLOSURE_LIMIT

@@ -1,0 +1,168 @@
+"""A web line in steady running: material enters at one end of an open path and leaves at the other.
+
+The web is held in place where it leaves the unwinder and where it reaches the winder, and as much unstretched length
+passes both ends, c in a unit of time.  How much is between them follows from both tensions:
+
+    N(|r'|) = T    at either end,    N the law of stretch.
+
+Unknowns are c, as on a closed belt, and this content, as a factor on the lengths of all elements.  Power comes in and
+goes out with the web: -/+ N c |r'| of the tension, +/- (W + rho A c^2 |r'|^2 / 2) c of what passes.
+"""
+
+from collections.abc import Callable
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from beltdyn.arrays import FloatArray
+from beltdyn.kernel import by_type, kernel
+from beltdyn.stretch import stretching
+from beltdyn.system.arrays import TORQUE_WORK, BodyForces, Equations, Motion, NoCarriage, System
+
+
+class WebLine(NamedTuple):
+    """Both ends of a web that flows through a staying mesh."""
+
+    tensions: FloatArray
+    """Of the web at the unwinder and at the winder, N, shape (2,)."""
+    content: FloatArray
+    """Lengths of the elements over those below, shape (1,)."""
+    orders: FloatArray
+    """Orders of the derivatives that the v vectors of an element are, shape (v,)."""
+    length: FloatArray
+    """As in `System`, with a content of 1, like all that follows."""
+    control: FloatArray
+    mass: FloatArray
+    derivative: FloatArray
+    """As in `frame.Staying`."""
+    inertia: FloatArray
+
+
+def web_line(system: System, tensions: FloatArray, orders: FloatArray) -> System:
+    """A system in a staying mesh with the ends of a web line, and arrays of its own that its content changes."""
+    frame = system.frame._replace(derivative=system.frame.derivative.copy(), inertia=system.frame.inertia.copy())
+    given = system.length, system.control, system.mass, system.frame.derivative, system.frame.inertia
+    line = WebLine(tensions, np.ones(1), orders, *(array.copy() for array in given))
+    own = {name: getattr(system, name).copy() for name in ("length", "control", "mass")}
+    return system._replace(frame=frame, carriage=line, **own)
+
+
+def content(system: System) -> FloatArray:
+    """Content of a web line over that of its arrays, shape (1,), or none of a belt, shape (0,)."""
+    return system.carriage.content if isinstance(system.carriage, WebLine) else np.zeros(0)
+
+
+def rebased(system: System) -> System:
+    """The same web line with a content of 1; a belt as it is."""
+    line = system.carriage
+    return web_line(system, line.tensions, line.orders) if isinstance(line, WebLine) else system
+
+
+@kernel
+def set_content(line: WebLine, system: System, value: float) -> None:
+    """Give all elements the lengths of a content; their vectors stay."""
+    orders, count = line.orders, line.orders.size
+    line.content[0] = value
+    for element in range(system.length.size):
+        system.length[element] = value * line.length[element]
+        for curve in range(line.control.shape[1]):
+            for point in range(line.control.shape[2]):
+                for a in range(count):
+                    system.control[element, curve, point, a] = (
+                        value ** orders[a] * line.control[element, curve, point, a]
+                    )
+        for a in range(count):
+            for b in range(count):
+                together = orders[a] + orders[b]
+                system.frame.derivative[element, a, b] = (
+                    value ** (orders[b] - orders[a] - 1.0) * line.derivative[element, a, b]
+                )
+                system.frame.inertia[element, a, b] = value ** (together - 1.0) * line.inertia[element, a, b]
+                factor, i, j = value ** (together + 1.0), system.vectors[a], system.vectors[b]
+                for axis in range(2):
+                    for other in range(2):
+                        system.mass[element, i + axis, j + other] = factor * line.mass[element, i + axis, j + other]
+
+
+@kernel(inline=True)
+def _no_content(carriage: Any, system: System, factor: float, border_part: FloatArray) -> None:
+    """The length of a belt is known."""
+
+
+@kernel
+def _change_content(line: WebLine, system: System, factor: float, border_part: FloatArray) -> None:
+    """The content is the last unknown but one."""
+    set_content(line, system, line.content[0] + factor * border_part[border_part.size - 2])
+
+
+@kernel(inline=True)
+def _no_way(carriage: Any, border_part: FloatArray) -> float:
+    return 0.0
+
+
+@kernel(inline=True)
+def _way_of_content(line: WebLine, border_part: FloatArray) -> float:
+    whole = 0.0
+    for element in range(line.length.size):
+        whole += line.length[element]
+    return float(abs(border_part[border_part.size - 2]) * whole)
+
+
+@kernel
+def hold_web(line: WebLine, system: System, motion: Motion, at_rest: bool, wanted: bool, equations: Equations) -> None:
+    """The tensions at both ends as equations of the last two unknowns; at rest these stay as they are.
+
+    Parameters
+    ----------
+    line
+        The ends.
+    system, motion
+        The state.
+    at_rest
+        Whether the web stands still, with the content that it has.
+    wanted
+        Whether the tangent is.
+    equations
+        Changed in place.
+    """
+    matrix, dof = equations.matrix, len(system.scale)
+    law = system.element.section.stretch
+    for end in range(2):
+        row, node = matrix.corner.shape[0] - 2 + end, end * (system.nodes - 1)
+        if at_rest:
+            if wanted:
+                matrix.corner[row, row] = 1.0
+            continue
+        at = dof * node + system.turned
+        x, y = motion.position[at], motion.position[at + 1]
+        metric = x * x + y * y
+        own, stretch = stretching(law, metric), metric**0.5
+        matrix.border_side[row] = (2.0 * own.slope * stretch - line.tensions[end]) / law.stiffness
+        if wanted:
+            by_square = (own.slope / stretch + 2.0 * own.curvature * stretch) / law.stiffness
+            matrix.row[node, row, system.turned] = 2.0 * by_square * x
+            matrix.row[node, row, system.turned + 1] = 2.0 * by_square * y
+
+
+@kernel
+def push_web(
+    line: WebLine, system: System, motion: Motion, factors: Any, wanted: bool, corner: Any, forces: BodyForces
+) -> None:
+    """Add the power that comes in and goes out with the web to that of loads."""
+    dof, section, speed = len(system.scale), system.element.section, system.frame.speed[0]
+    for end in range(2):
+        at = dof * end * (system.nodes - 1) + system.turned
+        metric = motion.position[at] * motion.position[at] + motion.position[at + 1] * motion.position[at + 1]
+        own = stretching(section.stretch, metric)
+        power = speed * (2.0 * own.slope * metric - own.energy - 0.5 * section.mass * speed * speed * metric)
+        forces.power[TORQUE_WORK] += power if end == 1 else -power
+
+
+change_content: Callable[[Any, System, float, FloatArray], None] = by_type(
+    {NoCarriage: _no_content, WebLine: _change_content}, "change_content"
+)
+"""Add factor times a solution to the content of a web line."""
+way_of_content: Callable[[Any, FloatArray], float] = by_type(
+    {NoCarriage: _no_way, WebLine: _way_of_content}, "way_of_content"
+)
+"""The change of content in a solution, m."""

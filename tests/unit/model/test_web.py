@@ -1,0 +1,85 @@
+"""Web lines that cannot run: one clear error each; unwinder and winder hold the ends in running order."""
+
+from typing import Any
+
+import pytest
+
+from beltdyn.errors import ModelError
+from beltdyn.model import Drive, dumps, loads, prepare
+
+ROLLER = {"name": "roller", "center": [0.5, 0.0], "radius": 0.05, "speed": 40.0}
+IDLER = {"name": "idler", "center": [1.0, 0.3], "radius": 0.05, "side": "outside", "inertia": 1e-3}
+BELT = {
+    "axial_stiffness": 2e4,
+    "bending_stiffness": 1e-4,
+    "mass_per_length": 0.05,
+    "thickness": 1e-4,
+    "width": 0.2,
+}
+
+
+def line(**changes: Any) -> Drive:
+    given: dict[str, Any] = {
+        "belt": BELT,
+        "unwinder": {"point": [0.0, 0.3], "tension": 100.0},
+        "winder": {"point": [1.5, 0.0], "tension": 150.0},
+        "pulley": [ROLLER, IDLER],
+        "contact": {"friction": 0.4},
+        "simulation": {"duration": 1.0},
+    }
+    return Drive(**(given | changes))
+
+
+@pytest.mark.parametrize(
+    ("changes", "told"),
+    [
+        ({"winder": None}, r"\[winder\] is missing: a web line has an unwinder and a winder"),
+        ({"unwinder": None}, r"\[unwinder\] is missing"),
+        (
+            {"pulley": [ROLLER | {"speed": None, "inertia": 1e-3}, IDLER]},
+            "nothing moves the web: no roller has a speed or a motor",
+        ),
+        (
+            {"pulley": [ROLLER | {"speed": -40.0}, IDLER]},
+            'the speed of "roller" moves the web from the winder to the unwinder',
+        ),
+        ({"pulley": [ROLLER, IDLER | {"side": "inside"}]}, 'would cross itself: .* Set side = "outside" for "idler"'),
+        (
+            {"belt": BELT | {"crossed": True}, "pulley": [ROLLER, IDLER | {"side": "inside"}]},
+            r"belt\.crossed = true is incompatible with \[unwinder\]",
+        ),
+        ({"pulley": [ROLLER, IDLER | {"center": [0.55, 0.05]}]}, 'pulleys "roller" and "idler" overlap'),
+        (
+            {"end": [{"name": "a", "kind": "fixed", "point": [0, 1]}, {"name": "b", "kind": "fixed", "point": [1, 1]}]},
+            r"\[unwinder\] and \[winder\] exclude \[\[end\]\] and \[carriage\]",
+        ),
+        ({"belt": BELT | {"stretch_loss_factor": 0.05}}, "loss factors of the belt are incompatible with"),
+    ],
+)
+def test_what_cannot_run_is_told(changes: dict[str, Any], told: str) -> None:
+    with pytest.raises(ModelError, match=told):
+        line(**changes)
+
+
+def test_a_web_runs_from_the_unwinder_to_the_winder() -> None:
+    drive = line()
+    assert drive.is_web
+    assert drive.spans == (("roller", "idler"), ("idler", "winder"), ("unwinder", "roller"))
+    assert drive.path.ends is not None
+    assert drive.path.ends.tolist() == [[0.0, 0.3], [1.5, 0.0]]
+
+
+def test_a_web_at_rest_has_the_tension_of_the_unwinder() -> None:
+    assert prepare(line()).installation.tension == pytest.approx(100.0, rel=1e-9)
+
+
+def test_a_file_keeps_both_ends() -> None:
+    again = loads(dumps(line()))
+    assert (again.unwinder, again.winder) == (line().unwinder, line().winder)
+
+
+def test_a_given_length_serves_as_it_is() -> None:
+    prepared = prepare(line())
+    longer = prepared.with_length(1.001 * prepared.belt_length)
+    assert longer.belt_length == pytest.approx(1.001 * prepared.belt_length, rel=1e-12)
+    assert longer.contact == prepared.contact

@@ -1,0 +1,84 @@
+"""Verified: web lines in steady running, against draws, moments of rollers, and the first law.
+
+The same unstretched length c passes every place in a unit of time.  A roller that grips the web where it arrives moves
+it at its own speed, v = c g with the stretch g of the span before it, so that T = N(g_0 v / v_0).
+"""
+
+from typing import Any
+
+import numpy as np
+import pytest
+
+import beltdyn as bd
+from beltdyn.errors import ModelError
+from beltdyn.model import Drive
+from beltdyn.results.balance import largest_closure
+
+RADIUS, SPEED, ENTERS, LEAVES = 0.05, 2.0, 100.0, 150.0
+
+
+def line(idler: dict[str, Any], last: dict[str, Any], winder: float = LEAVES, friction: float = 0.8) -> Drive:
+    """A roller at the speed of the web, an idle one on its other side, and another one."""
+    first = {"name": "first", "center": [0.5, 0.0], "radius": RADIUS, "speed": SPEED / RADIUS}
+    middle = {"name": "idler", "center": [1.0, 0.3], "radius": RADIUS, "side": "outside", "inertia": 1e-3}
+    return Drive(
+        belt={
+            "axial_stiffness": 2e4,
+            "bending_stiffness": 1e-4,
+            "mass_per_length": 0.05,
+            "thickness": 1e-4,
+            "width": 0.2,
+        },
+        unwinder={"point": [0.0, 0.3], "tension": ENTERS},
+        pulley=[first, middle | idler, {"name": "last", "center": [1.5, 0.0], "radius": RADIUS} | last],
+        winder={"point": [2.0, 0.3], "tension": winder},
+        contact={"friction": friction},
+        simulation={"duration": 1.0},
+    )
+
+
+@pytest.mark.parametrize("draw", [1.002, 1.005, 0.999])
+def test_a_draw_sets_the_tension_between_driven_rollers(draw: float) -> None:
+    """To 0.1 %; the account of energy closes with the power that comes in and goes out."""
+    run = bd.steady_state(line({}, {"speed": draw * SPEED / RADIUS}))
+    law = run.prepared.belt.stretch_parameters
+    enters = float(law.stretch(ENTERS))
+    between = float(law.tension(draw * enters))
+    found = run.dataset.span_tension.values[-1]
+    assert found == pytest.approx([between, between, LEAVES, ENTERS], rel=1e-3)
+    assert run.dataset.attrs["belt_parameter"] == pytest.approx(SPEED / enters, rel=1e-5)
+    assert abs(largest_closure(run.dataset).error) < 1e-7
+
+
+@pytest.mark.parametrize("torque", [0.0, 1.0])
+def test_rollers_change_the_tension_by_their_moments(torque: float) -> None:
+    """To 0.1 %: an idle roller with friction in its bearings, and one that is driven with a torque.
+
+    Both run as fast as the web that arrives.
+    """
+    bearing = 0.1
+    given = {"inertia": 1e-3, "torque": torque}
+    run = bd.steady_state(line({"load": [{"kind": "resistance", "constant": bearing}]}, given, winder=120.0))
+    law = run.prepared.belt.stretch_parameters
+    before = 120.0 + torque / RADIUS
+    arrives = np.array([before - bearing / RADIUS, before])
+    found = run.dataset.isel(time=-1)
+    assert found.span_tension.values[:2] == pytest.approx(arrives, rel=1e-3)
+    rims = np.abs(found.pulley_speed.values[1:]) * RADIUS
+    assert rims == pytest.approx(SPEED / law.stretch(ENTERS) * law.stretch(arrives), rel=1e-5)
+
+
+def test_a_roller_that_cannot_hold_the_draw_slips() -> None:
+    """To 0.1 %: the tensions before and behind it have the ratio of Euler and Eytelwein."""
+    run = bd.steady_state(line({}, {"speed": 0.998 * SPEED / RADIUS}, friction=0.4))
+    centrifugal = 0.05 * SPEED**2
+    expected = (LEAVES - centrifugal) * np.exp(-0.4 * run.prepared.path.wrap_angles[2]) + centrifugal
+    assert run.dataset.span_tension.values[-1, :2] == pytest.approx([expected, expected], rel=1e-3)
+
+
+def test_what_a_web_line_has_not_is_told() -> None:
+    given = line({}, {"speed": SPEED / RADIUS})
+    with pytest.raises(ModelError, match=r"a web line has no run over time: .* Find how it runs steadily"):
+        bd.simulate(given)
+    with pytest.raises(ModelError, match="modes need a closed belt, and this is a web line"):
+        bd.modes(given)
