@@ -25,6 +25,7 @@ from beltdyn.vibration.small_motions import (
     about_rest,
     about_steady,
     dry_tensioners,
+    require_closed,
     require_mesh_that_stays,
 )
 
@@ -253,6 +254,8 @@ def modes(
             raise ModelError("about cannot be given with a run, which is itself the state. Omit about.")
         about, drive = drive, drive.drive
     _require_sense(about, speed, pulley, at, count)
+    if drive.is_web:
+        require_closed(drive)
     if isinstance(about, Run) and not runs_steadily(about.dataset):
         require_mesh_that_stays(about)
         drive, instant = about.drive, instant_of(about, at)

@@ -141,11 +141,11 @@ def about_rest(drive: Drive) -> SmallMotions:
     Where it touches them, springs hold it along the rim, a hundred times as stiff as those of the normal force or more.
     The hysteresis of the belt is left out: its stress has no tangent there.
     """
-    _require_closed(drive)
+    require_closed(drive)
     return about_standing(bring_to_stand(prepare(drive)))
 
 
-def _require_closed(drive: Drive) -> None:
+def require_closed(drive: Drive) -> None:
     """Refuse belts with ends."""
     if drive.is_web:
         raise ModelError("modes need a closed belt, and this is a web line. Use `beltdyn steady-state`.")
@@ -177,7 +177,7 @@ def sticking_rate(tension: float, system: System) -> float:
 
 def about_steady(run: Run, *, all_shafts: bool = False) -> SmallMotions:
     """A drive in steady running."""
-    _require_closed(run.drive)
+    require_closed(run.drive)
     search = search_from(run.prepared, run, float(run.dataset.attrs["steady_at"]))
     search.resume()
     return _in_motion(run.prepared, search.constant, search.state, search.belt_parameter, all_shafts=all_shafts)
