@@ -154,9 +154,7 @@ class SteadySearch:
     def unknowns(self) -> FloatArray:
         """All that steady running consists of: position, velocity, speed of the belt, phases, shifts, content."""
         own, here, frame = self.constant, self.state, self.constant.frame
-        return np.concatenate(
-            [here.position, here.velocity, frame.speed, phases(own), shifts_of(frame), content(own)]
-        )
+        return np.concatenate([here.position, here.velocity, frame.speed, phases(own), shifts_of(frame), content(own)])
 
     def place(self, unknowns: FloatArray) -> None:
         """Put the search in its place."""
