@@ -19,7 +19,7 @@ from beltdyn.model.duty import PASS
 from beltdyn.model.installation import Installation
 from beltdyn.model.tensioning import DEFLECTION, tension_checks
 from beltdyn.parts.quantity import Number, Numbers, number_in, numbers_in
-from beltdyn.points.changed_drive import at_instant
+from beltdyn.points.changed_drive import at_instant, require_belt
 from beltdyn.points.duty import Column, at_row, durations_of, duty, duty_of
 from beltdyn.points.quasi_steady import QuasiSteady, Running, Torques, torques_between, torques_of
 from beltdyn.points.tensioner_sheet import length_of
@@ -120,6 +120,7 @@ def sheet(
     >>> found.slip_safety.dims, bool(found.mode_frequency[0] > 0.0)
     (('row', 'pulley'), True)
     """
+    require_belt(drive, "a drive sheet", "`beltdyn steady-state` with --report")
     if drive.ends:
         raise ModelError("a drive sheet needs a closed belt. Use `beltdyn simulate` for a belt with ends.")
     columns = duty_of(drive, table)

@@ -252,7 +252,8 @@ class Drive(Part):
         if not self.carries:
             return self
         if self.ends:
-            raise ValueError("[[end]] opens the belt, but only closed belts have [[support]] and [[goods]]. Remove one")
+            opening = "[unwinder] opens the path" if self.is_web else "[[end]] opens the belt"
+            raise ValueError(f"{opening}, but only closed belts have [[support]] and [[goods]]. Remove one")
         if not self.frame.stays:
             raise ValueError(
                 "[[support]] and [[goods]] need a mesh that stays, through which the belt flows; the mesh of this "

@@ -44,15 +44,31 @@ def is_motor(load: Load) -> bool:
 
 
 def at_speed(drive: Drive, number: int, speed: float) -> Drive:
-    """Prescribe the speed of a pulley, in place of its motor, torque and loads."""
-    return with_pulley(drive, number, turned_at(drive.pulleys[number], speed))
+    """Prescribe the speed of a pulley, in place of its motor, torque and loads; a web line keeps its draws."""
+    return drive.replace(pulley=_turned(drive, list(drive.pulleys), number, speed))
 
 
 def at_speed_under(drive: Drive, number: int, speed: float, factor: float) -> Drive:
     """Multiply all torques and loads, as `with_load`, and prescribe the speed of a pulley, as `at_speed`."""
-    pulleys = under_load(drive, factor)
+    return drive.replace(pulley=_turned(drive, under_load(drive, factor), number, speed))
+
+
+def _turned(drive: Drive, pulleys: list[Pulley], number: int, speed: float) -> list[Pulley]:
+    """The pulleys with the speed of one; other prescribed speeds of a web line change in proportion."""
+    given = drive.pulleys[number].speed
+    before = 0.0 if given is None else float(given.at([0.0])[0])
+    if drive.is_web and before != 0.0:
+        for other, one in enumerate(pulleys):
+            if one.speed is not None:
+                pulleys[other] = turned_at(one, speed * float(one.speed.at([0.0])[0]) / before)
     pulleys[number] = turned_at(pulleys[number], speed)
-    return drive.replace(pulley=pulleys)
+    return pulleys
+
+
+def require_belt(drive: Drive, analysis: str, instead: str) -> None:
+    """Refuse a web line, for an analysis that is one of belts."""
+    if drive.is_web:
+        raise ModelError(f"{analysis} needs a belt, and this is a web line. Use {instead}.")
 
 
 def under_torque(pulley: Pulley, torque: float) -> Pulley:

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from beltdyn.arrays import FloatArray
 from beltdyn.errors import ModelError
 from beltdyn.model import Drive, load
-from beltdyn.points.changed_drive import held_at
+from beltdyn.points.changed_drive import held_at, require_belt
 from beltdyn.points.duty import Column, at_row, durations_of, duty_of
 from beltdyn.points.operating_points import PULLEY, Axes, OperatingPoints
 from beltdyn.results import Result, Run, Variable, open_result
@@ -98,6 +98,7 @@ def life(
     >>> found.dataset.cord_share.sum().round(6).item()
     1.0
     """
+    require_belt(drive, "the life of a belt", "`beltdyn steady-state`")
     _require_data(drive)
     if run is None and repeats != 1.0:
         raise ModelError(f"repeats = {repeats:g} needs a run that occurs so often. Give run, or omit repeats.")

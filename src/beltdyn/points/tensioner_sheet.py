@@ -15,6 +15,7 @@ from beltdyn.model.carrier import moved
 from beltdyn.model.tensioner_balance import held_belt
 from beltdyn.parts.messages import reason
 from beltdyn.parts.quantity import Number, to_si
+from beltdyn.points.changed_drive import require_belt
 from beltdyn.points.operating_points import Axes
 from beltdyn.results import Result, Variable, build_result
 from beltdyn.solvers.progress import Progress, Report
@@ -112,6 +113,7 @@ def tensioner_sheet(
     >>> sheet.dataset.tension.sel(state="worn belt").round().item()  # N
     30.0
     """
+    require_belt(drive, "a tensioner sheet", "`beltdyn operating-map`, which has the positions of dancers")
     number = _number_of(drive, pulley)
     tell = progress or (lambda _: None)
     tell(Progress(0.0, drive.simulation.duration, 0.0, 0, "equilibrium"))

@@ -13,7 +13,7 @@ from beltdyn.errors import ConvergenceError, ModelError, cause_of
 from beltdyn.model import Drive
 from beltdyn.model.pulley import flat_friction_on
 from beltdyn.parts.quantity import Numbers, numbers_in
-from beltdyn.points.changed_drive import at_speed, driver_of, held_at, sense_of, with_pulley
+from beltdyn.points.changed_drive import at_speed, driver_of, held_at, require_belt, sense_of, with_pulley
 from beltdyn.points.operating_points import Axes, OperatingPoints
 from beltdyn.results import Result, Run, Variable, summarize
 from beltdyn.results.checks.sliding import gross_slip, near_gross_slip
@@ -116,6 +116,7 @@ def traction(
     >>> found.dataset.torque.dims
     ('slip',)
     """
+    require_belt(drive, "a traction curve", "`beltdyn operating-map` over load, which has the slip safety of rollers")
     held = _driven_by_speed(held_at(drive, at), force_tolerance)
     driver = driver_of(held)
     number = _loaded(held, driver) if pulley is None else held.number_of(pulley)

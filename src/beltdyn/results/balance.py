@@ -31,6 +31,9 @@ under load, which may be negative."""
 _OF_GROOVES = "tooth_phases"
 """Attribute of the results of belts with teeth."""
 
+WEB_LINE = "web_line"
+"""Attribute of the results of web lines, whose works of loads include those of both ends."""
+
 _BEFORE = {"material_loss": "belt material"}
 """The combined loss of stretch and bending in files of earlier formats."""
 
@@ -55,16 +58,18 @@ class Balance:
     """Power lost, by cause, such as "friction"."""
     stored: float
     """Rate of change of the stored energy: kinetic, strain, contact, spring and potential energy."""
+    web: float = 0.0
+    """Power that comes in with the web of a line, less that which goes out with it."""
 
     @property
     def power_in(self) -> float:
-        """Power input of the driving shafts."""
-        return sum(power for power in self.pulleys if power > 0.0)
+        """Power input of the driving shafts, and of a web that brings more than it takes along."""
+        return sum(power for power in (*self.pulleys, self.web) if power > 0.0)
 
     @property
     def power_out(self) -> float:
-        """Power output to the loads."""
-        return -sum(power for power in self.pulleys if power < 0.0)
+        """Power output to the loads, and to a web that takes more along than it brings."""
+        return -sum(power for power in (*self.pulleys, self.web) if power < 0.0)
 
     @property
     def efficiency(self) -> float:
@@ -119,10 +124,13 @@ def power_balance(recorded: Recorded, window: Window | None = None) -> Balance:
     ['belt bending', 'belt compression']
     """
     window = plain_window(np.asarray(recorded["time"])) if window is None else window
+    pulleys = tuple(map(float, window.product(recorded, "shaft_torque", "shaft_speed")))
+    put_in = sum(float(window.rate(recorded, name)) for name in ("driver_work", "torque_work"))
     return Balance(
-        pulleys=tuple(map(float, window.product(recorded, "shaft_torque", "shaft_speed"))),
+        pulleys=pulleys,
         losses={cause: float(window.rate(recorded, name)) for name, cause in losses_of(recorded).items()},
         stored=sum(float(window.rate(recorded, name)) for name in STORED),
+        web=put_in - sum(pulleys) if WEB_LINE in recorded.attrs else 0.0,
     )
 
 

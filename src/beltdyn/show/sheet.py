@@ -261,7 +261,8 @@ def _power(summary: Summary) -> list[tuple[str, str]]:
         return []
     losses = ", ".join(f"{cause} {_watts(power, 3)}" for cause, power in balance.losses.items() if power != 0.0)
     efficiency = f"{balance.efficiency:.2%}" if balance.power_out > 0.0 else "none (no power output)"
-    flows = f"{_watts(balance.power_in)} in{_givers(summary)}, {_watts(balance.power_out)} out"
+    taken = f" (the web {_watts(-balance.web)})" if balance.web < 0.0 else ""
+    flows = f"{_watts(balance.power_in)} in{_givers(summary)}, {_watts(balance.power_out)} out{taken}"
     return [
         ("power", f"{flows}, {_watts(balance.stored, 3)} stored" if summary.steps else flows),
         ("efficiency", efficiency),
@@ -270,9 +271,10 @@ def _power(summary: Summary) -> list[tuple[str, str]]:
 
 
 def _givers(summary: Summary) -> str:
-    """The shafts that put power in, if several."""
-    givers = [pulley for pulley in summary.pulleys if pulley.power > _LEAST_SHARE * summary.balance.power_in]
-    parts = ", ".join(f"{pulley.name} {_watts(pulley.power)}" for pulley in givers)
+    """The shafts that put power in, and the web of a line, if several."""
+    powers = [*((pulley.name, pulley.power) for pulley in summary.pulleys), ("the web", summary.balance.web)]
+    givers = [(name, power) for name, power in powers if power > _LEAST_SHARE * summary.balance.power_in]
+    parts = ", ".join(f"{name} {_watts(power)}" for name, power in givers)
     return f" ({parts})" if len(givers) > 1 else ""
 
 

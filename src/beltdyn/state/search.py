@@ -172,10 +172,12 @@ class SteadySearch:
         """Find steady running under the required loads from that under others; False if that fails."""
         if has_teeth(self.constant) and not np.any(self._prescribed):
             return self._resume_with_motor()
-        if tangent is None:
-            return self._try(Setting())
-        self._work = tangent
-        return self._try(Setting(), factorised=True) or self._try(Setting())
+        if tangent is not None:
+            self._work = tangent
+        found = (tangent is not None and self._try(Setting(), factorised=True)) or self._try(Setting())
+        if found:
+            self._keep_content()
+        return found
 
     def _resume_with_motor(self) -> bool:
         """Find steady running of a belt with teeth whose driver has a motor, near its present speed."""

@@ -13,6 +13,7 @@ from beltdyn.observation.recording import Recording
 from beltdyn.parts.messages import listing
 from beltdyn.parts.quantity import number_in
 from beltdyn.results import Run, mesh_error_attribute
+from beltdyn.results.balance import WEB_LINE
 from beltdyn.results.provenance import STAYING, mesh_used
 from beltdyn.results.schema import runs_steadily
 from beltdyn.solvers.progress import Progress, Report
@@ -67,7 +68,7 @@ def search_from(prepared: Prepared, start: Run, time: float) -> SteadySearch:
     Its speeds are changed in proportion to those that are prescribed.
     """
     found = start.dataset
-    lengths = lengths_of(found, start.prepared.belt_length)
+    lengths = lengths_of(found, start.prepared)
     system, state = carried(prepared, start.prepared, lengths, found.nodal_coordinates.values[-1].ravel())
     if system.tensioners.size:
         state.position[-system.tensioners.size :] += found.tensioner_position.values[-1]
@@ -317,6 +318,7 @@ def _as_run(prepared: Prepared, instant: float, found: _Found) -> Run:
             **found.band,
             belt_parameter=search.belt_parameter,
             **({TOOTH_PHASES: phases(search.constant)} if has_teeth(search.constant) else {}),
+            **({WEB_LINE: 1} if drive.is_web else {}),
             **mesh_attributes(search.constant),
             newton_iterations_of_search=search.iterations,
             mesh_rule=np.array(found.rule),

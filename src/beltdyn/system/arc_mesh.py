@@ -251,10 +251,13 @@ def mesh_attributes(system: System) -> dict[str, FloatArray]:
     return {MESH_LENGTHS: system.frame.arcs.length.copy(), MESH_SHIFTS: system.frame.shift.copy()}
 
 
-def lengths_of(dataset: "xr.Dataset", belt_length: float) -> FloatArray:
+def lengths_of(dataset: "xr.Dataset", prepared: Prepared) -> FloatArray:
     """Lengths of the elements of a result where no length of belt has gone over, m."""
     lengths = dataset.attrs.get(MESH_LENGTHS)
-    return np.asarray(np.diff(dataset["node_coordinate"].values, append=belt_length) if lengths is None else lengths)
+    if lengths is not None:
+        return np.asarray(lengths)
+    nodes = dataset["node_coordinate"].values
+    return np.asarray(np.diff(nodes) if prepared.ends else np.diff(nodes, append=prepared.belt_length))
 
 
 def passed_at(system: System, ways: ComplexArray, along: FloatArray) -> ComplexArray:

@@ -36,15 +36,18 @@ class WebLine(NamedTuple):
     derivative: FloatArray
     """As in `frame.Staying`."""
     inertia: FloatArray
+    force: FloatArray
+    """Weight on the nodal coordinates, as in `Supports`."""
 
 
 def web_line(system: System, tensions: FloatArray, orders: FloatArray) -> System:
     """A system in a staying mesh with the ends of a web line, and arrays of its own that its content changes."""
     frame = system.frame._replace(derivative=system.frame.derivative.copy(), inertia=system.frame.inertia.copy())
-    given = system.length, system.control, system.mass, system.frame.derivative, system.frame.inertia
+    supports = system.supports._replace(force=system.supports.force.copy())
+    given = system.length, system.control, system.mass, frame.derivative, frame.inertia, supports.force
     line = WebLine(tensions, np.ones(1), orders, *(array.copy() for array in given))
     own = {name: getattr(system, name).copy() for name in ("length", "control", "mass")}
-    return system._replace(frame=frame, carriage=line, **own)
+    return system._replace(frame=frame, carriage=line, supports=supports, **own)
 
 
 def content(system: System) -> FloatArray:
@@ -61,8 +64,10 @@ def rebased(system: System) -> System:
 @kernel
 def set_content(line: WebLine, system: System, value: float) -> None:
     """Give all elements the lengths of a content; their vectors stay."""
-    orders, count = line.orders, line.orders.size
+    orders, count, dof = line.orders, line.orders.size, len(system.scale)
     line.content[0] = value
+    for at in range(line.force.size):
+        system.supports.force[at] = value ** (orders[at % dof // 2] + 1.0) * line.force[at]
     for element in range(system.length.size):
         system.length[element] = value * line.length[element]
         for curve in range(line.control.shape[1]):

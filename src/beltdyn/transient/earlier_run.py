@@ -55,7 +55,7 @@ def instant_of(run: Run, at: float | str | None, name: str = "at") -> float:
 
 def staying_mesh(prepared: Prepared, run: Run) -> System:
     """The arrays of a drive over time on the mesh of a run that stays, with a belt that does not flow."""
-    lengths = lengths_of(run.dataset, prepared.belt_length)
+    lengths = lengths_of(run.dataset, prepared)
     return turned_by(prepared, staying_system(prepared, lengths), run.dataset.attrs.get(TOOTH_PHASES))
 
 

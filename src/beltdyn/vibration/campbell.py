@@ -21,7 +21,7 @@ from beltdyn.vibration.excitation import Excitation, averaged, given_excitations
 from beltdyn.vibration.mode_shapes import Shares, part_names
 from beltdyn.vibration.mode_tracking import Crossing, ModeTable, Tracks, crossings, seen_modes
 from beltdyn.vibration.modes import SLIDING, STUCK
-from beltdyn.vibration.small_motions import SmallMotions, about_steady, dry_tensioners
+from beltdyn.vibration.small_motions import SmallMotions, about_steady, dry_tensioners, require_closed
 
 # The lines of a Campbell diagram: modes over speed, excitations, where they meet, and what grows by itself
 
@@ -317,6 +317,7 @@ def campbell(
         raise ModelError(f"count = {count} must be 1 or more.")
     if dry_tensioners not in (SLIDING, STUCK):
         raise ModelError(f'dry_tensioners = {dry_tensioners!r} must be "{SLIDING}" or "{STUCK}".')
+    require_closed(drive)
     held = held_at(averaged(drive), at)
     number = driver_of(held) if pulley is None else held.number_of(pulley)
     name, sense = held.pulleys[number].name, sense_of(held, number)

@@ -21,6 +21,7 @@ from beltdyn.vibration.excitation import Excitation, averaged
 from beltdyn.vibration.modes import SLIDING, STUCK
 from beltdyn.vibration.response_answers import RESPONSES, Answers, ForcedMotion
 from beltdyn.vibration.response_range import SMALL_ERROR
+from beltdyn.vibration.small_motions import require_closed
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -217,6 +218,7 @@ def response(
     """
     if dry_tensioners not in (SLIDING, STUCK):
         raise ModelError(f'dry_tensioners = {dry_tensioners!r} must be "{SLIDING}" or "{STUCK}".')
+    require_closed(drive)
     given, exciting = held_at(averaged(drive), at), at_instant(drive, at)
     number = driver_of(given) if pulley is None else given.number_of(pulley)
     name, sense = given.pulleys[number].name, sense_of(given, number)

@@ -18,6 +18,7 @@ ENTERS, LEAVES = 100.0, 150.0
 
 @pytest.fixture(scope="module")
 def prepared() -> Prepared:
+    """A line with gravity over one roller."""
     return prepare(
         Drive(
             belt={
@@ -32,6 +33,7 @@ def prepared() -> Prepared:
             winder={"point": [1.0, 0.3], "tension": LEAVES},
             contact={"friction": 0.4},
             simulation={"duration": 1.0},
+            gravity=[0.0, -9.81],
         )
     )
 
@@ -56,6 +58,7 @@ def test_a_content_is_a_belt_of_another_length(prepared: Prepared, system: Syste
     for name in ("derivative", "inertia"):
         own, expected = getattr(system.frame, name), getattr(other.frame, name)
         np.testing.assert_allclose(own, expected, rtol=1e-9, atol=1e-12 * np.abs(expected).max(), err_msg=name)
+    np.testing.assert_allclose(system.supports.force, other.supports.force, rtol=1e-12, atol=1e-15)
     assert content(rebased(system)).tolist() == [1.0]
 
 

@@ -4,6 +4,8 @@ The same unstretched length c passes every place in a unit of time.  A roller th
 it at its own speed, v = c g with the stretch g of the span before it, so that T = N(g_0 v / v_0).
 """
 
+from collections.abc import Callable
+from functools import partial
 from typing import Any
 
 import numpy as np
@@ -76,9 +78,39 @@ def test_a_roller_that_cannot_hold_the_draw_slips() -> None:
     assert run.dataset.span_tension.values[-1, :2] == pytest.approx([expected, expected], rel=1e-3)
 
 
-def test_what_a_web_line_has_not_is_told() -> None:
-    given = line({}, {"speed": SPEED / RADIUS})
-    with pytest.raises(ModelError, match=r"a web line has no run over time: .* Find how it runs steadily"):
-        bd.simulate(given)
-    with pytest.raises(ModelError, match="modes need a closed belt, and this is a web line"):
-        bd.modes(given)
+def test_steady_running_of_a_neighbour_is_found_on_its_mesh() -> None:
+    """Other loads give the tensions that they give from rest, to the tolerance of the mesh."""
+    first, second = (line({}, {"inertia": 1e-3, "torque": 1.0}, winder=tension) for tension in (120.0, 125.0))
+    other, alone = bd.steady_state(second, start=bd.steady_state(first)), bd.steady_state(second)
+    assert other.dataset.span_tension.values[-1] == pytest.approx(alone.dataset.span_tension.values[-1], rel=1e-5)
+    assert other.drive.belt_length == pytest.approx(alone.drive.belt_length, rel=1e-6)
+
+
+def test_powers_of_shafts_and_web_balance() -> None:
+    """What rollers put in, the web brings and losses take is nothing in all, to the closure of the account."""
+    balance = bd.summarize(bd.steady_state(line({}, {"speed": 1.002 * SPEED / RADIUS}))).balance
+    stretches = 1.0 + np.array([LEAVES, ENTERS]) / 2e4
+    passes = SPEED / stretches[1]
+    tension = passes * (LEAVES * stretches[0] - ENTERS * stretches[1])
+    strain = passes * 2e4 * ((stretches[0] - 1.0) ** 2 - (stretches[1] - 1.0) ** 2) / 2.0
+    assert balance.web == pytest.approx(tension - strain, rel=1e-3)
+    assert balance.power_in == pytest.approx(balance.power_out + balance.lost, abs=1e-6 * ENTERS * SPEED)
+
+
+@pytest.mark.parametrize(
+    ("analysis", "told"),
+    [
+        (bd.simulate, r"a web line has no run over time: .* Find how it runs steadily"),
+        (bd.modes, "modes need a closed belt, and this is a web line"),
+        (partial(bd.campbell, speed="40 rad/s"), "modes need a closed belt, and this is a web line"),
+        (partial(bd.response, speed="40 rad/s"), "modes need a closed belt, and this is a web line"),
+        (partial(bd.traction, pulley="idler"), "a traction curve needs a belt, and this is a web line"),
+        (bd.tensioner_sheet, "a tensioner sheet needs a belt, and this is a web line"),
+        (bd.sheet, "a drive sheet needs a belt, and this is a web line"),
+        (bd.life, "the life of a belt needs a belt, and this is a web line"),
+        (bd.stroke, "a stroke needs a carriage"),
+    ],
+)
+def test_what_a_web_line_has_not_is_told(analysis: Callable[[Drive], Any], told: str) -> None:
+    with pytest.raises(ModelError, match=told):
+        analysis(line({}, {"speed": SPEED / RADIUS}))

@@ -161,10 +161,8 @@ def unbalanced_powers(evidence: Evidence) -> Iterator[Finding]:
     """Mean shaft powers that do not balance over whole belt turns although the energy balance closes.
 
     Torques of prescribed shafts ripple as elements pass. Outputs that meet each of them at the same place give a mean
-    torque and power that are off. Through a web line power comes in and goes out with the web.
+    torque and power that are off.
     """
-    if evidence.prepared.drive.is_web:
-        return
     balance = evidence.balance
     missing = balance.power_in - balance.power_out - balance.lost - balance.stored
     closes = abs(largest_closure(evidence.recorded)[1]) <= CLOSURE_LIMIT
