@@ -68,7 +68,7 @@ def _turned(drive: Drive, pulleys: list[Pulley], number: int, speed: float) -> l
 def require_belt(drive: Drive, analysis: str, instead: str) -> None:
     """Refuse a web line, for an analysis that is one of belts."""
     if drive.is_web:
-        raise ModelError(f"{analysis} needs a belt, and this is a web line. Use {instead}.")
+        raise ModelError(f"{analysis} needs a closed belt, and this is a web line. Use {instead}.")
 
 
 def under_torque(pulley: Pulley, torque: float) -> Pulley:

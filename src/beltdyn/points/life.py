@@ -98,7 +98,7 @@ def life(
     >>> found.dataset.cord_share.sum().round(6).item()
     1.0
     """
-    require_belt(drive, "the life of a belt", "`beltdyn steady-state`")
+    require_belt(drive, "the fatigue life", "`beltdyn steady-state`")
     _require_data(drive)
     if run is None and repeats != 1.0:
         raise ModelError(f"repeats = {repeats:g} needs a run that occurs so often. Give run, or omit repeats.")
