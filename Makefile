@@ -1,9 +1,10 @@
 .DEFAULT_GOAL := help
-.PHONY: help install demo paper test validate compatibility mutation browser bench docs lock clean
+.PHONY: help install demo paper test validate compatibility mutation browser bench docs wheel lock clean
 
 PYTHON ?= python3
 BIN := .venv/bin
 STAMP := .venv/.installed
+SHIPPED := src/beltdyn/kernel/shipped
 PARALLEL := --numprocesses auto --dist worksteal
 BY_FILE := --numprocesses auto --dist loadfile
 
@@ -60,6 +61,12 @@ bench: install ## benchmarks
 
 docs: install ## the documentation, in docs/_build/html
 	$(BIN)/sphinx-build -W --keep-going -b html docs docs/_build/html
+
+wheel: install ## a wheel for this system and Python, in dist, with the usual kernels compiled
+	rm -rf $(SHIPPED)
+	BELTDYN_CACHE_DIR=$(SHIPPED) $(BIN)/beltdyn compile
+	$(BIN)/hatchling build --target wheel
+	rm -rf $(SHIPPED)
 
 lock: ## resolve the versions anew
 	$(PYTHON) -m venv .venv

@@ -1,4 +1,4 @@
-"""The first commands of a newcomer, with an empty kernel cache, and with what `beltdyn compile` has compiled.
+"""The first commands of a newcomer: with an empty kernel cache, with the kernels of a wheel, and after `compile`.
 
 Processor time includes that of the second process that compiles; without it the time on one core would be the same.
 """
@@ -6,6 +6,7 @@ Processor time includes that of the second process that compiles; without it the
 import argparse
 import os
 import resource
+import shutil
 import subprocess
 import sys
 import time
@@ -14,6 +15,8 @@ from tempfile import TemporaryDirectory
 
 from rich.console import Console
 from rich.table import Table
+
+from beltdyn.kernel import PACKAGE
 
 MAIN = "from beltdyn.cli import main; main()"
 COMMANDS = {
@@ -32,22 +35,28 @@ def main() -> None:
     parser.add_argument("commands", nargs="*", default=list(COMMANDS), help=", ".join(COMMANDS))
     parser.add_argument("--example", default="alternator_drive")
     given = parser.parse_args()
-    table = Table("command", "empty cache s", "processor s", "kernels", "compiled s", title="First start")
-    with TemporaryDirectory() as kept:
+    table = Table("command", "empty cache s", "processor s", "kernels", "wheel s", "compiled s", title="First start")
+    with TemporaryDirectory() as kept, TemporaryDirectory() as installed:
+        shutil.copytree(PACKAGE, copied := Path(installed, PACKAGE.name))
         wall, processor = _started(["compile"], Path(kept))
-        table.add_row("compile", f"{wall:.1f}", f"{processor:.1f}", str(_kernels(Path(kept))), "")
+        table.add_row("compile", f"{wall:.1f}", f"{processor:.1f}", str(_kernels(Path(kept))), "", "")
+        shutil.copytree(kept, copied / "kernel" / "shipped")  # as `make wheel` has them
         for name in given.commands:
             with TemporaryDirectory() as empty:
                 wall, processor = _started(COMMANDS[name], Path(empty), given.example)
                 count = _kernels(Path(empty))
+            with TemporaryDirectory() as empty:
+                wheel, _ = _started(COMMANDS[name], Path(empty), given.example, installed)
             again, _ = _started(COMMANDS[name], Path(kept), given.example)
-            table.add_row(name, f"{wall:.1f}", f"{processor:.1f}", str(count), f"{again:.1f}")
+            table.add_row(name, f"{wall:.1f}", f"{processor:.1f}", str(count), f"{wheel:.1f}", f"{again:.1f}")
     Console().print(table)
 
 
-def _started(words: list[str], kernels: Path, example: str = "") -> tuple[float, float]:
-    """Elapsed and processor time of a command in a new folder, s."""
+def _started(words: list[str], kernels: Path, example: str = "", package: str = "") -> tuple[float, float]:
+    """Elapsed and processor time of a command in a new folder, s, of a package elsewhere where one is named."""
     environment = {**os.environ, "BELTDYN_CACHE_DIR": str(kernels)}
+    if package:
+        environment["PYTHONPATH"] = package
     with TemporaryDirectory() as folder:
         if example:
             new = [sys.executable, "-c", MAIN, "new", "drive.toml", "--example", example]

@@ -15,6 +15,7 @@ import shutil
 import stat
 import tempfile
 import warnings
+from contextlib import suppress
 from functools import cache
 from importlib.metadata import version
 from pathlib import Path
@@ -43,6 +44,9 @@ PACKAGE = Path(__file__).parents[1]
 
 CACHE_VARIABLE = "BELTDYN_CACHE_DIR"
 """Environment variable that moves the kernel cache (default: the user's cache folder)."""
+
+_SHIPPED = PACKAGE / "kernel" / "shipped"
+"""Where a wheel for one system has usual kernels, compiled; a new cache begins with those of its sources."""
 
 ENTRY, NUMBA_FILES = ".kernel", (".nbi", ".nbc")
 """Endings of the files of kernels: ours, and those of Numba's decorator."""
@@ -85,6 +89,8 @@ def _prepare(chosen: Path, name: str) -> str:
         chosen.parent.mkdir(parents=True, exist_ok=True)
         chosen.mkdir(mode=0o700, exist_ok=True)
     folder = chosen / name
+    if not folder.exists() and (_SHIPPED / name).is_dir():
+        _copy(_SHIPPED / name, folder)
     folder.mkdir(mode=0o700, exist_ok=True)
     if hasattr(os, "getuid"):
         trusted = (os.getuid(), 0)
@@ -97,6 +103,14 @@ def _prepare(chosen: Path, name: str) -> str:
                 return f"other users can write to {path}"
     with tempfile.TemporaryFile(dir=folder):
         return ""
+
+
+def _copy(source: Path, folder: Path) -> None:
+    """Copy a folder, whole or not at all; another process may do the same."""
+    with tempfile.TemporaryDirectory(dir=folder.parent) as temporary, suppress(OSError):
+        shutil.copytree(source, copied := Path(temporary, folder.name), copy_function=shutil.copyfile)
+        copied.chmod(0o700)
+        copied.rename(folder)
 
 
 def holds_kernels(folder: Path) -> bool:

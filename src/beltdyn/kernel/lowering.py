@@ -3,15 +3,21 @@
 Numba hands each field of a named tuple to a function by itself, seven of an array, and takes tuples apart and puts them
 together again at every call.  Here a named tuple reaches a kernel by reference, and a field is read where it lies.
 Numba also clears each variable that is no longer used; kernels own no memory, so that nothing needs it.
+
+Machine code is that of a level of processors and not of one model: kernels that are shipped run wherever they would be
+compiled the same, and are no slower.
 """
 
 from collections import Counter
 from functools import cached_property
 from typing import Any
 
+import numba
 from llvmlite import ir
+from llvmlite.binding import get_host_cpu_features
 from numba.core import cgutils, types
 from numba.core.callconv import CPUCallConv
+from numba.core.codegen import JITCPUCodegen
 from numba.core.compiler import Compiler
 from numba.core.compiler_machinery import register_pass
 from numba.core.cpu import CPUContext
@@ -90,11 +96,32 @@ class _Convention(CPUCallConv):  # type: ignore[misc]
                     next(places)
 
 
+_LEVEL = "x86-64-v3"
+_LEVEL_HAS = frozenset({"64bit", "avx2", "bmi", "bmi2", "f16c", "fma", "lzcnt", "movbe"})
+"""A level of processors, from 2013 on, and the features that it adds."""
+
+
+class _Codegen(JITCPUCodegen):  # type: ignore[misc]
+    """Numba's code generator, for the level of the processor where it has one, unless a processor is asked for."""
+
+    @cached_property
+    def _has_level(self) -> bool:
+        asked = numba.config.CPU_NAME is not None or numba.config.CPU_FEATURES is not None
+        return not asked and all(get_host_cpu_features().get(one) for one in _LEVEL_HAS)
+
+    def _get_host_cpu_name(self) -> Any:
+        return _LEVEL if self._has_level else super()._get_host_cpu_name()
+
+    def _get_host_cpu_features(self) -> Any:
+        return "" if self._has_level else super()._get_host_cpu_features()
+
+
 class _Context(CPUContext):  # type: ignore[misc]
-    """Numba's context with these models; all else is shared."""
+    """Numba's context with these models, and its own code generator; all else is shared."""
 
     def __init__(self, common: CPUContext) -> None:
         self.__dict__.update(vars(common))
+        self._internal_codegen = _Codegen("beltdyn")
         self.data_model_manager = common.data_model_manager.copy()
         self.data_model_manager.register(types.NamedTuple, _NamedTuple)
         self.data_model_manager.register(types.NamedUniTuple, _NamedUniTuple)

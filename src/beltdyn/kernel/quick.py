@@ -27,7 +27,7 @@ from numba.core.registry import CPUDispatcher
 from numba.core.serialize import NumbaPickler
 from numba.core.types.misc import unliteral
 
-from beltdyn.kernel.cache import ENTRY
+from beltdyn.kernel.cache import ENTRY, PACKAGE
 from beltdyn.kernel.fingerprint import fingerprint, is_own, mark_of, marked, marks_in
 from beltdyn.kernel.lowering import TARGET, KernelCompiler
 from beltdyn.kernel.seal import read_sealed, setting, warn_of_damage, write_sealed
@@ -161,12 +161,12 @@ class _Cache(NullCache):  # type: ignore[misc]
     """
 
     def __init__(self, function: Any, folder: Path) -> None:
-        file = function.__code__.co_filename
+        file = Path(function.__code__.co_filename)
         self._folder = folder
-        stem, name = (re.sub("[^A-Za-z0-9_.]", "", text)[-80:] for text in (Path(file).stem, function.__qualname__))
+        stem, name = (re.sub("[^A-Za-z0-9_.]", "", text)[-80:] for text in (file.stem, function.__qualname__))
         self._name = f"{stem}.{name}"
-        own = (fingerprint([function]),) if is_own(function) else ()
-        self._source = (numba.__version__, sys.version_info[:3], file, *own, *_fingerprint(function))
+        origin = (str(file), fingerprint([function])) if is_own(function) else (file.relative_to(PACKAGE).as_posix(),)
+        self._source = (numba.__version__, sys.version_info[:3], *origin, *_fingerprint(function))
 
     @property
     def cache_path(self) -> str:
@@ -195,10 +195,10 @@ class _Cache(NullCache):  # type: ignore[misc]
             return None
 
     def save_overload(self, sig: Any, data: Any) -> None:
-        """Keep the machine code for some types of arguments, without the code that others would take in."""
+        """Keep the machine code for some types of arguments, without what only its compiler needs."""
         if data.lifted or data.library.has_dynamic_globals:
             return
-        (name, kind, (machine_code, _)), *rest = data._reduce()
+        (name, kind, (machine_code, _)), *rest = data._replace(type_annotation="")._reduce()
         entry = f'define void @"{data.fndesc.llvm_cpython_wrapper_name}"() {{ ret void }}'
         stored = (name, kind, (machine_code, parse_assembly(entry).as_bitcode())), *rest
         write_sealed(self.entry(sig, data.target_context), dumps((self._key(sig, data.target_context), stored)))

@@ -78,6 +78,21 @@ def test_a_temporary_cache_is_gone_at_the_end(tmp_path: Path) -> None:
     assert list(tmp_path.iterdir()) == [in_the_way]
 
 
+def test_a_new_cache_begins_with_the_kernels_of_the_package(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    shipped, name = tmp_path / "shipped", source_hash(PACKAGE)
+    (shipped / name).mkdir(parents=True)
+    (shipped / name / "one.kernel").write_bytes(b"code")
+    (shipped / "of other sources").mkdir()
+    monkeypatch.setattr("beltdyn.kernel.cache._SHIPPED", shipped)
+    monkeypatch.setenv(CACHE_VARIABLE, str(tmp_path / "cache"))
+    assert [path.name for path in (tmp_path / "cache").rglob("*")] == []
+    assert (kernel_cache() / "one.kernel").read_bytes() == b"code"
+    assert [path.name for path in (tmp_path / "cache").iterdir()] == [name]
+    (kernel_cache() / "one.kernel").unlink()
+    kernel_cache.cache_clear()
+    assert not list(kernel_cache().iterdir())
+
+
 @pytest.mark.skipif(os.name == "nt", reason="rights of files")
 @pytest.mark.parametrize("name", [".", source_hash(PACKAGE), f"{source_hash(PACKAGE)}/law_0"])
 def test_a_folder_that_others_can_write_to_is_not_used(

@@ -5,6 +5,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 import pytest
+from llvmlite.binding import get_host_cpu_features, get_host_cpu_name
 
 from beltdyn.arrays import FloatArray
 from beltdyn.kernel import compiles_quickly, kernel
@@ -95,3 +96,15 @@ def test_a_kernel_returns_a_named_tuple() -> None:
     found = moved(rod, 0.25)
     assert found[:3] == (Point(1.25, 2.0), Point(4.0, 6.5), 4)
     assert found.masses is rod.masses or np.array_equal(found.masses, rod.masses)
+
+
+@pytest.mark.skipif(not compiles_quickly(), reason="plain compilation is for the processor at hand")
+def test_machine_code_is_that_of_a_level_of_processors() -> None:
+    from beltdyn.kernel.lowering import TARGET
+
+    _, name, features = TARGET.target_context.codegen().magic_tuple()
+    host = get_host_cpu_features()
+    if host.get("avx2") and host.get("bmi2") and host.get("fma"):
+        assert (name, features) == ("x86-64-v3", "")
+    else:
+        assert name == get_host_cpu_name()

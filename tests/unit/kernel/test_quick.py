@@ -79,6 +79,22 @@ def test_kernels_from_the_disk_need_no_tables_of_the_compiler(tmp_path: Path) ->
 
 
 @pytest.mark.slow
+def test_kernels_load_wherever_the_package_lies(tmp_path: Path) -> None:
+    """As those of a wheel do; a file of kernels names no folder of the machine that compiled them."""
+    copy = tmp_path / "beltdyn"
+    shutil.copytree(PACKAGE, copy, ignore=shutil.ignore_patterns("__pycache__"))
+    environment = os.environ | {CACHE_VARIABLE: str(tmp_path / "cache")}
+    command, kept = [sys.executable, "-c", _CALLER], list[dict[Path, int]]()
+    for elsewhere in ({}, {"PYTHONPATH": str(tmp_path)}):
+        subprocess.run(command, env=environment | elsewhere, capture_output=True, check=True)
+        files = (tmp_path / "cache").rglob("*.kernel")
+        kept.append({path: path.stat().st_mtime_ns for path in files})
+    assert kept[0] == kept[1]
+    assert kept[0]
+    assert not any(str(PACKAGE).encode() in path.read_bytes() for path in kept[0])
+
+
+@pytest.mark.slow
 def test_an_edited_law_acts_at_once_in_kernels_that_inline_it(tmp_path: Path) -> None:
     """The file of the caller stays as it is, and so does the folder of the cache."""
     copy = tmp_path / "beltdyn"
