@@ -37,3 +37,7 @@ class PulleyState(NamedTuple):
     velocity_y: float = 0.0
     rolling: float = 0.0
     """Coefficient rho of rolling resistance."""
+    foundation: float = 1.0
+    """Factor on the law of the normal force, below 1 with an elastic cover."""
+    rim_ratio: float = 1.0
+    """Radius at which the tension line rolls off over that of the surface."""

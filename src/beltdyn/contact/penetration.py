@@ -26,7 +26,7 @@ class Approach(NamedTuple):
     lever: float
     """Arm p . n of a force along t about the shaft, m; rho of a smooth circle."""
     rim: float
-    """The same of the surface below the point, p . n + d, m; R of a smooth circle."""
+    """The same of the surface below the point, p . n + d, m; R of a smooth circle, times `PulleyState.rim_ratio`."""
     offset: float
     """Arm p . t of a force along n about the shaft, m; zero of a smooth circle."""
     turn: float
@@ -52,11 +52,11 @@ def approach(x: float, y: float, velocity_x: float, velocity_y: float, pulley: P
     """
     dx, dy = x - pulley.center_x, y - pulley.center_y
     vx, vy = velocity_x - pulley.velocity_x, velocity_y - pulley.velocity_y
-    return _approach(pulley.surface, dx, dy, vx, vy, pulley.speed)
+    return _approach(pulley.surface, dx, dy, vx, vy, pulley.speed, pulley.rim_ratio)
 
 
 @kernel(inline=True)
-def _to_circle(surface: Any, dx: float, dy: float, vx: float, vy: float, speed: float) -> Approach:
+def _to_circle(surface: Any, dx: float, dy: float, vx: float, vy: float, speed: float, rim_ratio: float) -> Approach:
     """A smooth circle, whose angle does not matter."""
     distance = sqrt(dx * dx + dy * dy)
     nx, ny = dx / distance, dy / distance
@@ -66,7 +66,7 @@ def _to_circle(surface: Any, dx: float, dy: float, vx: float, vy: float, speed: 
         normal_y=ny,
         curvature=1.0 / distance,
         lever=distance,
-        rim=surface.radius,
+        rim=surface.radius * rim_ratio,
         offset=0.0,
         turn=0.0,
         radial=nx * vx + ny * vy,
@@ -75,7 +75,7 @@ def _to_circle(surface: Any, dx: float, dy: float, vx: float, vy: float, speed: 
 
 
 @kernel
-def _to_shape(surface: Shaped, dx: float, dy: float, vx: float, vy: float, speed: float) -> Approach:
+def _to_shape(surface: Shaped, dx: float, dy: float, vx: float, vy: float, speed: float, rim_ratio: float) -> Approach:
     """A surface that turns with its pulley."""
     gap = shaped_gap(surface, dx, dy)
     nx, ny = gap.normal_x, gap.normal_y

@@ -167,7 +167,7 @@ def point_force(here: Approach, pulley: PulleyState, law: ContactLaw, secant: bo
     secant
         Whether `by_slip` is the secant of friction from no slip, in place of its slope.
     """
-    normal = normal_force(law.normal, here.penetration, -here.radial)
+    normal = _on_cover(normal_force(law.normal, here.penetration, -here.radial), pulley.foundation)
     slip = slip_velocity(here, pulley)
     radius = pulley.surface.radius
     friction, by_slip, by_normal, by_rim = friction_force(
@@ -190,6 +190,20 @@ def point_force(here: Approach, pulley: PulleyState, law: ContactLaw, secant: bo
         pulley_moment(normal.force, friction, here.offset, arm),
         arm,
         arm_slope,
+    )
+
+
+@kernel(inline=True)
+def _on_cover(normal: NormalForce, factor: float) -> NormalForce:
+    """A normal force on a foundation that is softer by a factor."""
+    if factor == 1.0:
+        return normal
+    return NormalForce(
+        factor * normal.force,
+        factor * normal.by_penetration,
+        factor * normal.by_rate,
+        factor * normal.elastic,
+        factor * normal.energy,
     )
 
 

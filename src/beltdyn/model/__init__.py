@@ -48,11 +48,13 @@ from beltdyn.model.belt import Belt
 from beltdyn.model.carriage import Carriage
 from beltdyn.model.catalogue import Entry, read_catalogue
 from beltdyn.model.contact import Contact
+from beltdyn.model.cover import Cover
 from beltdyn.model.drive import Drive
 from beltdyn.model.duty import DutyPoint
 from beltdyn.model.end import FixedEnd, PulledEnd, WeightEnd
 from beltdyn.model.fatigue import CordFatigue, RibFatigue
 from beltdyn.model.installation import Installation
+from beltdyn.model.nip import Nip
 from beltdyn.model.path import Path
 from beltdyn.model.prepared import Prepared, install, prepare, tensioner_balances
 from beltdyn.model.pulley import Pulley
@@ -82,6 +84,7 @@ __all__ = [
     "CordFatigue",
     "CosineRamp",
     "CosineRampPublished",
+    "Cover",
     "Drive",
     "DutyPoint",
     "Entry",
@@ -102,6 +105,7 @@ __all__ = [
     "LoadTable",
     "Motor",
     "MovingTensioner",
+    "Nip",
     "OneWayClutch",
     "OptimizationStudy",
     "ParameterStudy",

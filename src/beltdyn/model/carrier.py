@@ -58,7 +58,7 @@ def moved(path: Path, carriers: Sequence[Carrier], positions: FloatArray) -> Pat
     centers = path.centers.copy()
     for one, position in zip(carriers, positions, strict=True):
         centers[one.pulley] = one.place(float(position))[0]
-    return Path(centers, path.radii, path.ends)
+    return Path(centers, path.radii, path.ends, path.nips)
 
 
 def check_tensioners(tensioners: Sequence[Tensioner], pulleys: Sequence[Pulley], path: Path) -> None:

@@ -59,6 +59,14 @@ def complete(layout: Layout) -> Completed:
     A belt with an installed tension gets its length, if its layout has not settled that; an allowed penetration becomes
     a stiffness of contact. The numbers of computation that are not given are chosen by `beltdyn.model.defaults`.
     """
+    found = _complete(layout)
+    if not layout.given.nips:
+        return found
+    pulleys = layout.given.pressed(found.pulleys, found.contact.given("stiffness"))
+    return found._replace(pulleys=pulleys, path=layout.given.path_around(pulleys))
+
+
+def _complete(layout: Layout) -> Completed:
     pulleys, path = layout.pulleys, layout.path
     given, choices = with_chosen_stiffness(layout.given, path)
     choices = layout.choices + choices

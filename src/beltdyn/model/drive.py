@@ -26,6 +26,7 @@ from beltdyn.model.duty import DutyPoint, check_duty
 from beltdyn.model.end import AnyEnd, End, PathEnd, ends_on_path
 from beltdyn.model.layout import Given, Layout, lay_out
 from beltdyn.model.meshing import check_teeth
+from beltdyn.model.nip import Nip, rim_ratios
 from beltdyn.model.path import Path
 from beltdyn.model.pulley import Pulley, friction_on
 from beltdyn.model.rating import RatedBelt
@@ -87,6 +88,9 @@ class Drive(Part):
     )
     supports: tuple[AnySupport, ...] = Field(
         (), alias="support", description="the groups [[support]], idlers and guides along spans"
+    )
+    nips: tuple[Nip, ...] = Field(
+        (), alias="nip", description="the groups [[nip]], pairs of pulleys that press the belt between them"
     )
     goods: tuple[Goods, ...] = Field((), description="the groups [[goods]], goods that spans carry")
     unwinder: Unwinder | None = Field(None, description="the group [unwinder], where the web of a line enters")
@@ -267,6 +271,29 @@ class Drive(Part):
             check_lift(self.supports, self.spans, self.path, self.gravity, self.belt.mass_per_length, tension)
         return self
 
+    @model_validator(mode="after")
+    def _presses_a_closed_belt(self) -> Self:
+        if not self.nips:
+            return self
+        if self.ends:
+            raise ValueError("[[end]] opens the belt, but only closed belts have [[nip]]. Remove one")
+        if self.carries:
+            raise ValueError("[[nip]] is incompatible with [[support]] and [[goods]]. Remove one of them")
+        if not self.frame.stays:
+            raise ValueError(
+                "[[nip]] needs a mesh that stays, with short elements in the nip; the mesh of this drive travels, "
+                f"{self.frame.reason}. Remove that setting"
+            )
+        carried = {one.pulley for one in self.tensioners}
+        for number, nip in enumerate(self.nips, 1):
+            moved = next((name for name in (nip.roller, nip.pulley) if name in carried), None)
+            if moved is not None:
+                raise ValueError(
+                    f'nip[{number}]: a tensioner carries "{moved}", but pulleys of a nip have fixed centers. Remove '
+                    "the tensioner, or give force or gap"
+                )
+        return self
+
     @property
     def carries(self) -> bool:
         """Whether spans have supports or goods."""
@@ -274,8 +301,8 @@ class Drive(Part):
 
     @property
     def stays_at_rest(self) -> bool:
-        """Whether its equilibrium at rest needs a mesh that stays: that of teeth, and of what spans carry."""
-        return self.belt.teeth is not None or self.carries
+        """Whether its equilibrium at rest needs a mesh that stays: that of teeth, of nips, and of what spans carry."""
+        return self.belt.teeth is not None or self.carries or bool(self.nips)
 
     @property
     def title(self) -> str:
@@ -354,7 +381,7 @@ class Drive(Part):
     @property
     def spans(self) -> tuple[tuple[str, str], ...]:
         """Names of the pulleys or ends at both ends of each span; the last span leads to the first pulley."""
-        return tuple(span_names(self.pulleys, self.ends))
+        return tuple(span_names(self.pulleys, self.ends, self.nips))
 
     @cached_property
     def frame(self) -> Frame:
@@ -373,7 +400,7 @@ class Drive(Part):
         belt = self.belt.replace(discretization=self.element_kind.name)
         if self.unwinder is not None and belt.length is None and belt.installed_tension is None:
             belt = belt.replace(installed_tension=self.unwinder.tension)
-        return lay_out(Given(belt, self.pulleys, self.contact, self.tensioners, self.path_ends, graded))
+        return lay_out(Given(belt, self.pulleys, self.contact, self.tensioners, self.path_ends, graded, self.nips))
 
     @cached_property
     def completed(self) -> Completed:
@@ -429,7 +456,8 @@ class Drive(Part):
 
         Bending shortens it by the strain e of `Belt.bent_strain`, so that a rim takes more of it along.
         """
-        return np.asarray(self.radii / (1.0 + self.belt.bent_strain(self.radii)))
+        ratios = rim_ratios(self.path.nips, self.pulleys, self.radii)
+        return np.asarray(ratios * self.radii / (1.0 + self.belt.bent_strain(self.radii)))
 
     @property
     def centers(self) -> FloatArray:

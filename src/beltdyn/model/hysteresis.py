@@ -88,7 +88,9 @@ def rolling_resistances(prepared: Prepared) -> FloatArray:
     """
     if prepared.belt.compression_loss_factor == 0.0:
         return np.zeros(len(prepared.pulleys))
-    return np.asarray(compression_losses(prepared) / (prepared.tension_at_rest * np.abs(prepared.path.wrap_angles)))
+    wrapped = prepared.tension_at_rest * prepared.path.wrap_angles
+    losses = compression_losses(prepared)
+    return np.divide(losses, wrapped, out=np.zeros_like(losses), where=wrapped > 0.0)
 
 
 def compression_losses(prepared: Prepared) -> FloatArray:

@@ -13,6 +13,7 @@ from beltdyn.model.carrier import carriers_of, check_tensioners
 from beltdyn.model.contact import Contact
 from beltdyn.model.defaults import Choice, choose_stiffness, stiffness_for_tension
 from beltdyn.model.end import PathEnd, pulling
+from beltdyn.model.nip import Nip, check_nips, placed
 from beltdyn.model.path import Path
 from beltdyn.model.pulley import Pulley
 from beltdyn.model.routing import lay_path
@@ -35,10 +36,11 @@ class Given(NamedTuple):
     ends: tuple[PathEnd, ...] = ()
     graded: bool = False
     """Whether the mesh is a staying one, graded towards the ends of arcs."""
+    nips: tuple[Nip, ...] = ()
 
     def path_around(self, pulleys: Sequence[Pulley]) -> Path:
         """The checked path of the belt around pulleys."""
-        return lay_path(pulleys, self.belt, self.ends)
+        return lay_path(pulleys, self.belt, self.ends, self.nips)
 
     def estimate(self, path: Path) -> StaticEstimate:
         """The belt at rest, with spring-loaded tensioners in balance."""
@@ -67,7 +69,12 @@ class Given(NamedTuple):
         for tensioner in self.tensioners:
             if isinstance(tensioner, FixedTensioner) and tensioner.take_up != 0:
                 pulleys = _moved(pulleys, tensioner)
-        return pulleys
+        return self.pressed(pulleys, np.inf) if self.nips else pulleys
+
+    def pressed(self, pulleys: tuple[Pulley, ...], stiffness: float) -> tuple[Pulley, ...]:
+        """Pulleys with the rollers of nips in place, on contact of a stiffness, N/m^2."""
+        check_nips(self.nips, pulleys, self.belt)
+        return placed(self.nips, pulleys, self.belt, stiffness)
 
 
 class Layout(NamedTuple):

@@ -1,5 +1,6 @@
 """The path of the tension line around the pulleys, without penetration."""
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from typing import Any, Literal, NamedTuple
@@ -30,6 +31,9 @@ class Path:
         Signed radii.
     ends : ndarray, shape (2, 2), m, optional
         Where an open path begins and where it ends; none for a closed path.
+    nips : tuple of (int, int)
+        Rollers beside the path, each with the pulley against which it presses the belt. Such a roller has neither wrap
+        nor a span of its own: that behind it has no length, at the end of the span before.
 
     Raises
     ------
@@ -47,9 +51,11 @@ class Path:
     centers: FloatArray
     radii: FloatArray
     ends: FloatArray | None = None
+    nips: tuple[tuple[int, int], ...] = ()
 
     def __post_init__(self) -> None:
-        centers, radii = _circles(self.centers, self.radii, self.ends)
+        on = _on_path(len(self.radii), self.beside)
+        centers, radii = _circles(self.centers[on], self.radii[on], self.ends)
         distance = np.linalg.norm(_next(centers, -2) - centers, axis=1)
         apart = distance <= np.abs(_next(radii, -1) - radii)
         if np.any(_of_belt(apart, self.ends, axis=0)):
@@ -61,6 +67,32 @@ class Path:
         return len(self.radii)
 
     @property
+    def beside(self) -> tuple[int, ...]:
+        """Numbers of the rollers beside the path."""
+        return tuple(roller for roller, _ in self.nips)
+
+    @cached_property
+    def indentations(self) -> FloatArray:
+        """By how much each roller of a nip and its pulley overlap with the belt between them, m, shape (nips,)."""
+        rollers, pulleys = np.array(self.nips, dtype=np.int64).reshape(-1, 2).T
+        apart = np.linalg.norm(self.centers[rollers] - self.centers[pulleys], axis=1)
+        return np.asarray(np.abs(self.radii[rollers]) + np.abs(self.radii[pulleys]) - apart)
+
+    @cached_property
+    def nip_angles(self) -> FloatArray:
+        """Angle on its pulley from where the belt reaches it to the middle of each nip, rad, shape (nips,)."""
+        rollers, pulleys = np.array(self.nips, dtype=np.int64).reshape(-1, 2).T
+        way = self.centers[rollers] - self.centers[pulleys]
+        enters = np.roll(self.span_points[:, 1], 1, axis=0)[: self.count][pulleys] - self.centers[pulleys]
+        turned = np.arctan2(_cross(enters, way), np.sum(enters * way, axis=1)) * np.sign(self.radii[pulleys])
+        return np.asarray(np.where(turned > -_ROUNDING, np.maximum(turned, 0.0), turned + 2 * np.pi))
+
+    @property
+    def shape(self) -> tuple[FloatArray, FloatArray | None, tuple[int, ...]]:
+        """What `span_directions` and `span_points` take beside centers."""
+        return self.radii, self.ends, self.beside
+
+    @property
     def spans(self) -> int:
         """Number of spans: n, or n + 1 of an open path."""
         return self.count + (self.ends is not None)
@@ -68,12 +100,12 @@ class Path:
     @cached_property
     def span_directions(self) -> FloatArray:
         """Unit vectors u along the spans, shape (spans, 2)."""
-        return span_directions(self.centers, self.radii, self.ends)
+        return span_directions(self.centers, self.radii, self.ends, self.beside)
 
     @cached_property
     def span_points(self) -> FloatArray:
         """Start and end point of each span, shape (spans, 2, 2), m: tangent points on pulleys, or ends of the path."""
-        return span_points(self.centers, self.radii, self.ends)
+        return span_points(self.centers, self.radii, self.ends, self.beside)
 
     @cached_property
     def span_lengths(self) -> FloatArray:
@@ -205,21 +237,48 @@ class Path:
         return np.where(on_arc[:, None], on_circle, on_line), tangents, bends
 
 
-def span_directions(centers: FloatArray, radii: FloatArray, ends: FloatArray | None = None) -> FloatArray:
+def span_directions(
+    centers: FloatArray, radii: FloatArray, ends: FloatArray | None = None, beside: Sequence[int] = ()
+) -> FloatArray:
     """Unit vectors u along the spans of paths around the same pulleys, shape (..., spans, 2).
 
-    With the left normal n of u, a tangent point is c - r n, so that n . (c_j - c_i) = r_j - r_i; radii are signed.
+    With the left normal n of u, a tangent point is c - r n, so that n . (c_j - c_i) = r_j - r_i; radii are signed. The
+    span behind a roller beside the path is the end of that before.
     """
-    return _of_belt(_directions(*_circles(centers, radii, ends)), ends, axis=-2)
+    on = _on_path(len(radii), beside)
+    found = _of_belt(_directions(*_circles(centers[..., on, :], radii[on], ends)), ends, axis=-2)
+    return found[..., _span_before(len(radii), beside, ends), :] if beside else found
 
 
-def span_points(centers: FloatArray, radii: FloatArray, ends: FloatArray | None = None) -> FloatArray:
+def span_points(
+    centers: FloatArray, radii: FloatArray, ends: FloatArray | None = None, beside: Sequence[int] = ()
+) -> FloatArray:
     """End points of spans, shape (..., spans, 2, 2), m; arguments as for `span_directions`."""
-    centers, radii = _circles(centers, radii, ends)
-    normals = _left(_directions(centers, radii))
-    starts = centers - radii[:, None] * normals
-    stops = _next(centers, -2) - _next(radii, -1)[:, None] * normals
-    return _of_belt(np.stack([starts, stops], axis=-2), ends, axis=-3)
+    on = _on_path(len(radii), beside)
+    centers, circles = _circles(centers[..., on, :], radii[on], ends)
+    normals = _left(_directions(centers, circles))
+    starts = centers - circles[:, None] * normals
+    stops = _next(centers, -2) - _next(circles, -1)[:, None] * normals
+    found = _of_belt(np.stack([starts, stops], axis=-2), ends, axis=-3)
+    if not beside:
+        return found
+    found = found[..., _span_before(len(radii), beside, ends), :, :]
+    found[..., list(beside), 0, :] = found[..., list(beside), 1, :]
+    return found
+
+
+def _on_path(count: int, beside: Sequence[int]) -> IntArray | slice:
+    """Numbers of the pulleys on the path."""
+    return np.setdiff1d(np.arange(count), beside) if beside else slice(None)
+
+
+def _span_before(count: int, beside: Sequence[int], ends: FloatArray | None) -> IntArray:
+    """Among the spans of the pulleys on a path, that of each pulley, or for those beside it that before."""
+    others = count - len(beside)
+    own = np.cumsum(~np.isin(np.arange(count), beside)) - 1
+    if ends is None:
+        return np.asarray(own % others)
+    return np.append(np.where(own < 0, others, own), others)
 
 
 def wrap_angles(directions: FloatArray, radii: FloatArray) -> FloatArray:

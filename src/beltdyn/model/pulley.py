@@ -19,6 +19,7 @@ from beltdyn.machines.profiles.profile import Profile
 from beltdyn.machines.profiles.registry import SpeedProfile, TorqueProfile
 from beltdyn.model.belt import Belt, Side, read_side
 from beltdyn.model.contact import Contact
+from beltdyn.model.cover import Cover
 from beltdyn.model.toothing import FEWEST_TEETH, LARGEST_PITCH_ERROR, MOST_TEETH
 from beltdyn.parts.kind_fields import OneOf, key_field
 from beltdyn.parts.part import Part
@@ -127,6 +128,9 @@ class Pulley(Part):
     )
     surface: AnySurface | None = Field(
         None, description="the surface, a group [pulley.surface], by default a smooth circle of this radius"
+    )
+    cover: Cover | None = Field(
+        None, description="the elastic cover of a roller, a group [pulley.cover]; by default none"
     )
     side: Side = Field("inside", description="the side of the belt that touches the pulley; the outside is its back")
     friction: Ratio | None = Field(

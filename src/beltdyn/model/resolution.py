@@ -14,7 +14,7 @@ has how they were found and how far they hold.
 """
 
 import math
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from itertools import pairwise
 from math import ceil, pi, sqrt
@@ -28,6 +28,7 @@ from beltdyn.model.belt import Belt
 from beltdyn.model.path import Path
 from beltdyn.parts.messages import Finding, listing
 from beltdyn.quadrature import running_integral
+from beltdyn.theory.nip import equivalent_radius, half_width
 
 # A mesh graded towards the ends of arcs, where the curvature changes within boundary layers
 
@@ -47,6 +48,8 @@ _ENOUGH = 0.2
 """Length to resolve over sqrt(T / k_p), if the bending length is shorter: its effect goes with their ratio squared."""
 _KINK = 0.1
 """Length of the elements at a kink, over the radius."""
+_OF_NIP = 0.1
+"""Length of the elements in a nip, over its width."""
 _SAMPLES = 400
 _MOST = 10_000
 """Limit of elements on a piece of belt: a center in wrong units would need more memory than there is."""
@@ -62,6 +65,8 @@ class Arc(NamedTuple):
     """m."""
     kinks: tuple[float, ...] = ()
     """Points in between where sliding begins or ends, ascending; forces have kinks there."""
+    nips: tuple[tuple[float, float], ...] = ()
+    """Start and end of the nips on it, m."""
 
 
 class Laid(NamedTuple):
@@ -84,11 +89,24 @@ class Laid(NamedTuple):
         """Arcs of the belt on pulleys, in order along the belt."""
         found = list[Arc]()
         for p, (radius, wrap) in enumerate(zip(self.path.radii, self.path.wrap_angles, strict=True)):
+            if p in self.path.beside:
+                continue
             size = abs(float(radius))
             arrives = self.path.span_start((p - 1) % self.path.spans) + float(self.path.span_lengths[p - 1])
             first = (arrives - self.start) % self.path.length
-            found.append(Arc(first / self.stretch, (first + size * float(wrap)) / self.stretch, size))
+            start, end = first / self.stretch, (first + size * float(wrap)) / self.stretch
+            found.append(Arc(start, end, size, nips=tuple(self._nips(p, start))))
         return sorted(found)
+
+    def _nips(self, pulley: int, start: float) -> Iterator[tuple[float, float]]:
+        """Start and end of the nips on the arc of a pulley that starts at a place, m."""
+        path = self.path
+        for pair, depth, angle in zip(path.nips, path.indentations.tolist(), path.nip_angles.tolist(), strict=True):
+            if pair[1] == pulley and depth > 0.0:
+                sizes = np.abs(path.radii[list(pair)]).tolist()
+                half = half_width(depth, equivalent_radius(*sizes))
+                middle = start + angle * sizes[1] / self.stretch
+                yield middle - half, middle + half
 
     def marks(self) -> FloatArray:
         """Both ends of the belt, and of the arcs between them, m."""
@@ -113,7 +131,10 @@ def graded_mesh(
     pieces = [_divide(arcs[0].start, first, around / per_span, fineness, (False, True), closer=closer)]
     for number, arc in enumerate(arcs):
         kinked = tuple(kink - arc.start for kink in arc.kinks), _KINK * arc.radius
-        pieces.append(_divide(arc.end - arc.start, first, _WIDEST * arc.radius, fineness, (True, True), kinked))
+        pressed = tuple((start - arc.start, end - arc.start) for start, end in arc.nips)
+        pieces.append(
+            _divide(arc.end - arc.start, first, _WIDEST * arc.radius, fineness, (True, True), kinked, pressed)
+        )
         if number + 1 < len(arcs):
             span = arcs[number + 1].start - arc.end
             pieces.append(_divide(span, first, span / per_span, fineness, (True, True), closer=closer))
@@ -137,6 +158,7 @@ def _divide(
     fineness: float,
     graded: tuple[bool, bool],
     kinked: tuple[tuple[float, ...], float] = ((), 0.0),
+    nips: tuple[tuple[float, float], ...] = (),
     *,
     closer: bool = False,
 ) -> FloatArray:
@@ -147,10 +169,16 @@ def _divide(
     """
     kinks, kink_size = kinked
     place = _sampled(length, first, closer=closer)
+    for start, end in nips:
+        place = np.union1d(place, np.linspace(1.5 * start - 0.5 * end, 1.5 * end - 0.5 * start, _SAMPLES))
+    place = place[(place >= 0.0) & (place <= length)]
     from_start, from_end = (away if own else np.inf for own, away in zip(graded, (place, length - place), strict=True))
     size = np.minimum(first + _GROWTH * np.minimum(from_start, from_end), largest)
     for kink in kinks:
         size = np.minimum(size, kink_size + _GROWTH * np.abs(place - kink))
+    for start, end in nips:
+        beyond = np.maximum(np.maximum(start - place, place - end), 0.0)
+        size = np.minimum(size, _OF_NIP * (end - start) + _GROWTH * beyond)
     size /= fineness
     passed = running_integral(1.0 / size, place)
     inner = [kink for kink in kinks if first < kink < length - first]

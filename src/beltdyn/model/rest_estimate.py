@@ -203,7 +203,11 @@ class _Belt:
 
     def _around(self, radii: list[float]) -> Path:
         path = self.prepared.path
-        return moved(Path(path.centers, np.sign(path.radii) * radii, path.ends), self.prepared.carriers, self.positions)
+        return moved(
+            Path(path.centers, np.sign(path.radii) * radii, path.ends, path.nips),
+            self.prepared.carriers,
+            self.positions,
+        )
 
 
 def _balanced(prepared: Prepared, given: float | None = None) -> _Belt | None:

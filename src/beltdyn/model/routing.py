@@ -9,6 +9,7 @@ import numpy as np
 from beltdyn.arrays import FloatArray
 from beltdyn.model.belt import Belt
 from beltdyn.model.end import End, PathEnd, pulling
+from beltdyn.model.nip import Nip, check_nips, check_places, numbered
 from beltdyn.model.path import Path, Surroundings, crossings, obstacle
 from beltdyn.model.pulley import Pulley
 
@@ -65,8 +66,24 @@ class _Fault(NamedTuple):
     """None where a search for it pays."""
 
 
-def lay_path(pulleys: Sequence[Pulley], belt: Belt, ends: Sequence[PathEnd] = ()) -> Path:
-    """Lay a path around pulleys in belt order, and check it."""
+def lay_path(pulleys: Sequence[Pulley], belt: Belt, ends: Sequence[PathEnd] = (), nips: Sequence[Nip] = ()) -> Path:
+    """Lay a path around pulleys in belt order, and check it, with the rollers of nips beside it."""
+    if not nips:
+        return _lay(pulleys, belt, ends)
+    check_nips(nips, pulleys, belt)
+    pairs = numbered(nips, pulleys)
+    beside = {roller for roller, _ in pairs}
+    alone = _lay([one for number, one in enumerate(pulleys) if number not in beside], belt, ends)
+    _check_names([*pulleys, *ends])
+    _check_sizes(pulleys, ends)
+    _check_distances(pulleys, pairs)
+    path = Path(np.array([one.center for one in pulleys]), _signed(pulleys, belt), alone.ends, pairs)
+    check_places(nips, path, pulleys, belt)
+    return path
+
+
+def _lay(pulleys: Sequence[Pulley], belt: Belt, ends: Sequence[PathEnd]) -> Path:
+    """Lay a path around pulleys that all lie on it."""
     if not ends and len(pulleys) < 2:
         raise ValueError(f"the drive has {len(pulleys)} pulley; a closed belt needs at least two. Add a [[pulley]]")
     if not pulleys:
@@ -82,8 +99,15 @@ def lay_path(pulleys: Sequence[Pulley], belt: Belt, ends: Sequence[PathEnd] = ()
     return path
 
 
-def span_names(pulleys: Sequence[Pulley], ends: Sequence[PathEnd] | Sequence[End]) -> list[tuple[str, str]]:
-    """Names of the pulleys or ends at both ends of each span, in the order of `Path`."""
+def span_names(
+    pulleys: Sequence[Pulley], ends: Sequence[PathEnd] | Sequence[End], nips: Sequence[Nip] = ()
+) -> list[tuple[str, str]]:
+    """Names of the pulleys or ends at both ends of each span, in the order of `Path`; of nips those of both rollers."""
+    if nips:
+        pressed = {nip.roller: nip.pulley for nip in nips}
+        alone = iter(span_names([one for one in pulleys if one.name not in pressed], ends))
+        own = [(one.name, pressed[one.name]) if one.name in pressed else next(alone) for one in pulleys]
+        return [*own, *alone]
     names = [pulley.name for pulley in pulleys]
     if not ends:
         return list(zip(names, [*names[1:], names[0]], strict=True))
@@ -102,9 +126,13 @@ def _offset(pulley: Pulley, belt: Belt) -> float:
 
 def trace(pulleys: Sequence[Pulley], belt: Belt, ends: Sequence[PathEnd] = ()) -> Path:
     """Path around pulleys, unchecked."""
-    turning = np.array([pulley.turning for pulley in pulleys])
-    centers, signed = np.array([pulley.center for pulley in pulleys]), turning * radii(pulleys, belt)
+    centers, signed = np.array([pulley.center for pulley in pulleys]), _signed(pulleys, belt)
     return open_path(centers, signed, ends, belt) if ends else Path(centers, signed)
+
+
+def _signed(pulleys: Sequence[Pulley], belt: Belt) -> FloatArray:
+    """Effective radii with the signs of `Path`, m."""
+    return np.asarray(np.array([pulley.turning for pulley in pulleys]) * radii(pulleys, belt))
 
 
 def _check_names(parts: Sequence[Pulley | PathEnd]) -> None:
@@ -116,8 +144,11 @@ def _check_names(parts: Sequence[Pulley | PathEnd]) -> None:
             )
 
 
-def _check_distances(pulleys: Sequence[Pulley]) -> None:
-    for one, other in combinations(pulleys, 2):
+def _check_distances(pulleys: Sequence[Pulley], nips: Sequence[tuple[int, int]] = ()) -> None:
+    pressed = {frozenset(pair) for pair in nips}
+    for (first, one), (second, other) in combinations(enumerate(pulleys), 2):
+        if {first, second} in pressed:
+            continue
         distance, radii = np.hypot(*np.subtract(one.center, other.center)), one.radius + other.radius
         if not distance > radii:
             raise ValueError(

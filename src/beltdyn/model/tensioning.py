@@ -55,6 +55,9 @@ def _check(drive: Drive, installation: Installation, state: str, factor: float, 
     path, belt, tensions = installation.path, drive.completed.belt, factor * installation.span_tensions
     forces = []
     for length, tension in zip(path.span_lengths.tolist(), tensions.tolist(), strict=True):
+        if length == 0.0:  # in a nip
+            forces.append(np.inf)
+            continue
         deflection = DEFLECTION * length
         more = 0.0 if held else belt.local_stiffness(tension) * stretching(deflection, length) / belt.given_length
         forces.append(deflection_force(deflection, length, tension + more, belt.bending_stiffness) / drive.belt.v_belts)

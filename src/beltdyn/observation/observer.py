@@ -23,6 +23,7 @@ from beltdyn.system.arrays import BENDING_LOSS, ENERGY_WORKS, STRETCH_LOSS, Syst
 from beltdyn.system.discretization import curve_lengths
 from beltdyn.system.frame import OverTime, Travelling
 from beltdyn.system.moving_center import pulley_speeds
+from beltdyn.system.nips import seen_nips
 from beltdyn.system.observations import OBSERVED
 from beltdyn.system.observe import observe_motion
 from beltdyn.system.single_teeth import JumpWatch, tooth_coordinates, tooth_forces
@@ -129,6 +130,7 @@ class Observer:
             "material_loss": states.work[shown][:, [STRETCH_LOSS, BENDING_LOSS]].sum(axis=1),
             "energy_closure": closure,
             **self._teeth(states, shown),
+            **self._nips(states, shown),
         }
         return Seen(at_outputs, {name: values for name, values in every.items() if name in FILTERED})
 
@@ -137,6 +139,11 @@ class Observer:
         if not tooth_coordinates(self._system).size:
             return {}
         return {"tooth_force": tooth_forces(self._system, states.position[shown], states.velocity[shown])}
+
+    def _nips(self, states: Chunk, shown: BoolArray) -> Arrays:
+        """What is seen in nips in the states that are shown, if there are any."""
+        found = seen_nips(self._system, states.position[shown], states.velocity[shown])
+        return {} if found is None else found._asdict()
 
     def _works(self, touch: Touch, states: Chunk, shown: BoolArray) -> tuple[FloatArray, FloatArray]:
         """Work of friction since the beginning by arc and by belt, in the states that are shown.

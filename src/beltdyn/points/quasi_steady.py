@@ -9,6 +9,7 @@ from beltdyn.arrays import FloatArray
 from beltdyn.errors import ModelError
 from beltdyn.model import Drive, Installation, Prepared
 from beltdyn.model.hysteresis import compression_losses
+from beltdyn.model.nip import refuse_nips
 from beltdyn.model.path import span_directions
 from beltdyn.points.changed_drive import driver_of
 from beltdyn.results.slip_safety import slip_safety_of_states
@@ -48,6 +49,7 @@ class QuasiSteady:
     """
 
     def __init__(self, prepared: Prepared, rest: Installation) -> None:
+        refuse_nips(prepared.drive.nips, "the quasi-steady model of a drive")
         self.prepared, self.rest, self.drive = prepared, rest, prepared.drive
         self.driver = driver_of(self.drive)
         still = np.zeros((1, prepared.path.spans))

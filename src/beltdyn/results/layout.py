@@ -37,6 +37,8 @@ class Layout:
     """Names of the coordinates of a node."""
     tensioners: tuple[str, ...] = ()
     """Names of the pulleys carried by tensioners, in the order of their coordinates."""
+    nips: tuple[str, ...] = ()
+    """Names of the rollers of nips, in the order of the pulleys."""
     carriages: tuple[str, ...] = ()
     """Name of the carriage, if there is one."""
     bodies: tuple[str, ...] = ()
@@ -66,6 +68,7 @@ class Layout:
             "pulley": self.pulleys,
             "span": self.spans,
             "tensioner": self.tensioners,
+            "nip": self.nips,
             "carriage": self.carriages,
             "body": self.bodies,
             "axis": AXIS_NAMES,
@@ -85,6 +88,7 @@ class Layout:
             "pulley": len(self.pulleys),
             "span": len(self.spans),
             "tensioner": len(self.tensioners),
+            "nip": len(self.nips),
             "carriage": len(self.carriages),
             "body": len(self.bodies),
             "axis": len(AXIS_NAMES),
@@ -175,6 +179,7 @@ def _sizes(prepared: Prepared) -> dict[str, int]:
         "pulley": pulleys,
         "span": prepared.path.spans,
         "tensioner": len(prepared.moving_tensioners),
+        "nip": len(prepared.path.nips),
         "carriage": int(prepared.carriage is not None),
         "body": _bodies(prepared),
         "axis": len(AXIS_NAMES),

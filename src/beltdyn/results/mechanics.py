@@ -24,9 +24,9 @@ if TYPE_CHECKING:
 
 def arc_ends(prepared: Prepared, centers: FloatArray) -> tuple[FloatArray, FloatArray]:
     """Angles from the x axis at which the belt reaches pulleys, and wrap angles; shape (..., pulleys), rad."""
-    radii, ends = prepared.path.radii, prepared.path.ends
-    reached = np.roll(span_points(centers, radii, ends)[..., 1, :], 1, axis=-2)[..., : len(radii), :] - centers
-    return np.arctan2(reached[..., 1], reached[..., 0]), wrap_angles(span_directions(centers, radii, ends), radii)
+    shape, radii = prepared.path.shape, prepared.path.radii
+    reached = np.roll(span_points(centers, *shape)[..., 1, :], 1, axis=-2)[..., : len(radii), :] - centers
+    return np.arctan2(reached[..., 1], reached[..., 0]), wrap_angles(span_directions(centers, *shape), radii)
 
 
 def angle_from_inlet(place: FloatArray, inlet: ArrayLike, wrap: ArrayLike, turning: ArrayLike) -> FloatArray:
@@ -77,7 +77,7 @@ def pressing_at_arcs(value_of: Callable[[str], FloatArray], prepared: Prepared) 
         return None
     path, pulleys = prepared.path, len(prepared.pulleys)
     torque, hub_force, centers = (value_of(name) for name in ("pulley_torque", "hub_force", "pulley_center"))
-    spans = span_directions(centers, path.radii, path.ends)
+    spans = span_directions(centers, *path.shape)
     reached, left = np.roll(spans, 1, axis=-2)[..., :pulleys, :], spans[..., :pulleys, :]
     size = np.abs(path.radii) * wrap_angles(spans, path.radii)
     pull = hub_force - prepared.belt.mass_per_length * size[..., None] * np.array(prepared.gravity)

@@ -1,5 +1,6 @@
 """Mid-span displacements from the position of the belt."""
 
+from collections.abc import Sequence
 from math import sqrt
 
 import numpy as np
@@ -31,14 +32,25 @@ def mid_span_displacements(
     ndarray, shape (k, spans)
         m, to the left of the direction of ascending belt coordinate; NaN where the belt has left a pulley.
     """
-    lines = span_points(centers, prepared.path.radii, prepared.path.ends)
+    lines = span_points(centers, *prepared.path.shape)
     result = np.full(lines.shape[:2], np.nan)
-    fill_mid_spans(lines, np.ascontiguousarray(places), touched, centers.shape[1], result)
+    following = _following(lines.shape[1], prepared.path.beside)
+    fill_mid_spans(lines, np.ascontiguousarray(places), touched, centers.shape[1], following, result)
     return result
 
 
+def _following(spans: int, beside: Sequence[int]) -> IntArray:
+    """Number of the pulley to which each span leads, shape (spans,); that of its second end is one past the pulleys."""
+    found = np.arange(1, spans + 1) % spans
+    for _ in beside:
+        found = np.where(np.isin(found, beside), (found + 1) % spans, found)
+    return found
+
+
 @kernel
-def fill_mid_spans(lines: FloatArray, places: FloatArray, touched: IntArray, pulleys: int, result: FloatArray) -> None:
+def fill_mid_spans(
+    lines: FloatArray, places: FloatArray, touched: IntArray, pulleys: int, following: IntArray, result: FloatArray
+) -> None:
     """Find where the free belt crosses the middles of spans.
 
     Parameters
@@ -49,6 +61,8 @@ def fill_mid_spans(lines: FloatArray, places: FloatArray, touched: IntArray, pul
         As for `mid_span_displacements`.
     pulleys
         Number of pulleys; an open belt has one span more.
+    following : ndarray of int, shape (spans,)
+        Pulley to which each span leads.
     result : ndarray, shape (k, spans)
         Overwritten where the belt does cross, m.
     """
@@ -68,7 +82,7 @@ def fill_mid_spans(lines: FloatArray, places: FloatArray, touched: IntArray, pul
             after = pulleys if is_open and walk == count else touched[k, walk % count]
             if after < 0:
                 continue
-            if after == (before + 1) % spans:
+            if after == following[before]:
                 for one in range(start + 1, walk - 1):
                     x, y = _from_middle(lines[k, before], places[k, one % count])
                     next_x, next_y = _from_middle(lines[k, before], places[k, (one + 1) % count])

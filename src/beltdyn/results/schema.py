@@ -67,6 +67,8 @@ _TOOTH = ("field_time", "tooth")
 _ARC = ("field_time", "pulley", "arc_part")
 _TENSIONER = ("time", "tensioner")
 _CARRIAGE = ("time", "carriage")
+_NIP = ("time", "nip")
+_IN_NIP = ("field_time", "nip", "contact_point")
 
 COORDINATES = MappingProxyType(
     {
@@ -78,6 +80,7 @@ COORDINATES = MappingProxyType(
         "body": Variable(("body",), "1", "Body other than the belt", "str", core=False),
         "tensioner": Variable(("tensioner",), "1", "Tensioner, named by the pulley it carries", "str"),
         "carriage": Variable(("carriage",), "1", "Carriage of a linear axis", "str", core=False),
+        "nip": Variable(("nip",), "1", "Nip, named by its roller beside the path", "str", core=False),
         "axis": Variable(("axis",), "1", "Axis of the plane", "str"),
         "coordinate": Variable(("coordinate",), "1", "Nodal coordinate", "str"),
         "node_coordinate": Variable(("node",), "m", "Belt coordinate of the node, unstretched"),
@@ -108,6 +111,9 @@ _OUTPUTS = {
     "carriage_position": Variable(_CARRIAGE, "m", "Way of the carriage", core=False, at_rest=True),
     "carriage_speed": Variable(_CARRIAGE, "m/s", "Speed of the carriage", core=False),
     "carriage_error": Variable(_CARRIAGE, "m", "Way of the carriage ahead of the driver", core=False),
+    "nip_width": Variable(_NIP, "m", "Nip width", core=False),
+    "nip_tension_before": Variable(_NIP, "N", "Tension where the belt enters a nip", core=False),
+    "nip_tension_after": Variable(_NIP, "N", "Tension where the belt leaves a nip", core=False),
     "node_position": Variable(("field_time", "node", "axis"), "m", "Node position", at_rest=True),
     "nodal_coordinates": Variable(_NODE, "m, 1", "Nodal coordinates", at_rest=True),
     "nodal_velocities": Variable(_NODE, "m/s, 1/s", "Nodal velocities", SHORT, core=False),
@@ -123,6 +129,9 @@ _OUTPUTS = {
     "normal_force": Variable(_POINT, "N/m", "Normal force on the belt", SHORT, at_rest=True),
     "friction_force": Variable(_POINT, "N/m", "Friction force on the belt", SHORT),
     "slip_velocity": Variable(_POINT, "m/s", "Slip velocity", SHORT),
+    "nip_normal_force": Variable(_IN_NIP, "N/m", "Normal force of the roller beside the path", SHORT, core=False),
+    "nip_friction_force": Variable(_IN_NIP, "N/m", "Friction force of the roller beside the path", SHORT, core=False),
+    "nip_slip_velocity": Variable(_IN_NIP, "m/s", "Slip velocity on the roller beside the path", SHORT, core=False),
     "tooth_force": Variable(_TOOTH, "N", "Force of a tooth on the belt, along it", SHORT, core=False),
     "contact_position": Variable((*_POINT, "axis"), "m", "Contact point position", SHORT, at_rest=True),
     "contact_pulley": Variable(_POINT, "1", "Number of the pulley in contact, -1 where free", "int8", at_rest=True),
@@ -201,7 +210,7 @@ RECORDED = MappingProxyType(
 """Variables passed to a recorder, except those that `Layout.recorded` omits; `TIMES` come last, ``time`` last of "
 "all."""
 
-OPTIONAL = frozenset({"tensioner", "tooth", "carriage"})
+OPTIONAL = frozenset({"tensioner", "tooth", "carriage", "nip"})
 """Dimensions that may have size zero; they are then omitted with their variables."""
 
 AUXILIARY_COORDINATES = MappingProxyType(

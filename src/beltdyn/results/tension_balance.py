@@ -275,10 +275,10 @@ class TensionBalance:
             arm = cosine * arm + sine * _turned(arm)
             centers[:, one.pulley] = pivot + arm
             slopes[:, number] = sense * _turned(arm)
-        radii, ends = self._prepared.path.radii, self._prepared.path.ends
-        directions, points = span_directions(centers, radii, ends), span_points(centers, radii, ends)
+        shape = self._prepared.path.shape
+        directions, points = span_directions(centers, *shape), span_points(centers, *shape)
         lengths = np.linalg.norm(points[:, :, 1] - points[:, :, 0], axis=-1)
-        return _Geometry(centers, directions, lengths, wrap_angles(directions, radii), slopes)
+        return _Geometry(centers, directions, lengths, wrap_angles(directions, shape[0]), slopes)
 
 
 def _pulled_span(prepared: Prepared) -> int | None:

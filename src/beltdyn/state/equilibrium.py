@@ -76,7 +76,7 @@ def _refined(drive: Drive, tolerance: float, progress: Report | None) -> StaticR
         unstable = bring_to_rest(drive, progress).unstable
     rest, errors = refine_at_rest(stand(bring_to_stand(prepared).prepared), tolerance)
     said = {"drive_as_given": drive.text} | {mesh_error_attribute(name): error for name, error in errors.items()}
-    return _seen(prepared, rest.prepared, rest.system, rest.state, unstable, progress, said)
+    return _seen(prepared, rest.prepared, standing(rest.system), rest.state, unstable, progress, said)
 
 
 def _seen(

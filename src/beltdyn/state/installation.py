@@ -218,17 +218,17 @@ def drawn_in(prepared: Prepared, factor: float) -> BeltPath:
     installation = prepared.installation
     path = installation.path
     depth = min(np.min(installation.penetrations) / factor, _DEEPEST_START * np.min(prepared.radii))
-    return BeltPath(path.centers, path.radii - depth * np.sign(path.radii), path.ends)
+    return BeltPath(path.centers, path.radii - depth * np.sign(path.radii), path.ends, path.nips)
 
 
 def looked_at(prepared: Prepared, system: System, state: State) -> Rest:
     """An equilibrium in which the belt touches every pulley."""
     seen = observe(standing(system), np.zeros(1), state.position[None], state.velocity[None])
     depths = _depths(prepared, seen)
-    for pulley, radius, wrap, depth in zip(
-        prepared.pulleys, prepared.radii, seen.wrap_angle[0], map(np.max, depths), strict=True
+    for pulley, radius, wrap, depth, beside in zip(
+        prepared.pulleys, prepared.radii, seen.wrap_angle[0], map(np.max, depths), system.pulleys.beside, strict=True
     ):
-        if not wrap > 0.0:
+        if not (wrap > 0.0 or beside):
             raise ConvergenceError(
                 f'at rest the belt does not touch "{pulley.name}", but it must touch all pulleys. Move '
                 f'"{pulley.name}" towards the belt, or raise the tension.'

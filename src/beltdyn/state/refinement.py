@@ -4,6 +4,7 @@ from collections.abc import Callable, Mapping
 from copy import copy
 from dataclasses import dataclass
 from functools import cached_property
+from itertools import chain
 from typing import NamedTuple
 
 import numpy as np
@@ -102,7 +103,7 @@ def steady_from_rest(
             errors, found = refine(search, given, tolerance)
             break
         except ConvergenceError:  # what runs on one mesh is there; the search has lost its way on this one
-            if not ran or given.elements or trial == _MOST_STARTS:
+            if not (ran or rest.prepared.path.nips) or given.elements or trial == _MOST_STARTS:
                 raise
             rest = stand(rest.prepared, fineness=FINER * rest.fineness)
     return Refined(search, rest, band, errors, found)
@@ -163,9 +164,11 @@ def _mesh(prepared: Prepared, now: Solution, rule: MeshRule) -> FloatArray:
         return prepared.equal_lengths(round(rule.elements * rule.fineness))
     kinks = base_coordinates(now.system, np.array(_kinks(now))).tolist()
     arcs = [
-        arc._replace(start=float(start), end=float(end))
+        arc._replace(start=start, end=end, nips=tuple(zip(nips[::2], nips[1::2], strict=True)))
         for arc in now.arcs
-        for start, end in [base_coordinates(now.system, np.array([arc.start, arc.end]))]
+        for start, end, *nips in [
+            base_coordinates(now.system, np.array([arc.start, arc.end, *chain(*arc.nips)])).tolist()
+        ]
     ]
     within = [arc._replace(kinks=tuple(k for k in kinks if arc.start < k < arc.end)) for arc in arcs]
     return graded_mesh(prepared.belt_length, within, rule.layer, rule.fineness, prepared.elements_per_span)

@@ -30,6 +30,7 @@ from beltdyn.system.constant_drive import (
     with_speeds_unknown,
 )
 from beltdyn.system.meshing import fit_phases, has_teeth, led_by, mesh_speeds, on_lengths, phases
+from beltdyn.system.nip_loads import nip_loads, pressed_on, with_own_rollers
 from beltdyn.system.observe import observe
 from beltdyn.system.ring_matrix import clear, substitute
 from beltdyn.system.state import State
@@ -94,6 +95,8 @@ _NEAR = 1e-3
 """Part of the way to another push at which the tangent still tells the solution."""
 _FIRST_CHANGE, _SAME_SPEED, _MOST_SPEEDS = 1e-4, 1e-11, 30
 """Of the speed of a motor that drives a belt with teeth, relative, and how often it is changed at most."""
+_MOST_PRESSES = 20
+"""Of rollers of nips that are loaded by forces."""
 _GENTLE = 0.3
 """Slip velocity at which friction is fully used at first, over the belt's speed, at least."""
 
@@ -116,7 +119,7 @@ class SteadySearch:
         self._moments = np.zeros(system.pulleys.size)
         self._shifts_at_rest = shifts_of(system.frame).copy()
         own = system._replace(rims=on_lengths(system.rims, system.length))
-        self.constant, self._tensioners = constant_drive(own, time), system.tensioners
+        self.constant, self._tensioners = with_own_rollers(constant_drive(own, time)), system.tensioners
         self._wanted = self.constant.profiles.segment.offset.copy()
         self._prescribed = self.constant.bodies.unknown[self.constant.pulleys.shaft] < 0
         self._hold(None)
@@ -175,6 +178,7 @@ class SteadySearch:
         if tangent is not None:
             self._work = tangent
         found = (tangent is not None and self._try(Setting(), factorised=True)) or self._try(Setting())
+        found = found and self._press()
         if found:
             self._keep_content()
         return found
@@ -215,6 +219,8 @@ class SteadySearch:
             raise self._refusal()
         if driver is not None:
             self._release(driver)
+        if not self._press():
+            raise self._refusal()
         self._keep_content()
 
     def _keep_content(self) -> None:
@@ -224,6 +230,19 @@ class SteadySearch:
             self.prepared = self.prepared.with_length(float(np.sum(self.constant.length)))
             self.constant = rebased(self.constant)
             self._hold(self._held)
+
+    def _press(self) -> bool:
+        """Move the rollers of nips until they press with their forces; False if that fails."""
+        loads = nip_loads(self.prepared)
+        for _ in range(_MOST_PRESSES):
+            moved = pressed_on(
+                self.constant, loads, self._work.equations.forces.hub, float(np.min(self.prepared.radii))
+            )
+            if not moved:
+                return True
+            if not self._try(self.setting):
+                return False
+        return not loads
 
     def _run_up(self, place: FloatArray, speed: float, gentle: Setting) -> bool:
         """Continue from rest to the required speeds and loads; if that fails, first without bending losses.
@@ -319,6 +338,8 @@ class SteadySearch:
                 "force_tolerance. Increase force_tolerance."
             )
         if self._motor is not None and not self._balance(self._motor):
+            raise self._refusal()
+        if not self._press():
             raise self._refusal()
         self._keep_content()
 

@@ -15,6 +15,7 @@ from beltdyn.parts.quantity import RPM
 from beltdyn.system.arrays import System
 from beltdyn.system.constant_drive import own_torque
 from beltdyn.system.discretization import curve_lengths
+from beltdyn.system.nips import seen_nips
 from beltdyn.system.observe import observe
 from beltdyn.system.state import State
 
@@ -75,6 +76,11 @@ def slip_limit(prepared: Prepared, system: System, asked: System, passed: Sequen
     wanted = abs(_asked_of(prepared, asked, last, slips[-1], worst))
     of = f" of the {wanted:.4g} N m required" if wanted > torque else ""
     speed = RPM * abs(float(here.state.velocity[system.first_body + worst]))
+    if worst in prepared.path.beside:
+        return (
+            f"the belt slips in the nip of `{prepared.pulleys[worst].name}`, which transmits at most {torque:.4g} N m"
+            f"{of} by this force of the nip. Raise it or the friction, or reduce the load."
+        )
     return (
         f"the belt slips on `{prepared.pulleys[worst].name}`, which transmits at most {torque:.4g} N m{of} at this "
         f"tension ({speed:.4g} rpm). Raise the tension, the friction or the wrap angle, or reduce the load."
@@ -111,6 +117,12 @@ def _transmitted(system: System, one: Passed) -> tuple[FloatArray, FloatArray]:
         here = touched == p
         limit = coefficient * float(np.sum((weights * normal)[here]))
         used[p] = abs(float(np.sum((weights * friction)[here]))) / limit if limit > 0.0 else 0.0
+    nips = seen_nips(system, one.state.position[None], one.state.velocity[None])
+    for row, p in enumerate(np.flatnonzero(system.pulleys.beside).tolist() if nips else ()):
+        assert nips is not None
+        pressed, along = (float(weights @ force[0, row]) for force in (nips.nip_normal_force, nips.nip_friction_force))
+        limit = float(system.pulleys.friction[p]) * pressed
+        used[p] = abs(along) / limit if limit > 0.0 else 0.0
     return np.asarray(seen.pulley_torque[0]), used
 
 

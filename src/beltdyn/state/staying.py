@@ -243,20 +243,23 @@ def _lying(prepared: Prepared, system: System, factor: float) -> State:
 def found_arcs(system: System, state: State) -> list[Arc]:
     """Where the belt touches pulleys, in the order in which they follow each other along the belt."""
     along, away = _sampled(system, state)
-    found = list[Arc]()
-    for depth, radius in zip(away, system.rims.radius, strict=True):
+    found, nips = list[Arc](), list[tuple[float, float]]()
+    for depth, radius, beside in zip(away, system.rims.radius, system.pulleys.beside, strict=True):
         touching = np.flatnonzero(depth >= 0.0)
         if touching.size:
             first, last = int(touching[0]), int(touching[-1])
-            start = along[first] - _beyond(along, depth, first, first - 1)
-            end = along[last] - _beyond(along, depth, last, last + 1)
-            found.append(Arc(float(start), float(end), float(radius)))
-    return sorted(found)
+            start = float(along[first] - _beyond(along, depth, first, first - 1))
+            end = float(along[last] - _beyond(along, depth, last, last + 1))
+            if beside:
+                nips.append((start, end))
+            else:
+                found.append(Arc(start, end, float(radius)))
+    return sorted(arc._replace(nips=tuple(one for one in nips if arc.start < one[0] < arc.end)) for arc in found)
 
 
 def require_one_pulley_at_a_time(prepared: Prepared, system: System, state: State) -> None:
     """Refuse a state in which the belt around one pulley touches another one."""
-    touched = (_sampled(system, state)[1] >= 0.0).astype(int)
+    touched = ((_sampled(system, state)[1] >= 0.0) & (system.pulleys.beside == 0)[:, None]).astype(int)
     pairs = np.argwhere(np.triu(touched @ touched.T, 1))
     if pairs.size:
         first, second = (prepared.drive.pulleys[number].name for number in pairs[0].tolist())

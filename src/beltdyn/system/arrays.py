@@ -27,6 +27,9 @@ PULLEY = record(
     rolling="f8",  # coefficient of rolling resistance
     shaft="i8",  # body that drivers and loads act on: the rim, or the last body of its hub chain
     carrier="i8",  # tensioner that carries the pulley, -1 where its center is fixed
+    foundation="f8",  # stiffness of contact over that without a cover
+    rim_ratio="f8",  # radius at which the tension line rolls off over the effective radius
+    beside="i8",  # 1 of the roller of a nip, on which the belt does not lie, else 0
 )
 """A pulley."""
 

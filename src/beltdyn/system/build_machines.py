@@ -71,6 +71,9 @@ def pulley_arrays(
         rolling=rolling,
         shaft=shaft_bodies(pulleys),
         carrier=carrier,
+        foundation=np.ones(len(pulleys)),
+        rim_ratio=np.ones(len(pulleys)),
+        beside=np.zeros(len(pulleys), dtype=np.int64),
     )
 
 

@@ -49,11 +49,24 @@ def pulley_state(system: System, pulley: int, position: FloatArray, velocity: Fl
     carrier, speed = item.carrier, velocity[body]
     surface = surface_at(system.rims, pulley, position[body], passed_length(system.frame, position))
     if carrier < 0:
-        return PulleyState(item.center[0], item.center[1], surface, speed, item.friction, 0.0, 0.0, item.rolling)
+        return PulleyState(
+            item.center[0],
+            item.center[1],
+            surface,
+            speed,
+            item.friction,
+            0.0,
+            0.0,
+            item.rolling,
+            item.foundation,
+            item.rim_ratio,
+        )
     at = tensioner_coordinate(system, carrier)
     center = tensioner_center(system.tensioners[carrier], position[at])
     vx, vy = velocity[at] * center.dx, velocity[at] * center.dy
-    return PulleyState(center.x, center.y, surface, speed, item.friction, vx, vy, item.rolling)
+    return PulleyState(
+        center.x, center.y, surface, speed, item.friction, vx, vy, item.rolling, item.foundation, item.rim_ratio
+    )
 
 
 def pulley_center(system: System, pulley: int, position: FloatArray) -> tuple[float, float]:

@@ -98,7 +98,7 @@ def _observe_energy(system: System, element: int, samples: Samples, result: Obse
 
 
 @kernel(inline=True)
-def _stretch(system: System, piece: Curve, xi: float, pull: float, rates: FloatArray) -> tuple[float, float, float]:
+def stretch_at(system: System, piece: Curve, xi: float, pull: float, rates: FloatArray) -> tuple[float, float, float]:
     """Derivative of the centerline with respect to the belt coordinate, and the tension, with that by hysteresis."""
     fill_bernstein_rates(xi, rates)
     x, y = combine(piece.control, rates)
@@ -116,7 +116,7 @@ def _observe_tension(
     mean = square = 0.0
     for point in range(system.element.elastic.points.size):
         weight = system.element.elastic.weights[point]
-        _, _, force = _stretch(system, piece, system.element.elastic.points[point], pull, work.contact.rates)
+        _, _, force = stretch_at(system, piece, system.element.elastic.points[point], pull, work.contact.rates)
         mean += weight * force
         square += weight * force * force
     result.belt_tension[k, curve] = mean
@@ -135,7 +135,7 @@ def _observe_points(
         fill_bernstein(xi, weights)
         x, y = combine(piece.control, weights)
         vx, vy = combine(piece.velocity, weights)
-        qx, qy, samples.tension[row] = _stretch(system, piece, xi, pull, rates)
+        qx, qy, samples.tension[row] = stretch_at(system, piece, xi, pull, rates)
         samples.speed[row] = (qx * vx + qy * vy) / sqrt(qx * qx + qy * qy)
         samples.velocity[row, 0], samples.velocity[row, 1] = vx, vy
         result.contact_position[k, row, 0] = x
@@ -158,7 +158,7 @@ def _observe_contact(
     control, zone = samples.work.control, samples.work.contact.zone
     for p in range(system.pulleys.size):
         pulley = pulley_state(system, p, position, velocity)
-        if out_of_reach(control, pulley):
+        if system.pulleys[p].beside == 1 or out_of_reach(control, pulley):
             continue
         for interval in range(touching_intervals(control, pulley, zone)):
             start, end = zone.intervals[interval]
@@ -259,6 +259,13 @@ def _observe_spans(system: System, samples: Samples, result: Observations, k: in
         free = weight[span] > 0.0
         result.span_tension[k, span] = result.span_tension[k, span] / weight[span] if free else np.nan
         result.belt_speed[k, span] = result.belt_speed[k, span] / weight[span] if free else np.nan
+    for p in range(pulleys):
+        if system.pulleys[p].beside == 1:
+            span = (p - 1) % spans
+            while span < pulleys and system.pulleys[span].beside == 1:
+                span = (span - 1) % spans
+            result.span_tension[k, p] = result.span_tension[k, span]
+            result.belt_speed[k, p] = result.belt_speed[k, span]
 
 
 @kernel(inline=True)

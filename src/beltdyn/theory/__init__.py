@@ -11,6 +11,7 @@ __getattr__, __dir__, __all__ = lazy_loader.attach(
         "elastic_creep",
         "hoop",
         "hysteresis",
+        "nip",
         "path",
         "running_drive",
         "sliding_flutter",

@@ -9,6 +9,7 @@ import numpy as np
 from beltdyn.arrays import FloatArray
 from beltdyn.errors import ModelError
 from beltdyn.model import Drive, Prepared, prepare
+from beltdyn.model.nip import refuse_forces
 from beltdyn.model.simulation import EarlierRun, Frame, Instants
 from beltdyn.observation.compilation import ahead, compile_kernels, compile_run, compile_solving
 from beltdyn.solvers.generalized_alpha import GeneralizedAlpha
@@ -98,6 +99,7 @@ def settled(drive: Drive, integrator: Integrator) -> tuple[Drive, Frame]:
 
     Where the drive leaves the mesh open, it is that of an earlier run, and travels where the integrator needs it.
     """
+    refuse_forces(drive.nips)
     begun = with_instant(drive)
     if begun.simulation.frame != drive.simulation.frame:
         return begun, begun.frame._replace(reason="as in the run it continues")

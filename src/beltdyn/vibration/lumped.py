@@ -38,6 +38,7 @@ import numpy as np
 from beltdyn.arrays import BoolArray, ComplexArray, FloatArray, IntArray
 from beltdyn.kernel import interpreted
 from beltdyn.model import Prepared
+from beltdyn.model.nip import refuse_nips
 from beltdyn.model.path import span_directions, span_points, wrap_angles
 from beltdyn.records import blank, fill
 
@@ -220,6 +221,7 @@ def lumped_drive(
     speed : float
         Of the belt, m/s, negative against the order of the pulleys.
     """
+    refuse_nips(prepared.drive.nips, "the lumped model of a drive")
     return _Lumping(prepared, tension, centers, positions, speed).made()
 
 

@@ -63,6 +63,7 @@ def test_schema_knows_every_group() -> None:
         "tensioner",
         "support",
         "goods",
+        "nip",
         "end",
         "duty",
         "simulation",

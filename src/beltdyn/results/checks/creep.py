@@ -66,6 +66,7 @@ def regularized_slip(evidence: Evidence) -> Iterator[Finding]:
         pulley
         for pulley in evidence.pulleys
         if abs(pulley.slip) > LEAST_SLIP
+        and pulley.wrap_angle > 0.0
         and pulley.sliding == 0.0
         and pulley.slip * pulley.elastic_creep >= 0.0
         and pulley.slip * pulley.regularization > 0.0

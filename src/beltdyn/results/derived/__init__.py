@@ -2,6 +2,7 @@
 
 from beltdyn.results.derived.arc import contact_arc, wear_by_arc, wear_by_belt
 from beltdyn.results.derived.labels import pulley_number
+from beltdyn.results.derived.nip import nip_profile, nips
 from beltdyn.results.derived.pulley import (
     balance,
     hub_loads,
@@ -24,6 +25,8 @@ __all__ = [
     "element_order",
     "hub_loads",
     "mid_span_displacements",
+    "nip_profile",
+    "nips",
     "order_spectrum",
     "orders",
     "overall_level",

@@ -28,6 +28,7 @@ from beltdyn.show.plot.layout import save_layout as save_layout
 from beltdyn.show.plot.legends import name_lines as name_lines
 from beltdyn.show.plot.life import belt_history as belt_history
 from beltdyn.show.plot.life import damage_shares as damage_shares
+from beltdyn.show.plot.nip import nip_pressure as nip_pressure
 from beltdyn.show.plot.operating_points import efficiency_map as efficiency_map
 from beltdyn.show.plot.operating_points import operating_points as operating_points
 from beltdyn.show.plot.operating_points import tensioner_sheet as tensioner_sheet

@@ -60,15 +60,18 @@ _ALIKE = 4.0
 """Radii over each other up to which pressures have one scale."""
 
 
-def _pulleys(choice: Choice) -> list[list[str]]:
-    """Names of the chosen pulleys, in rows."""
-    return rows(choice.pulleys if choice.pulley is None else [choice.pulleys[choice.pulley]])
+def _pulleys(run: Result, choice: Choice) -> list[list[str]]:
+    """Names of the chosen pulleys, in rows, by default of those that the belt wraps."""
+    if choice.pulley is not None:
+        return rows([choice.pulleys[choice.pulley]])
+    beside = {nip.roller for nip in run.drive.nips}
+    return rows([name for name in choice.pulleys if name not in beside])
 
 
 def _kinds_by_pulleys(draw: Callable[..., Axes], run: Result, choice: Choice) -> Figure:
     """Lay out a panel for each kind of force and pulley; at rest nothing rubs."""
     kinds = ("normal",) if isinstance(run, StaticResult) else get_args(Kind)
-    blocks = [(block, kind) for block in _pulleys(choice) for kind in kinds]
+    blocks = [(block, kind) for block in _pulleys(run, choice) for kind in kinds]
     return panels([[partial(draw, run, name, kind=kind) for name in block] for block, kind in blocks])
 
 
@@ -76,7 +79,7 @@ def _by_pulleys(draw: Callable[..., Axes], run: Result, choice: Choice) -> Figur
     """Lay out a panel for each pulley, with one legend for all."""
     radii = [pulley.radius for pulley in run.drive.pulleys]
     alike = max(radii) < _ALIKE * min(radii)
-    page = panels([[partial(draw, run, name) for name in row] for row in _pulleys(choice)], sharey=alike)
+    page = panels([[partial(draw, run, name) for name in row] for row in _pulleys(run, choice)], sharey=alike)
     named = [
         Line2D([], [], color=INK, label="pressure"),
         Line2D([], [], color=INK, linestyle=dash(1), label="shear"),

@@ -207,6 +207,11 @@ def write_pulley(ax: Axes, path: Path, number: int, text: str, extent: float, ti
         return
     away = path.radii[number] < 0 and path.wrap_angles[number] < np.pi
     middle = float(np.mean(arc(path, number)[[0, -1]])) + (np.pi if away else 0.0)
+    nip = next((pair for pair in path.nips if number in pair), None)
+    if nip is not None:
+        other = nip[1] if number == nip[0] else nip[0]
+        way = path.centers[number] - path.centers[other]
+        middle = float(np.arctan2(way[1], way[0]))
     x, y = np.cos(middle), np.sin(middle)
     ax.annotate(
         text,

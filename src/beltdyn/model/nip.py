@@ -1,0 +1,211 @@
+"""A nip: two rollers that press the belt between them."""
+
+from collections.abc import Sequence
+from math import hypot, pi
+from typing import Self
+
+import numpy as np
+from pydantic import Field, model_validator
+
+from beltdyn.arrays import FloatArray
+from beltdyn.errors import ModelError
+from beltdyn.model.belt import Belt
+from beltdyn.model.path import Path
+from beltdyn.model.pulley import Pulley
+from beltdyn.parts.part import Part
+from beltdyn.parts.quantity import Coordinate, Force, Name
+from beltdyn.theory.nip import equivalent_radius, indentation_of, series
+
+_DEEPEST = 0.5
+"""Largest compression of a cover or of the belt between two rollers, over its thickness."""
+_ROUNDING = 1e-9
+
+
+class Nip(Part):
+    """A roller beside the path of the belt that presses it against a pulley, by a force or to a gap.
+
+    The center of the roller tells the direction in which it presses; its distance follows from `force` or `gap`. With
+    neither of them, the roller stays where its center is.
+
+    Examples
+    --------
+    >>> bd.model.Nip(roller="press", pulley="drum", force="2 kN").force
+    2000.0
+    """
+
+    roller: Name = Field(description="the pulley beside the path that presses, by its name")
+    pulley: Name = Field(description="the pulley against which it presses the belt, by its name")
+    force: Force | None = Field(None, gt=0, description="the force with which the roller presses, in N")
+    gap: Coordinate | None = Field(
+        None,
+        description="the gap between both undeformed rollers, less than the thickness of the belt; negative where soft "
+        "covers would overlap, in m",
+    )
+
+    @model_validator(mode="after")
+    def _is_loaded_once(self) -> Self:
+        if self.force is not None and self.gap is not None:
+            raise ValueError("force and gap exclude each other: one follows from the other. Remove one of them")
+        if self.roller == self.pulley:
+            raise ValueError(f'roller and pulley are both "{self.roller}". Name two pulleys')
+        return self
+
+
+def check_nips(nips: Sequence[Nip], pulleys: Sequence[Pulley], belt: Belt) -> None:
+    """Refuse nips whose rollers are not there, not on both faces of the belt, or not held in place."""
+    names = [one.name for one in pulleys]
+    rollers = [nip.roller for nip in nips]
+    for number, nip in enumerate(nips, 1):
+        for key in ("roller", "pulley"):
+            name = getattr(nip, key)
+            if name not in names:
+                raise ValueError(
+                    f'nip[{number}].{key} = "{name}" is not the name of a pulley. Choose one of {", ".join(names)}'
+                )
+        if nip.pulley in rollers:
+            raise ValueError(
+                f'nip[{number}].pulley = "{nip.pulley}" is itself the roller of a nip, on which the belt does not lie. '
+                "Press against a pulley of the path"
+            )
+        if rollers.count(nip.roller) > 1:
+            raise ValueError(
+                f'nip[{number}].roller = "{nip.roller}" presses in {rollers.count(nip.roller)} nips. Give each nip a '
+                "roller of its own"
+            )
+        roller, pulley = pulleys[names.index(nip.roller)], pulleys[names.index(nip.pulley)]
+        if roller.side == pulley.side:
+            other = "outside" if pulley.side == "inside" else "inside"
+            raise ValueError(
+                f'nip[{number}]: "{roller.name}" and "{pulley.name}" are both on the {pulley.side} of the belt, but a '
+                f'nip has a roller on each face. Set side = "{other}" for "{roller.name}"'
+            )
+        if roller.surface is not None and roller.surface.kind != "circle":
+            raise ValueError(f'nip[{number}].roller = "{roller.name}" is not a smooth circle. Omit its surface')
+        if nip.gap is not None and nip.gap >= belt.thickness:
+            raise ValueError(
+                f"nip[{number}].gap = {nip.gap:.4g} m does not press the belt of {belt.thickness:.4g} m. Reduce it, or "
+                "give force"
+            )
+    if nips and belt.teeth is not None:
+        raise ValueError("[[nip]] is incompatible with a belt with teeth. Remove one of them")
+
+
+def refuse_nips(nips: Sequence[Nip], what: str) -> None:
+    """Make sure that what knows no nips is not asked of a drive that has some."""
+    if nips:
+        raise ModelError(
+            f'{what} knows no nip, such as that of "{nips[0].roller}". Compute steady running with '
+            "`beltdyn steady-state`, its modes, or a run over time."
+        )
+
+
+def refuse_forces(nips: Sequence[Nip]) -> None:
+    """Make sure that the rollers of nips have their places in a run over time."""
+    for number, nip in enumerate(nips, 1):
+        if nip.force is not None:
+            raise ModelError(
+                f"nip[{number}].force = {nip.force:.4g} N is that of steady running; a run over time holds the roller "
+                f'"{nip.roller}" in place. Give gap instead, which `beltdyn.derived.nips` has of steady running.'
+            )
+
+
+def numbered(nips: Sequence[Nip], pulleys: Sequence[Pulley]) -> tuple[tuple[int, int], ...]:
+    """Numbers of roller and pulley of each nip."""
+    names = [one.name for one in pulleys]
+    return tuple((names.index(nip.roller), names.index(nip.pulley)) for nip in nips)
+
+
+def touching_distance(roller: Pulley, pulley: Pulley, belt: Belt) -> float:
+    """Distance of two centers at which the rollers touch the belt between them without pressing it, m."""
+    return roller.radius + pulley.radius + belt.pitch_offset + belt.back_offset
+
+
+def placed(nips: Sequence[Nip], pulleys: tuple[Pulley, ...], belt: Belt, stiffness: float) -> tuple[Pulley, ...]:
+    """Pulleys with the rollers of nips where gap or force put them.
+
+    `stiffness` is that of contact, N/m^2; infinity places rollers that press by a force where they touch.
+    """
+    found = list(pulleys)
+    for nip, (one, other) in zip(nips, numbered(nips, pulleys), strict=True):
+        roller, pulley = pulleys[one], pulleys[other]
+        if nip.gap is not None:
+            depth = belt.thickness - nip.gap
+        elif nip.force is not None:
+            depth = 0.0
+            if np.isfinite(stiffness):
+                pair = series(*(side_stiffness(each, belt, stiffness) for each in (roller, pulley)))
+                depth = indentation_of(nip.force, pair, equivalent_radius(*_sizes(roller, pulley, belt)))
+        else:
+            continue
+        apart = touching_distance(roller, pulley, belt) - depth
+        x, y = np.subtract(roller.center, pulley.center).tolist()
+        size = hypot(x, y)
+        if size == 0.0:
+            raise ValueError(
+                f'"{roller.name}" has the center of "{pulley.name}", so that the direction in which it presses is '
+                "unknown. Move it to the side at which it presses"
+            )
+        center = pulley.center[0] + apart * x / size, pulley.center[1] + apart * y / size
+        found[one] = roller.replace(center=center)
+    return tuple(found)
+
+
+def _sizes(roller: Pulley, pulley: Pulley, belt: Belt) -> tuple[float, float]:
+    """Effective radii of both, m."""
+    return tuple(one.radius + belt.offset(one.side, one.teeth is not None) for one in (roller, pulley))  # type: ignore
+
+
+def side_stiffness(pulley: Pulley, belt: Belt, stiffness: float) -> float:
+    """Stiffness of a pulley's cover and the belt on it in series, N/m^2, with that of contact without a cover."""
+    return stiffness if pulley.cover is None else series(pulley.cover.stiffness(belt.width), stiffness)
+
+
+def foundations(pulleys: Sequence[Pulley], belt: Belt, stiffness: float) -> FloatArray:
+    """Stiffness of contact with each pulley over that of a pulley without cover, shape (n,)."""
+    return np.array([side_stiffness(one, belt, stiffness) / stiffness for one in pulleys])
+
+
+def rim_ratios(pairs: Sequence[tuple[int, int]], pulleys: Sequence[Pulley], radii: FloatArray) -> FloatArray:
+    """Radius at which the tension line rolls off over the effective radius, shape (n,): 1 but of rollers of nips.
+
+    The face of a belt bent on a pulley of the effective radius r moves faster than the tension line, by 1 + o / r at
+    the distance o.
+    """
+    found = np.ones(len(pulleys))
+    for roller, pulley in pairs:
+        own = pulleys[roller].radius
+        found[roller] = own / (radii[roller] * (1.0 + (radii[roller] - own) / radii[pulley]))
+    return found
+
+
+def check_places(nips: Sequence[Nip], path: Path, pulleys: Sequence[Pulley], belt: Belt) -> None:
+    """Refuse rollers that press where no belt lies, that do not reach it, or that leave it no room."""
+    for number, (nip, (one, other), depth, angle) in enumerate(
+        zip(nips, path.nips, path.indentations.tolist(), path.nip_angles.tolist(), strict=True), 1
+    ):
+        roller, pulley, wrap = pulleys[one], pulleys[other], float(path.wrap_angles[other])
+        if angle > wrap:
+            beyond = min(angle - wrap, 2.0 * pi - angle)
+            raise ValueError(
+                f'nip[{number}]: the belt does not lie on "{pulley.name}" where "{roller.name}" presses; its arc ends '
+                f"{np.degrees(beyond):.3g}° before. Move the center of the roller"
+            )
+        if depth < -_ROUNDING * roller.radius:
+            raise ValueError(
+                f'nip[{number}]: "{roller.name}" does not reach the belt on "{pulley.name}": it is {-depth:.4g} m '
+                "away. Move its center, or give force or gap"
+            )
+        room = belt.thickness + sum(0.0 if each.cover is None else each.cover.thickness for each in (roller, pulley))
+        if depth > _DEEPEST * room:
+            asked = "" if nip.force is None else f" by a force of {nip.force:.4g} N"
+            raise ValueError(
+                f'nip[{number}] is too tight: "{roller.name}" and "{pulley.name}" would be pressed together by '
+                f"{depth:.4g} m{asked}, beyond {_DEEPEST:.0%} of the {room:.4g} m of belt and covers between them. "
+                "Reduce force, open the gap, or give a thicker or harder cover"
+            )
+        half = float(np.sqrt(2.0 * equivalent_radius(*np.abs(path.radii[[one, other]]).tolist()) * max(depth, 0.0)))
+        if half > min(angle, wrap - angle) * abs(float(path.radii[other])):
+            raise ValueError(
+                f'nip[{number}]: the nip of "{roller.name}" is {2.0 * half:.4g} m wide and reaches beyond the arc on '
+                f'"{pulley.name}". Move the center of the roller to the middle of the arc'
+            )

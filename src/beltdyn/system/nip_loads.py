@@ -1,0 +1,53 @@
+"""Nips that are loaded by forces, in steady running: their rollers are moved until they press with them."""
+
+from typing import NamedTuple
+
+import numpy as np
+
+from beltdyn.arrays import FloatArray
+from beltdyn.model import Prepared
+from beltdyn.model.nip import side_stiffness
+from beltdyn.system.arrays import System
+from beltdyn.theory.nip import equivalent_radius, half_width, series
+
+_ACCURACY = 1e-9
+"""Of a move that ends the search, over the smallest radius."""
+
+
+class NipLoad(NamedTuple):
+    """A nip that is loaded by a force."""
+
+    roller: int
+    pulley: int
+    force: float
+    """N."""
+    stiffness: float
+    """Growth of the force over the way of the roller, N/m."""
+
+
+def nip_loads(prepared: Prepared) -> list[NipLoad]:
+    """The nips of a drive that are loaded by forces."""
+    found, path, contact = list[NipLoad](), prepared.path, prepared.contact_stiffness
+    for nip, (roller, pulley), depth in zip(prepared.drive.nips, path.nips, path.indentations.tolist(), strict=True):
+        if nip.force is not None:
+            pair = series(*(side_stiffness(prepared.pulleys[one], prepared.belt, contact) for one in (roller, pulley)))
+            radius = equivalent_radius(*np.abs(path.radii[[roller, pulley]]).tolist())
+            found.append(NipLoad(roller, pulley, nip.force, 2.0 * pair * half_width(depth, radius)))
+    return found
+
+
+def with_own_rollers(system: System) -> System:
+    """The same system, with an array of its own for the centers of rollers that move."""
+    return system._replace(pulleys=system.pulleys.copy()) if np.any(system.pulleys.beside) else system
+
+
+def pressed_on(system: System, loads: list[NipLoad], hub: FloatArray, size: float) -> bool:
+    """Move rollers by what forces of the belt on hubs, shape (P, 2), miss; False if all moves are small."""
+    centers, far = system.pulleys.center, False
+    for one in loads:
+        way = centers[one.pulley] - centers[one.roller]
+        way /= np.hypot(*way)
+        step = (one.force + float(hub[one.roller] @ way)) / one.stiffness
+        centers[one.roller] += step * way
+        far = far or abs(step) > _ACCURACY * size
+    return far

@@ -1,0 +1,129 @@
+"""A nip in steady running against the closed forms of an elastic foundation, rolling, Coulomb friction, and energy."""
+
+from typing import Any
+
+import numpy as np
+import pytest
+
+import beltdyn as bd
+from beltdyn.errors import ConvergenceError
+from beltdyn.model.nip import side_stiffness
+from beltdyn.theory.nip import equivalent_radius, force, half_width, series
+
+WIDTH, TENSION = 0.2, 1000.0
+FRICTION = 0.4
+DRUM, TAIL, ROLLER = 0.15, 0.1, 0.08
+SPEED = 6.6
+PARABOLA = 0.01
+"""What the closed forms leave out: circles for parabolas, half of the width being 0.1 of the radius; bending."""
+
+
+def drive(**changes: Any) -> bd.Drive:
+    """A thin belt on a driven drum, and a roller with a cover that presses it there."""
+    base = bd.Drive(
+        belt={
+            "width": WIDTH,
+            "thickness": 3e-3,
+            "pitch_offset": 1.5e-3,
+            "back_offset": 1.5e-3,
+            "axial_stiffness": 4e5,
+            "bending_stiffness": 1e-3,
+            "mass_per_length": 0.7,
+            "contact_stiffness": 4e10,
+            "installed_tension": TENSION,
+        },
+        pulley=[
+            {"name": "drum", "center": [0.0, 0.0], "radius": DRUM, "speed": SPEED},
+            {"name": "tail", "center": [1.2, 0.0], "radius": TAIL, "inertia": 0.2, "torque": -30.0},
+            {
+                "name": "press",
+                "center": [-0.3, 0.0],
+                "radius": ROLLER,
+                "side": "outside",
+                "inertia": 0.05,
+                "cover": {"thickness": 0.01, "youngs_modulus": 4e6, "poissons_ratio": 0.45},
+            },
+        ],
+        nip=[{"roller": "press", "pulley": "drum", "force": 500.0}],
+        contact={"friction": FRICTION},
+        simulation={"duration": 1.0},
+    )
+    return base.with_(changes)
+
+
+@pytest.fixture(scope="module")
+def idle() -> bd.Run:
+    return bd.steady_state(drive())
+
+
+def _foundation(run: bd.Run) -> tuple[float, float]:
+    """Stiffness of both sides in series, N/m^2, and the equivalent radius, m."""
+    prepared = run.prepared
+    sides = [side_stiffness(prepared.pulleys[one], prepared.belt, prepared.contact_stiffness) for one in (0, 2)]
+    return series(*sides), equivalent_radius(*prepared.radii[[0, 2]].tolist())
+
+
+def test_the_nip_is_that_of_a_foundation(idle: bd.Run) -> None:
+    nip, (stiffness, radius) = bd.derived.nips(idle).isel(nip=0), _foundation(idle)
+    depth = float(nip.indentation)
+    assert float(nip.force) == pytest.approx(500.0, rel=1e-6)
+    assert force(depth, stiffness, radius) == pytest.approx(500.0, rel=PARABOLA)
+    assert float(nip.width) == pytest.approx(2.0 * half_width(depth, radius), rel=PARABOLA)
+    assert float(nip.peak_pressure) == pytest.approx(stiffness * depth / WIDTH, rel=PARABOLA)
+
+
+def test_pressure_is_a_parabola_on_the_covered_face(idle: bd.Run) -> None:
+    profile, (stiffness, radius) = bd.derived.nip_profile(idle, "press"), _foundation(idle)
+    depth = float(bd.derived.nips(idle).indentation[0])
+    parabola = stiffness * (depth - profile.distance.values**2 / (2.0 * radius)) / WIDTH
+    misfit = profile.pressure.sel(face="press").values - np.maximum(parabola, 0.0)
+    assert np.abs(misfit).max() < 2.0 * PARABOLA * parabola.max()
+
+
+def test_an_idle_roller_takes_nothing_and_rolls_on_the_outer_face(idle: bd.Run) -> None:
+    nip, last = bd.derived.nips(idle).isel(nip=0), idle.dataset.isel(time=-1)
+    assert abs(float(nip.pull.sel(side="roller"))) < 1e-2 * FRICTION * 500.0
+    assert float(nip.torque.sel(side="roller")) == 0.0
+    face = SPEED * (DRUM + 3e-3) / ROLLER
+    assert float(last.pulley_speed.sel(pulley="press")) == pytest.approx(-face, rel=2e-3)
+    assert float(nip.speed_ratio) == pytest.approx(1.0, rel=2e-3)
+
+
+def test_the_energy_account_closes(idle: bd.Run) -> None:
+    last, span = idle.dataset.isel(time=-1), float(idle.dataset.time[-1])
+    put_in = float((last.shaft_torque * last.pulley_speed).sum())
+    lost = sum(float(last[name]) / span for name in ("friction_loss", "damping_loss"))
+    assert put_in == pytest.approx(lost, rel=1e-4)
+
+
+@pytest.mark.slow
+def test_driven_pairs_share_the_load() -> None:
+    """What the roller drives the drum need not: their torques over their radii add up to the load of the tail."""
+    powers = []
+    for torque in (0.0, -5.0, -10.0):
+        run = bd.steady_state(drive(**{"pulley[press].torque": torque}))
+        nip, last = bd.derived.nips(run).isel(nip=0), run.dataset.isel(time=-1)
+        power = last.shaft_torque * last.pulley_speed
+        powers.append([float(power.sel(pulley=name)) for name in ("drum", "press", "tail")])
+        outer = torque * SPEED * (DRUM + 3e-3) / ROLLER / (SPEED * (DRUM + 1.5e-3))
+        assert float(nip.pull.sel(side="roller")) == pytest.approx(-outer, rel=5e-3, abs=1.0)
+    by_drum, by_press, tail = np.array(powers).T
+    np.testing.assert_allclose(by_drum + by_press, -tail, rtol=5e-3)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("radius", [0.06, 0.15])
+def test_unequal_rollers_turn_as_their_surfaces_roll(radius: float) -> None:
+    run = bd.steady_state(drive(**{"pulley[press].radius": radius}))
+    ratio = float(run.dataset.pulley_speed.isel(time=-1).sel(pulley="press")) / SPEED
+    assert ratio == pytest.approx(-(DRUM + 3e-3) / radius, rel=2e-3)
+
+
+@pytest.mark.slow
+def test_the_nip_grips_up_to_coulomb_friction() -> None:
+    """M = mu F R; and beyond, the answer names the nip."""
+    limit = FRICTION * 500.0 * ROLLER / (1.0 + 1.5e-3 / (DRUM + 1.5e-3))
+    held = bd.steady_state(drive(**{"pulley[press].torque": 0.97 * limit}))
+    assert float(bd.derived.nips(held).grip.sel(side="roller")[0]) == pytest.approx(0.97, rel=0.01)
+    with pytest.raises(ConvergenceError, match="slips in the nip of `press`, which transmits at most"):
+        bd.steady_state(drive(**{"pulley[press].torque": 1.05 * limit}))
