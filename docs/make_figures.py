@@ -1,4 +1,4 @@
-"""Draw the pictures of README (the drive of `beltdyn demo`) and of the theory pages (the paper's drive under load)."""
+"""Draw the pictures of README (the drive of `beltdyn demo`), of the theory pages (the paper's drive under load), of nips."""
 
 from collections.abc import Callable, Mapping
 from functools import partial
@@ -52,3 +52,5 @@ if __name__ == "__main__":
     draw(fan, {"speeds": bd.plot.speeds, "tensions": bd.plot.span_tensions}, PICTURES / "readme.png")
     contact = partial(bd.plot.contact_forces, pulley="driver")
     draw(bd.simulate(loaded_drive()), {"speeds": bd.plot.speeds, "contact": contact}, PICTURES / "two_pulley.png")
+    pressed = bd.steady_state(bd.load(Path(__file__).parent / "tasks" / "press_roller.toml"))
+    bd.plot.nip_pressure(pressed).figure.savefig(PICTURES / "nip_pressure.png", dpi=110, bbox_inches="tight")
