@@ -1,4 +1,4 @@
-"""Draw the pictures of README (the drive of `beltdyn demo`), of the theory pages (the paper's drive under load), of nips."""
+"""Draw the pictures of README (the drive of `beltdyn demo`), theory (the paper's drive under load) and nips."""
 
 from collections.abc import Callable, Mapping
 from functools import partial
