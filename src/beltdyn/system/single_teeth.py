@@ -91,10 +91,10 @@ class JumpWatch:
     def _off(self, pulley: int, position: FloatArray, places: FloatArray) -> FloatArray:
         """Mean misfit of the teeth in grooves, or of the nearest ones, in pitches, -1/2 to 1/2; shape (k,)."""
         system, row = self._system, self._table[pulley]
-        away = np.hypot(places[:, :, 0], places[:, :, 1])
+        away = places[:, :, 0] ** 2 + places[:, :, 1] ** 2
         reach = system.rims.radius[pulley] + (row.height if row.spacing > 0.0 else 0.0)
         nearest = np.min(away, axis=1, keepdims=True)
-        state, point = np.nonzero(away <= np.maximum(reach, _BESIDE * nearest))
+        state, point = np.nonzero(away <= np.maximum(reach**2, _BESIDE**2 * nearest))
         angle = row.phase + position[:, system.first_body + pulley] - row.rate * passed_lengths(system.frame, position)
         direction = np.arctan2(places[state, point, 1], places[state, point, 0])
         ahead = (angle[state] - direction + row.rate * self._along[point]) / row.groove
