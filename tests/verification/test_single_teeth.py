@@ -1,4 +1,4 @@
-"""Belts with single teeth: against spread teeth, backlash, energy, jumps.
+"""Belts with single teeth: against spread teeth and chains of springs, backlash, energy, jumps.
 
 Teeth without flanks hold while the belt touches the rim, as spread ones do, so that both share a load alike. Two
 pulleys of 24 teeth have ten teeth in mesh.
@@ -11,13 +11,13 @@ import pytest
 
 import beltdyn as bd
 from beltdyn.arrays import FloatArray
-from beltdyn.model import prepare
+from beltdyn.model import Prepared, prepare
 from beltdyn.results import Run, derived, tooth_loads
 from beltdyn.show.report.build import verdict
 from beltdyn.state.static import find_equilibrium
 from beltdyn.system.build import drive_system
 from beltdyn.system.frame import centreline_places
-from beltdyn.system.meshing import at_phases, fit_phases
+from beltdyn.system.meshing import at_phases, fit_phases, phases
 from beltdyn.system.moving_center import pulley_center
 from beltdyn.system.single_teeth import tooth_coordinates, tooth_forces
 from beltdyn.system.state import laid
@@ -196,7 +196,7 @@ def chain(count: int, tension: float, pitch: float, radius: float) -> FloatArray
 
     The belt runs at the pitch radius less the depth T / (R k_c) of its contact.
     """
-    loads = np.zeros(count)
+    loads: FloatArray = np.zeros(count)
     for _ in range(30):  # until the depths are those of the tensions
         spans = tension - np.concatenate([[0.0], np.cumsum(loads)])
         between = radius / (radius - spans[1:-1] / (radius * DEPTH))
@@ -207,16 +207,20 @@ def chain(count: int, tension: float, pitch: float, radius: float) -> FloatArray
             matrix[i, : i + 1] -= between[i] * PITCH / AXIAL * TOOTH
             side[i] = TOOTH * (pitch - between[i] * PITCH * (1.0 + tension / AXIAL))
         matrix[-1] = 1.0
-        loads = np.linalg.solve(matrix, side)
+        loads = np.linalg.solve(matrix, side).astype(float)
     return loads
+
+
+def unbent(error: float, elements: int, **toothing: Any) -> Prepared:
+    """A belt at rest that hardly bends on hard pulleys of a pitch error, with so many elements a tooth."""
+    given = drive(0.0, speed=0.0, pitch_error=error, tooth_damping=0.0, **toothing)
+    belt = given.belt.merged({"bending_stiffness": BENT, "elements": elements * 74, "discretization": "quintic"})
+    return prepare(given.replace(belt=belt, contact={"friction": 0.0, "stiffness": DEPTH}))
 
 
 def test_teeth_at_rest_share_a_pitch_error_as_a_chain_of_springs() -> None:
     error = 5e-3
-    given = drive(0.0, speed=0.0, pitch_error=error, tooth_damping=0.0)
-    belt = given.belt.merged({"bending_stiffness": BENT, "elements": 8 * 74, "discretization": "quintic"})
-    contact = {"friction": 0.0, "stiffness": DEPTH}
-    prepared = prepare(given.replace(belt=belt, contact=contact))
+    prepared = unbent(error, 8)
     system = drive_system(prepared)
     start = laid(system, prepared.path)
     fit_phases(system, start)
@@ -238,3 +242,24 @@ def test_teeth_at_rest_share_a_pitch_error_as_a_chain_of_springs() -> None:
     assert np.abs(expected).max() > 50.0
     # bending, of EI / T p^2 = 1e-3, rounds the kinks of the tension at teeth: with ten times of it the error is 5e-4
     np.testing.assert_allclose(loads, expected, atol=2e-4 * np.abs(expected).max())
+
+
+def static_error(error: float) -> FloatArray:
+    """Static transmission error without load over the first sixth of a pitch, m."""
+    prepared = unbent(error, 4, tooth_height=1e-3, flank_angle=0.4)
+    system = drive_system(prepared)
+    state = laid(system, prepared.path)
+    fit_phases(system, state)
+    first, ahead = phases(system).copy(), []
+    for part in (0.0, 1.0, 2.0):
+        found = find_equilibrium(at_phases(system, first + 2.0 * np.pi / TEETH * part / 12.0), state)
+        state = found.state
+        ahead.append(found.phases[1] - found.phases[0])
+    return np.asarray((np.array(ahead) - ahead[0]) * TEETH * PITCH / (2.0 * np.pi))
+
+
+def test_pitches_that_agree_under_tension_have_no_transmission_error() -> None:
+    agreed, near, far = (float(np.abs(static_error(AGREED + off)).max()) for off in (0.0, 1e-3, 2e-3))
+    assert near > 1e-7
+    assert far > 2.0 * near  # teeth with flanks have play as they enter: more than linear
+    assert agreed < 0.01 * near  # of tensions 0.2 % above that at which pitches agree

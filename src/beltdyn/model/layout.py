@@ -118,7 +118,7 @@ def lay_out(given: Given) -> Layout:
     if given.belt.length is None or given.belt.installed_tension is None:
         return Layout(given, pulleys, path)
     given, choices = with_chosen_stiffness(given, path)
-    _check_take_up_is_open(given.tensioners)
+    _check_take_up_is_open(given.belt, given.tensioners)
     given = _tightened(given, path)
     pulleys = given.pulleys_in_place
     return Layout(given, pulleys, given.path_around(pulleys), choices)
@@ -202,17 +202,19 @@ def _moved(pulleys: tuple[Pulley, ...], tensioner: FixedTensioner) -> tuple[Pull
     )
 
 
-def _check_take_up_is_open(tensioners: tuple[Tensioner, ...]) -> None:
+def _check_take_up_is_open(belt: Belt, tensioners: tuple[Tensioner, ...]) -> None:
     """Refuse a belt of given length and tension without a single fixed tensioner of open take-up."""
     fixed = [tensioner for tensioner in tensioners if isinstance(tensioner, FixedTensioner)]
+    key = _sized_by(belt)
     if len(fixed) != 1:
         raise ValueError(
-            f"belt.length and belt.installed_tension are both given, with {len(fixed)} fixed tensioners; the take-up "
-            'needs exactly one. Give one [[tensioner]] of kind = "fixed", or remove length or installed_tension'
+            f"{key} and belt.installed_tension are both given, with {len(fixed)} fixed tensioners; the take-up needs "
+            f'exactly one. Give one [[tensioner]] of kind = "fixed", or remove {key.removeprefix("belt.")} or '
+            "installed_tension"
         )
     if fixed[0].take_up != 0:
         raise ValueError(
-            f'the fixed tensioner of "{fixed[0].pulley}" has take_up = {fixed[0].take_up:g} m, but belt.length and '
+            f'the fixed tensioner of "{fixed[0].pulley}" has take_up = {fixed[0].take_up:g} m, but {key} and '
             "belt.installed_tension determine it. Remove one of the three"
         )
 
@@ -252,8 +254,14 @@ def _tightened(given: Given, path: Path) -> Given:
 def _no_take_up(given: Given, tensioner: FixedTensioner, reason: str) -> ValueError:
     return ValueError(
         f'no take-up of "{tensioner.pulley}" gives a belt of {given.belt.length:.5g} m a tension of '
-        f"{given.belt.installed_tension:.5g} N: {reason}. Change belt.length, or the direction of the tensioner"
+        f"{given.belt.installed_tension:.5g} N: {reason}. Change {_sized_by(given.belt)}, or the "
+        "direction of the tensioner"
     )
+
+
+def _sized_by(belt: Belt) -> str:
+    """The key that gives the length of the belt."""
+    return "belt.length" if belt.teeth is None else "belt.teeth"
 
 
 def check_length(length: float, path: float, tensioned: bool = False) -> None:

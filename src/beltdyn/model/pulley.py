@@ -107,7 +107,9 @@ class Pulley(Part):
 
     name: Name = Field(description="the name of the pulley, as text")
     center: tuple[Coordinate, Coordinate] = Field(description="the center of the pulley as [x, y], in m")
-    radius: Length = Field(gt=0, description="the radius of the pulley at the contact surface of the belt, in m")
+    radius: Length = Field(
+        gt=0, description="the radius of the pulley at the contact surface of the belt, in m; of a toothed one, teeth"
+    )
     diameter_kind: Literal["datum", "effective", "pitch", "outside", "flat"] | None = Field(
         None,
         description='the kind of diameter: "datum" of V-belts, "effective" of V-ribbed belts, "pitch" of the tension '
