@@ -39,5 +39,7 @@ class PulleyState(NamedTuple):
     """Coefficient rho of rolling resistance."""
     foundation: float = 1.0
     """Factor on the law of the normal force, below 1 with an elastic cover."""
+    damping: float = 1.0
+    """Damping over stiffness of contact against that of the law."""
     rim_ratio: float = 1.0
     """Radius at which the tension line rolls off over that of the surface."""

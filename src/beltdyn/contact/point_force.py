@@ -167,7 +167,8 @@ def point_force(here: Approach, pulley: PulleyState, law: ContactLaw, secant: bo
     secant
         Whether `by_slip` is the secant of friction from no slip, in place of its slope.
     """
-    normal = _on_cover(normal_force(law.normal, here.penetration, -here.radial), pulley.foundation)
+    normal = normal_force(law.normal, here.penetration, -here.radial * pulley.damping)
+    normal = _on_cover(normal, pulley.foundation, pulley.damping)
     slip = slip_velocity(here, pulley)
     radius = pulley.surface.radius
     friction, by_slip, by_normal, by_rim = friction_force(
@@ -194,14 +195,14 @@ def point_force(here: Approach, pulley: PulleyState, law: ContactLaw, secant: bo
 
 
 @kernel(inline=True)
-def _on_cover(normal: NormalForce, factor: float) -> NormalForce:
-    """A normal force on a foundation that is softer by a factor."""
-    if factor == 1.0:
+def _on_cover(normal: NormalForce, factor: float, damping: float) -> NormalForce:
+    """A normal force on a foundation that is softer by a factor, with the rate times another one."""
+    if factor == 1.0 and damping == 1.0:
         return normal
     return NormalForce(
         factor * normal.force,
         factor * normal.by_penetration,
-        factor * normal.by_rate,
+        factor * damping * normal.by_rate,
         factor * normal.elastic,
         factor * normal.energy,
     )

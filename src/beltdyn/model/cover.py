@@ -21,6 +21,8 @@ class Cover(Part):
     youngs_modulus: Stress = Field(gt=0, description="Young's modulus of the cover, in Pa")
     poissons_ratio: Ratio = Field(ge=0, lt=0.5, description="Poisson's ratio of the cover")
 
+    loss_factor: Ratio = Field(0.0, ge=0, le=0.5, description="the loss factor (tan delta) of compression of the cover")
+
     @property
     def modulus(self) -> float:
         """Modulus of a layer that cannot expand sideways, E (1 - nu) / ((1 + nu) (1 - 2 nu)), Pa."""

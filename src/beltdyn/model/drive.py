@@ -275,8 +275,8 @@ class Drive(Part):
     def _presses_a_closed_belt(self) -> Self:
         if not self.nips:
             return self
-        if self.ends:
-            raise ValueError("[[end]] opens the belt, but only closed belts have [[nip]]. Remove one")
+        if self.ends and not self.is_web:
+            raise ValueError("[[end]] opens the belt, but only closed belts and webs have [[nip]]. Remove one")
         if self.carries:
             raise ValueError("[[nip]] is incompatible with [[support]] and [[goods]]. Remove one of them")
         if not self.frame.stays:

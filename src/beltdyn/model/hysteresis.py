@@ -90,6 +90,7 @@ def rolling_resistances(prepared: Prepared) -> FloatArray:
         return np.zeros(len(prepared.pulleys))
     wrapped = prepared.tension_at_rest * prepared.path.wrap_angles
     losses = compression_losses(prepared)
+    losses[[one for pair in prepared.path.nips for one in pair]] = 0.0  # nips have their own
     return np.divide(losses, wrapped, out=np.zeros_like(losses), where=wrapped > 0.0)
 
 

@@ -10,11 +10,12 @@ from pydantic import Field, model_validator
 from beltdyn.arrays import FloatArray
 from beltdyn.errors import ModelError
 from beltdyn.model.belt import Belt
+from beltdyn.model.contact import Contact
 from beltdyn.model.path import Path
-from beltdyn.model.pulley import Pulley
+from beltdyn.model.pulley import Pulley, fastest_rim
 from beltdyn.parts.part import Part
 from beltdyn.parts.quantity import Coordinate, Force, Name
-from beltdyn.theory.nip import equivalent_radius, indentation_of, series
+from beltdyn.theory.nip import equivalent_radius, half_width, indentation_of, nip_damping, series
 
 _DEEPEST = 0.5
 """Largest compression of a cover or of the belt between two rollers, over its thickness."""
@@ -163,6 +164,37 @@ def side_stiffness(pulley: Pulley, belt: Belt, stiffness: float) -> float:
 def foundations(pulleys: Sequence[Pulley], belt: Belt, stiffness: float) -> FloatArray:
     """Stiffness of contact with each pulley over that of a pulley without cover, shape (n,)."""
     return np.array([side_stiffness(one, belt, stiffness) / stiffness for one in pulleys])
+
+
+def damping_ratios(path: Path, pulleys: Sequence[Pulley], belt: Belt, contact: Contact | None) -> FloatArray:
+    """Damping over stiffness of contact with each pulley against that of the law, shape (n,).
+
+    A damper c on a foundation k takes 2 c v a^3 / 3 R^2 of the line of centers where a nip of the half width a passes
+    with v, in place of the loss pi / 4 eta k d^2 of hysteresis with d = a^2 / 2 R.
+    """
+    found = np.ones(len(pulleys))
+    if contact is None or not any(_loss_factor(one, belt, contact.given("stiffness")) for one in pulleys):
+        return found
+    stiffness, damping = contact.given("stiffness"), contact.given("damping")
+    if damping == 0.0:
+        raise ModelError(
+            "contact.damping = 0 leaves no damper for the loss factors of covers and belt in nips. Omit it, or the "
+            "loss factors."
+        )
+    speed = fastest_rim(pulleys, np.abs(path.radii))
+    for pair, depth in zip(path.nips, path.indentations.tolist(), strict=True):
+        half = half_width(max(depth, 0.0), equivalent_radius(*np.abs(path.radii[list(pair)]).tolist()))
+        for one in pair:
+            own = nip_damping(_loss_factor(pulleys[one], belt, stiffness), half, speed)
+            found[one] = own * stiffness / damping
+    return found
+
+
+def _loss_factor(pulley: Pulley, belt: Belt, stiffness: float) -> float:
+    """Loss factor of a pulley's cover and the belt on it in series, by their shares of the energy."""
+    side = side_stiffness(pulley, belt, stiffness)
+    of_cover = 0.0 if pulley.cover is None else pulley.cover.loss_factor * side / pulley.cover.stiffness(belt.width)
+    return of_cover + belt.compression_loss_factor * side / stiffness
 
 
 def rim_ratios(pairs: Sequence[tuple[int, int]], pulleys: Sequence[Pulley], radii: FloatArray) -> FloatArray:

@@ -28,6 +28,7 @@ PULLEY = record(
     shaft="i8",  # body that drivers and loads act on: the rim, or the last body of its hub chain
     carrier="i8",  # tensioner that carries the pulley, -1 where its center is fixed
     foundation="f8",  # stiffness of contact over that without a cover
+    damping="f8",  # damping over stiffness of contact against that of the law
     rim_ratio="f8",  # radius at which the tension line rolls off over the effective radius
     beside="i8",  # 1 of the roller of a nip, on which the belt does not lie, else 0
 )

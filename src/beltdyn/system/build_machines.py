@@ -72,6 +72,7 @@ def pulley_arrays(
         shaft=shaft_bodies(pulleys),
         carrier=carrier,
         foundation=np.ones(len(pulleys)),
+        damping=np.ones(len(pulleys)),
         rim_ratio=np.ones(len(pulleys)),
         beside=np.zeros(len(pulleys), dtype=np.int64),
     )

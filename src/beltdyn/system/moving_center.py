@@ -59,13 +59,24 @@ def pulley_state(system: System, pulley: int, position: FloatArray, velocity: Fl
             0.0,
             item.rolling,
             item.foundation,
+            item.damping,
             item.rim_ratio,
         )
     at = tensioner_coordinate(system, carrier)
     center = tensioner_center(system.tensioners[carrier], position[at])
     vx, vy = velocity[at] * center.dx, velocity[at] * center.dy
     return PulleyState(
-        center.x, center.y, surface, speed, item.friction, vx, vy, item.rolling, item.foundation, item.rim_ratio
+        center.x,
+        center.y,
+        surface,
+        speed,
+        item.friction,
+        vx,
+        vy,
+        item.rolling,
+        item.foundation,
+        item.damping,
+        item.rim_ratio,
     )
 
 

@@ -1,6 +1,6 @@
 """The nip of two rollers on elastic foundations: a parabola of pressure (Johnson 1985, Contact Mechanics, 4.3)."""
 
-from math import inf, sqrt
+from math import inf, pi, sqrt
 
 
 def cover_modulus(youngs_modulus: float, poissons_ratio: float) -> float:
@@ -78,3 +78,36 @@ def indentation_of(load: float, stiffness: float, radius: float) -> float:
     0.0005
     """
     return float((3.0 * load / (4.0 * stiffness * sqrt(2.0 * radius))) ** (2.0 / 3.0))
+
+
+def nip_damping(loss_factor: float, half_width: float, speed: float) -> float:
+    """Damping over stiffness of a foundation that loses in a nip what hysteresis does, s.
+
+    A strip is pressed to d = a^2 / 2 R at the rate v x / R and loses 2 c v a^3 / 3 R^2; hysteresis, pi / 4 eta K d^2.
+
+    Parameters
+    ----------
+    loss_factor
+        eta, tan delta.
+    half_width
+        a, m.
+    speed
+        v, m/s; at a standstill there is none.
+
+    Examples
+    --------
+    >>> round(bd.theory.nip.nip_damping(0.1, 0.01, 2.0) * 1e3, 4)  # ms
+    0.1473
+    """
+    return 0.0 if speed == 0.0 else 3.0 * pi * loss_factor * half_width / (32.0 * speed)
+
+
+def rolling_loss(loss_factor: float, stiffness: float, indentation: float) -> float:
+    """Force that hysteresis takes to roll a foundation K (N/m^2) through a nip, pi / 4 eta K d^2, N.
+
+    Examples
+    --------
+    >>> round(bd.theory.nip.rolling_loss(0.1, 3e8, 5e-4), 2)
+    5.89
+    """
+    return 0.25 * pi * loss_factor * stiffness * indentation**2

@@ -7,8 +7,8 @@ import pytest
 
 import beltdyn as bd
 from beltdyn.errors import ModelError
-from beltdyn.model.nip import foundations, rim_ratios, side_stiffness
-from beltdyn.theory.nip import equivalent_radius, force, series
+from beltdyn.model.nip import damping_ratios, foundations, rim_ratios, side_stiffness
+from beltdyn.theory.nip import equivalent_radius, force, half_width, rolling_loss, series
 
 COVER = {"thickness": "10 mm", "youngs_modulus": "4 MPa", "poissons_ratio": 0.45}
 DRUM = {"name": "drum", "center": [0.0, 0.0], "radius": 0.15, "speed": 6.6}
@@ -95,6 +95,20 @@ def test_a_roller_rolls_on_the_face_of_a_bent_belt() -> None:
     assert 6.6 * 0.1515 / (ratios[2] * 0.0815) == pytest.approx(face / 0.08)
 
 
+def test_dampers_lose_what_hysteresis_does() -> None:
+    cover = COVER | {"loss_factor": 0.1}
+    prepared = bd.model.prepare(pressed(pulley=[DRUM, TAIL, PRESS | {"cover": cover}]))
+    found = damping_ratios(prepared.path, prepared.pulleys, prepared.belt, prepared.contact)
+    assert found[:2].tolist() == [0.0, 1.0]
+    side = side_stiffness(prepared.pulleys[2], prepared.belt, prepared.contact_stiffness)
+    damping = found[2] * prepared.contact.given("damping") / prepared.contact_stiffness * side
+    half, radius, speed = half_width(float(prepared.path.indentations[0]), 0.0530), 0.0530, 6.6 * 0.1515
+    lost = damping * 2.0 * speed * half**3 / (3.0 * radius**2)
+    depth = half**2 / (2.0 * radius)
+    share = side / prepared.pulleys[2].cover.stiffness(0.2)  # type: ignore[union-attr]
+    assert lost == pytest.approx(rolling_loss(0.1 * share, side, depth), rel=2e-3)
+
+
 def test_only_covered_rollers_are_softer() -> None:
     drive = pressed()
     found = foundations(drive.pulleys, drive.belt, 4e9)
@@ -117,6 +131,10 @@ def test_only_covered_rollers_are_softer() -> None:
         ({"nip": [{"roller": "press", "pulley": "drum"}]}, 'does not reach the belt on "drum": it is 0.067 m away'),
         ({"pulley": [DRUM, TAIL, PRESS | {"center": [0.0, 0.0]}]}, 'has the center of "drum"'),
         ({"simulation": {"duration": 1.0, "frame": "travelling"}}, "needs a mesh that stays"),
+        (
+            {"pulley": [DRUM, TAIL, PRESS | {"cover": COVER | {"poissons_ratio": 0.5}}]},
+            r"cover.poissons_ratio = 0.5 must be less than 0.5",
+        ),
         ({"tensioner": [{"kind": "fixed", "pulley": "drum", "direction": [-1, 0]}]}, 'a tensioner carries "drum"'),
     ],
 )

@@ -1,5 +1,6 @@
 """A nip in steady running against the closed forms of an elastic foundation, rolling, Coulomb friction, and energy."""
 
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -8,7 +9,7 @@ import pytest
 import beltdyn as bd
 from beltdyn.errors import ConvergenceError
 from beltdyn.model.nip import side_stiffness
-from beltdyn.theory.nip import equivalent_radius, force, half_width, series
+from beltdyn.theory.nip import equivalent_radius, force, half_width, rolling_loss, series
 
 WIDTH, TENSION = 0.2, 1000.0
 FRICTION = 0.4
@@ -97,6 +98,20 @@ def test_the_energy_account_closes(idle: bd.Run) -> None:
 
 
 @pytest.mark.slow
+@pytest.mark.parametrize("speed", [3.0, 12.0])
+def test_a_cover_loses_as_hysteresis_does_at_any_speed(speed: float) -> None:
+    """pi / 4 eta K d^2 of the cover's share K / k of the energy rolls it; the damper lets go at the end, by 0.4 %."""
+    run = bd.steady_state(drive(**{"pulley[press].cover.loss_factor": 0.02, "pulley[drum].speed": speed}))
+    nip, (stiffness, _) = bd.derived.nips(run).isel(nip=0), _foundation(run)
+    cover = run.prepared.pulleys[2].cover
+    assert cover is not None
+    eta = 0.02 * stiffness / cover.stiffness(WIDTH)
+    rolls = rolling_loss(eta, stiffness, float(nip.indentation)) * speed * (DRUM + 1.5e-3)
+    assert float(nip.compression_loss) == pytest.approx(rolls, rel=1.5 * PARABOLA)
+    assert float(nip.force) == pytest.approx(500.0, rel=1e-6)
+
+
+@pytest.mark.slow
 def test_driven_pairs_share_the_load() -> None:
     """What the roller drives the drum need not: their torques over their radii add up to the load of the tail."""
     powers = []
@@ -127,3 +142,18 @@ def test_the_nip_grips_up_to_coulomb_friction() -> None:
     assert float(bd.derived.nips(held).grip.sel(side="roller")[0]) == pytest.approx(0.97, rel=0.01)
     with pytest.raises(ConvergenceError, match="slips in the nip of `press`, which transmits at most"):
         bd.steady_state(drive(**{"pulley[press].torque": 1.05 * limit}))
+
+
+@pytest.mark.slow
+def test_a_web_is_pressed_between_unwinder_and_winder() -> None:
+    """Tensions of both ends, pulls of the rollers and the loss of the cover balance along the web."""
+    web = bd.load(Path(__file__).parents[3] / "docs" / "tasks" / "calender.toml")
+    run = bd.steady_state(web)
+    last, nips = run.dataset.isel(time=-1), bd.derived.nips(run)
+    assert nips.force.values.tolist() == pytest.approx([4e3, 8e3], rel=1e-6)
+    tension = last.span_tension.sel(span=["unwinder-middle", "middle-winder"]).values
+    assert tension.tolist() == pytest.approx([400.0, 450.0], rel=1e-4)
+    speed = float(last.belt_speed.mean())
+    power = float((last.shaft_torque * last.pulley_speed).sum()) + speed * float(tension[1] - tension[0])
+    lost = float(last.friction_power.sum() + last.contact_damping_power.sum())
+    assert power == pytest.approx(lost, rel=0.01)

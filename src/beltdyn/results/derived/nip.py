@@ -3,8 +3,9 @@
 import numpy as np
 import xarray as xr
 
-from beltdyn.arrays import FloatArray
+from beltdyn.arrays import BoolArray, FloatArray
 from beltdyn.errors import ModelError
+from beltdyn.model import Prepared
 from beltdyn.results.derived.labels import pulley_number
 from beltdyn.results.mechanics import cells, rim_speeds
 from beltdyn.results.run import Run
@@ -98,10 +99,12 @@ def nips(run: Run, time: float | None = None) -> xr.Dataset:
     -------
     xarray.Dataset
         By ``nip``: ``force`` (N), ``width`` (m), ``peak_pressure`` (Pa), ``indentation`` (m, by which the undeformed
-        rollers and the belt overlap) and the ``gap`` that follows from it (m), ``tension_before`` and ``tension_after``
-        (N) where the running belt enters and leaves, and ``speed_ratio``, surface speed of the roller over that of the
-        pulley. By ``nip`` and ``side`` (roller, pulley): ``pull`` (N, force on the belt in the nip, positive in the
-        direction in which it runs), ``torque`` (N m, on the shaft), and ``grip``, the pull over its limit mu F.
+        rollers and the belt overlap) and the ``gap`` that follows from it (m), ``thickness`` (m, the least one of the
+        belt, which recovers behind the nip), ``compression_loss`` (W, of covers and belt on both rollers),
+        ``tension_before`` and ``tension_after`` (N) where the running belt enters and leaves, and ``speed_ratio``,
+        surface speed of the roller over that of the pulley. By ``nip`` and ``side`` (roller, pulley): ``pull`` (N, on
+        the belt in the nip, positive in the direction in which it runs), ``torque`` (N m, on the shaft), and ``grip``,
+        the pull over its limit mu F.
 
     Raises
     ------
@@ -151,6 +154,8 @@ def nips(run: Run, time: float | None = None) -> xr.Dataset:
             peak_pressure=float(instant["nip_normal_force"].values[row].max()) / prepared.belt.width,
             indentation=float(radii.sum()) - apart,
             gap=prepared.belt.thickness - float(radii.sum()) + apart,
+            thickness=_thickness(prepared, instant, row, pressed),
+            compression_loss=float(at["contact_damping_power"].values[[roller, pulley]].sum()),
             tension_before=float(at["nip_tension_before"].values[row]),
             tension_after=float(at["nip_tension_after"].values[row]),
             speed_ratio=float(speeds[roller] / speeds[pulley]) if speeds[pulley] else np.nan,
@@ -164,6 +169,8 @@ def nips(run: Run, time: float | None = None) -> xr.Dataset:
         "peak_pressure": ("Pa", "Peak pressure in the nip"),
         "indentation": ("m", "Overlap of undeformed rollers and belt"),
         "gap": ("m", "Gap of undeformed rollers"),
+        "thickness": ("m", "Least thickness of the belt in the nip"),
+        "compression_loss": ("W", "Power lost by compression"),
         "tension_before": ("N", "Tension where the belt enters the nip"),
         "tension_after": ("N", "Tension where the belt leaves the nip"),
         "speed_ratio": ("1", "Surface speed of the roller over that of the pulley"),
@@ -182,6 +189,12 @@ def nips(run: Run, time: float | None = None) -> xr.Dataset:
         },
         {"nip": [run.drive.pulleys[one].name for one, _ in pairs], "side": ["roller", "pulley"], "time": instant.time},
     )
+
+
+def _thickness(prepared: Prepared, instant: xr.Dataset, row: int, pressed: BoolArray) -> float:
+    """Least thickness of a belt that each face presses by its line force over the stiffness of contact, m."""
+    faces = instant["nip_normal_force"].values[row] + instant["normal_force"].values
+    return float(prepared.belt.thickness - np.max(faces[pressed], initial=0.0) / prepared.contact_stiffness)
 
 
 def _grip(pulls: list[float], normal: list[float], frictions: FloatArray) -> list[float]:
