@@ -53,4 +53,4 @@ if __name__ == "__main__":
     contact = partial(bd.plot.contact_forces, pulley="driver")
     draw(bd.simulate(loaded_drive()), {"speeds": bd.plot.speeds, "contact": contact}, PICTURES / "two_pulley.png")
     pressed = bd.steady_state(bd.load(Path(__file__).parent / "tasks" / "press_roller.toml"))
-    bd.plot.nip_pressure(pressed).figure.savefig(PICTURES / "nip_pressure.png", dpi=110, bbox_inches="tight")
+    bd.plot.nip_pressure(pressed).figure.figure.savefig(PICTURES / "nip_pressure.png", dpi=110, bbox_inches="tight")
