@@ -11,6 +11,7 @@ import pytest
 
 import beltdyn as bd
 from beltdyn.arrays import FloatArray
+from beltdyn.model import OptimizationStudy
 from beltdyn.results import Run
 
 AXIAL, TOOTH, PITCH, TEETH = 1e5, 1e6, 8e-3, 120
@@ -116,6 +117,28 @@ def test_teeth_lose_nothing(loaded: Run) -> None:
     # pulleys of one pitch give back what they take; pitches differ by the penetration, of 1e-7 of the radius
     lost = abs(float(end.compression_loss)) + abs(float(end.friction_loss))
     assert lost < 1e-5 * float(end.driver_work)
+
+
+def test_sensitivity_to_tension_and_load() -> None:
+    """Both spans have the installed tension, and half of the load over the radius more and less; but for strains."""
+    given = drive(-10.0)
+    numbers = "belt.installed_tension, pulley[driven].torque.value"
+    found = bd.sensitivity(given, of="span_tension", numbers=numbers, force_tolerance=1e-3).dataset.derivative
+    np.testing.assert_allclose(found.sel(number="belt.installed_tension").values, 1.0, rtol=1e-2)
+    by_torque = found.sel(number="pulley[driven].torque.value").values
+    np.testing.assert_allclose(np.sort(by_torque), np.array([-0.5, 0.5]) / RADIUS, rtol=1e-2)
+
+
+@pytest.mark.slow
+def test_the_least_tension_for_a_tight_slack_span() -> None:
+    """An optimization whose result is known: the slack span has half of the load over the radius less than at rest."""
+    study = OptimizationStudy(
+        number=[{"path": "belt.installed_tension", "least": 60.0, "largest": 300.0}],
+        goal={"result": "largest_tension"},
+        requirement=[{"result": "span_tension", "at_least": "40 N"}],
+    )
+    found = bd.optimize(drive(-10.0, tension=200.0), study=study)
+    assert float(found.dataset.best[0]) == pytest.approx(40.0 + 0.5 * 10.0 / RADIUS, rel=1e-2)
 
 
 @pytest.fixture(scope="module")

@@ -208,6 +208,12 @@ def with_spread(result: Result, tolerances: Mapping[str, float], points: FloatAr
 
 _USUAL = {STEADY: "efficiency, least_slip_safety, largest_tension", REST: "tension, hub_load"}
 """Results that are looked at where none are named."""
+_USUAL_OF_TEETH = "efficiency, largest_tension"
+"""The same in steady running of a belt with teeth, which does not slip."""
+
+
+def _usual(drive: Drive, about: str) -> str:
+    return _USUAL_OF_TEETH if about == STEADY and drive.belt.teeth else _USUAL[about]
 
 
 def sensitivity(
@@ -234,8 +240,8 @@ def sensitivity(
         Results, a list or separated by commas, such as "efficiency, pulley_slip[driven], hub_load": variables of a map,
         and in brackets the pulley, span, tensioner or cause of one. Results of modes are "frequency[SPAN]" and
         "damping_ratio[SPAN]", of the lowest mode dominated by the span, and "mode_frequency[NUMBER]" and
-        "mode_damping_ratio[NUMBER]". "all" selects all of them. By default efficiency, slip safety and tension; at
-        rest tension and hub loads.
+        "mode_damping_ratio[NUMBER]". "all" selects all of them. By default efficiency, tension, and without
+        teeth slip safety; at rest tension and hub loads.
     numbers
         Paths of parameters, a list or separated by commas, such as "belt.width, pulley[driven].radius". By default all
         non-zero parameters of the drive at that instant.
@@ -287,7 +293,7 @@ def sensitivity(
         )
     chosen, wanted = (
         chosen_numbers(given, numbers, tolerances),
-        names_in(names_of(drive, at_rest=about == REST), of or _USUAL[about]),
+        names_in(names_of(drive, at_rest=about == REST), of or _usual(drive, about)),
     )
     rest = bring_to_stand(prepare(given))
     bands = need_bands(wanted)

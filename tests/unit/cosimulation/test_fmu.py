@@ -19,7 +19,7 @@ from pythonfmu import FmuBuilder
 
 from beltdyn.cosimulation import fmu
 from beltdyn.errors import ConvergenceError, ModelError
-from beltdyn.model import Drive, load, loads
+from beltdyn.model import Drive, example, load, loads
 from beltdyn.transient.simulate import simulate
 from beltdyn.transient.simulator import Simulator
 
@@ -80,6 +80,18 @@ def test_it_runs_as_a_simulator_does_after_it_was_moved(unit: Path, short: Drive
             expected = run[variable].sel(pulley=name).values
             scale = float(abs(expected).max())
             assert found[f"{variable}[{name}]"] == pytest.approx(expected, rel=1e-9, abs=1e-9 * scale)
+
+
+@pytest.mark.slow  # kernels of spread teeth over time
+def test_a_toothed_drive_runs_as_it_does_without_a_host(tmp_path: Path) -> None:
+    drive = example("timing_drive").with_({"simulation.duration": 5e-3})
+    found = fmpy.simulate_fmu(str(fmu(drive, tmp_path / "drive.fmu")), output_interval=STEP)
+    speeds = {name: found[f"pulley_speed[{name}]"] for name in ("crankshaft", "camshaft")}
+    assert speeds["camshaft"].mean() == pytest.approx(0.5 * speeds["crankshaft"].mean(), rel=1e-3)
+    simulator = Simulator(drive)
+    for row in found[1:]:
+        simulator.step(float(row["time"]))
+    assert {name: float(found[-1][name]) for name in simulator.outputs()} == simulator.outputs()
 
 
 def _version(path: Path) -> str:
