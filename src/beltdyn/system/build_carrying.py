@@ -11,6 +11,7 @@ from beltdyn.machines.carrying.registry import GOODS, SUPPORT_ROWS
 from beltdyn.machines.profiles.functions import NO_SCHEDULE
 from beltdyn.model import Prepared
 from beltdyn.model.carrying import Stretch, normal_load, stiffness_of, upper_side
+from beltdyn.model.path import Path
 from beltdyn.quadrature import gauss_points
 from beltdyn.records import Records, offsets, records
 from beltdyn.system.arrays import Bare, Carrying
@@ -101,11 +102,23 @@ def _by_element(prepared: Prepared, lengths: FloatArray, stretches: Sequence[Str
     middles = ends - 0.5 * lengths
     rows: list[list[int]] = [[] for _ in lengths]
     for number, stretch in enumerate(stretches):
-        margin = _BEYOND * float(path.span_lengths[stretch.span])
-        first = (path.span_start(stretch.span) + stretch.start - margin - laid.start) / laid.stretch
-        size = (stretch.length + 2.0 * margin) / laid.stretch
+        start, stop = _near(path, stretch)
+        first = (path.span_start(stretch.span) + start - laid.start) / laid.stretch
+        size = (stop - start) / laid.stretch
         along = (middles - first) % prepared.belt_length
         near = (along <= size + 0.5 * lengths) | (along >= prepared.belt_length - 0.5 * lengths)
         for element in np.flatnonzero(near):
             rows[element].append(number)
     return offsets(map(len, rows)), np.array([number for own in rows for number in own], dtype=np.int64)
+
+
+def _near(path: Path, stretch: Stretch) -> tuple[float, float]:
+    """Between which places along a span elements may come to lie on a stretch of it, m from its start.
+
+    Those beyond the middle of the next arc belong to another span, even if it runs along the stretch further away.
+    """
+    span, length = stretch.span, float(path.span_lengths[stretch.span])
+    half = np.append(0.5 * path.wrap_angles * np.abs(path.radii), np.zeros(path.spans - path.count))
+    margin = _BEYOND * length
+    before, after = float(half[span]), float(half[(span + 1) % path.spans])
+    return max(stretch.start - margin, -before), min(stretch.end + margin, length + after)
