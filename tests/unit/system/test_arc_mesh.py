@@ -9,7 +9,7 @@ from beltdyn.state.newton import steady_work
 from beltdyn.state.staying import Standing, anchor_at, bring_to_stand
 from beltdyn.system.arc_mesh import arc_count, base_coordinates, fitted, shifts_of, zones_of
 from beltdyn.system.arrays import Carrying, Motion, RingMatrix, System
-from beltdyn.system.build_carrying import with_resistance
+from beltdyn.system.build_carrying import carrying_arrays, with_resistance
 from beltdyn.system.build_staying import flowing_system, staying_system
 from beltdyn.system.constant_drive import constant_drive, with_speeds_unknown
 from beltdyn.system.frame import FlowingByArcs, StayingByArcs
@@ -39,6 +39,29 @@ def test_every_pulley_has_a_zone(standing: Standing) -> None:
     assert sorted(zone.pulley for zone in zones) == [0, 1]
     assert all(zone.start < zone.end for zone in zones)
     assert arc_count(standing.system.frame) == 2
+
+
+def test_a_support_takes_elements_of_its_own_span_alone() -> None:
+    """Here the span before the second drum runs below the lower strand in the same direction."""
+    keys = {"radius": 0.2, "inertia": 1.0}
+    pulleys = [
+        {"name": "head", "center": [0.0, 2.0], "radius": 0.2, "speed": 1.0},
+        keys | {"name": "second", "center": [3.0, 0.9]},
+        keys | {"name": "bend", "center": [1.8, 1.5], "side": "outside"},
+        keys | {"name": "tail", "center": [200.0, 0.0]},
+    ]
+    support = {"kind": "idlers", "span": ["bend", "tail"], "spacing": 1.0}
+    prepared = prepare(conveyor(pulley=pulleys, support=[support], goods=[]))
+    lengths = prepared.graded_lengths(1.0)
+    carrying = carrying_arrays(prepared, lengths)
+    assert isinstance(carrying, Carrying)
+    held, path = np.flatnonzero(np.diff(carrying.first_support)), prepared.installation.path
+    middles = prepared.laid.start + prepared.laid.stretch * (np.cumsum(lengths) - 0.5 * lengths)
+    before, after = (0.5 * path.wrap_angles * np.abs(path.radii))[[2, 3]]
+    away = (middles[held] - path.span_start(2) + before) % path.length
+    own = path.span_lengths[2] + before + after
+    assert np.all((away <= own + lengths[held]) | (away >= path.length - lengths[held]))
+    assert lengths[held].sum() * prepared.laid.stretch > 0.999 * path.span_lengths[2]
 
 
 def test_shifts_lengthen_one_span_by_what_they_take_from_another(standing: Standing) -> None:

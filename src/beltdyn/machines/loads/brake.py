@@ -17,8 +17,9 @@ from beltdyn.kernel import kernel
 from beltdyn.kinds import register
 from beltdyn.machines.loads.load import Load, LoadTorque, ShaftState
 from beltdyn.machines.profiles.profile import Profile
+from beltdyn.machines.profiles.ramps import Constant
 from beltdyn.machines.profiles.registry import BrakingProfile, ForceProfile
-from beltdyn.parts.quantity import Angle, AngularSpeed, Length, Ratio
+from beltdyn.parts.quantity import Angle, AngularSpeed, Length, Ratio, Torque
 from beltdyn.records import record
 
 BRAKE = record(
@@ -122,3 +123,37 @@ class BandBrake(Load):
     def command(self) -> Profile:
         """The force over time."""
         return self.force
+
+
+@register
+class Holdback(Load):
+    """A holdback or backstop, which lets the shaft turn in one sense and holds it in the other.
+
+    Examples
+    --------
+    >>> bd.model.Holdback(kind="holdback", torque="60 kN m").holds
+    'clockwise'
+    """
+
+    constants = BRAKE
+    torque_at = braking_torque
+    next_kink = standstill
+
+    kind: Literal["holdback"] = Field(description="the kind of load")
+    torque: Torque = Field(gt=0, description="the largest torque that it holds, in N*m")
+    holds: Literal["counter-clockwise", "clockwise"] = Field(
+        "clockwise", description="the sense of rotation in which it holds the shaft"
+    )
+    creep_speed: AngularSpeed = Field(
+        1e-3, gt=0, description="the speed in that sense at which it bears 76 % of its torque, in rad/s"
+    )
+
+    def values(self) -> Mapping[str, Any]:
+        """Torques in both senses, and the creep speed."""
+        forward, backward = (0.0, self.torque) if self.holds == "clockwise" else (self.torque, 0.0)
+        return {"forward": forward, "backward": backward, "creep_speed": self.creep_speed}
+
+    @property
+    def command(self) -> Profile:
+        """It acts at any time."""
+        return Constant(value=1.0)

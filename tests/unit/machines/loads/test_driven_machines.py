@@ -69,6 +69,15 @@ def test_what_brakes_alike_in_both_senses_is_smooth_at_standstill(kinks: Kinks) 
     assert kinks(BAND, -5.0, 5.0) == kinks(BAND, 5.0, -5.0) == [0.0]
 
 
+@pytest.mark.parametrize(("holds", "sense"), [("clockwise", -1), ("counter-clockwise", 1)])
+def test_a_holdback_is_free_in_one_sense(torque: Torque, kinks: Kinks, holds: str, sense: int) -> None:
+    holdback = {"kind": "holdback", "torque": 60.0, "holds": holds, "creep_speed": 0.1}
+    assert torque(holdback, -sense * 40.0).torque == 0.0
+    assert torque(holdback, sense * 40.0).torque == pytest.approx(-sense * 60.0, rel=1e-12)
+    assert torque(holdback, sense * 0.1).torque == pytest.approx(-sense * 60.0 * np.tanh(1.0), rel=1e-12)
+    assert kinks(holdback, -5.0, 5.0) == [0.0]
+
+
 @pytest.mark.parametrize("sense", [-1, 1])
 def test_a_generator_gives_its_power_as_far_as_its_field_allows(torque: Torque, sense: int) -> None:
     for speed, power in ((100.0, 0.0), (180.0, 2400.0 / 3), (240.0, 1200.0), (300.0, 1200.0), (900.0, 1200.0)):

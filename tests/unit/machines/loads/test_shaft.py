@@ -59,6 +59,7 @@ CURVES: dict[str, dict[str, Any]] = {
     "pump": {"kind": "pump", "displacement": 1e-5, "pressure": STEADY | {"value": 1e5}, "efficiency": 0.9},
     "brake": {"kind": "brake", "torque": STEADY, "backward_ratio": 0.4, "creep_speed": 2.0},
     "band_brake": {"kind": "band_brake", "force": STEADY, "radius": 0.2, "friction": 0.3, "wrap": 4.0},
+    "holdback": {"kind": "holdback", "torque": 3.0, "creep_speed": 2.0},
     "generator": {
         "kind": "generator",
         "power": STEADY,

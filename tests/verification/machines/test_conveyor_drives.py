@@ -1,0 +1,125 @@
+"""Conveyors with two drives: shares of the load by the lines of their motors, and a stop on a slope."""
+
+import math
+from typing import Any
+
+import numpy as np
+import pytest
+from scipy.optimize import brentq
+
+import beltdyn as bd
+
+GRAVITY, FRICTION, RADIUS, EA = 9.81, 0.02, 0.5, 72e6
+BELT, GOODS = 25.0, 104.0
+CARRYING, RETURN = (1.2, 22.0), (3.0, 18.0)
+"""Spacing (m) and rotating mass (kg) of idlers."""
+MOTORS = {"head": (60e3, 0.05, 8.1), "second": (30e3, 0.06, 8.1)}
+"""Breakdown torque (N m) and slip, synchronous speed (rad/s), seen from the drums."""
+
+
+def motor(name: str, **more: Any) -> dict[str, Any]:
+    torque, slip, speed = MOTORS[name]
+    return {
+        "kind": "motor",
+        "breakdown_torque": torque,
+        "breakdown_slip": slip,
+        "synchronous_speed": speed,
+    } | more
+
+
+def conveyor(
+    length: float, lift: float, weight: float, loads: list[list[dict[str, Any]]], **simulation: Any
+) -> bd.Drive:
+    """A conveyor that drives at the head and at a second drum on its lower strand, and that a weight pulls (N)."""
+    free = {"radius": RADIUS, "inertia": 1200.0}
+    return bd.Drive(
+        gravity=[0.0, -GRAVITY],
+        belt={
+            "width": 1.0,
+            "thickness": 0.016,
+            "axial_stiffness": EA,
+            "bending_stiffness": 20.0,
+            "mass_per_length": BELT,
+        },
+        pulley=[
+            free | {"name": "head", "center": [0.0, lift], "load": loads[0]},
+            free | {"name": "second", "center": [12.0, lift - 4.0], "load": loads[1]},
+            {"name": "bend", "center": [9.0, lift - 2.8], "radius": 0.3, "side": "outside", "inertia": 15.0},
+            {"name": "tail", "center": [length, 0.0], "radius": 0.4, "inertia": 60.0, "mass": 800.0},
+        ],
+        tensioner=[
+            {
+                "kind": "sliding",
+                "pulley": "tail",
+                "direction": [1.0, 0.0],
+                "mass": weight / GRAVITY,
+                "preload": weight,
+                "damping": 2e4,
+            }
+        ],
+        support=[
+            {"kind": "idlers", "span": span, "spacing": line[0], "idler_mass": line[1], "friction": FRICTION}
+            for span, line in ((["tail", "head"], CARRYING), (["bend", "tail"], RETURN))
+        ],
+        goods=[{"span": ["tail", "head"], "mass_per_length": GOODS}],
+        contact={"friction": 0.35, "standstill_creep": 1e-4},
+        simulation={"duration": 60.0} | simulation,
+    )
+
+
+def kloss(name: str, speed: float) -> float:
+    """Torque of a motor at a speed (rad/s), N m."""
+    torque, slip, synchronous = MOTORS[name]
+    part = (1.0 - speed / synchronous) / slip
+    return 2.0 * torque / (part + 1.0 / part)
+
+
+def test_two_drums_share_the_pull_by_the_lines_of_their_motors() -> None:
+    """The belt that comes to the second drum is less stretched by the pull of the first, and so much slower it turns.
+
+    The slip safety of each drum is that of Euler's tensions, less those that turn the belt.
+    """
+    length, lift = 1000.0, 15.0
+    run = bd.steady_state(conveyor(length, lift, 120e3, [[motor("head")], [motor("second")]]))
+    upper, lower = math.hypot(length, lift), math.hypot(length - 9.0, lift - 2.8)
+    carried = (BELT + GOODS) * length + CARRYING[1] / CARRYING[0] * upper
+    returned = BELT * (length - 9.0) + RETURN[1] / RETURN[0] * lower
+    pull = FRICTION * GRAVITY * (carried + returned) + lift * GRAVITY * GOODS
+
+    def second(speed: float) -> float:
+        return speed * (1.0 - kloss("head", speed) / RADIUS / EA)
+
+    def missing(speed: float) -> float:
+        return kloss("head", speed) + kloss("second", second(speed)) - pull * RADIUS
+
+    head = float(brentq(missing, 7.9, 8.0999))
+    torques = run.dataset.shaft_torque[-1].values[:2]
+    expected = [kloss("head", head), kloss("second", second(head))]
+    np.testing.assert_allclose(torques, expected, rtol=0.01)
+    tension, wraps = run.dataset.span_tension[-1], run.dataset.wrap_angle[-1].values
+    slack = np.array([float(tension.sel(span=name)) for name in ("head-second", "second-bend")])
+    tight = slack + np.array(expected) / RADIUS
+    inertia = BELT * float(run.dataset.belt_speed[-1].mean()) ** 2
+    euler = (tight + slack - 2.0 * inertia) * np.tanh(0.5 * 0.35 * wraps[:2]) / (tight - slack)
+    safeties = [one.slip_safety for one in bd.summarize(run).pulleys[:2]]
+    np.testing.assert_allclose(safeties, euler, rtol=0.01)
+
+
+@pytest.mark.slow
+def test_a_loaded_slope_is_stopped_and_held() -> None:
+    """Motors off and brake on after a second; the holdback bears the lift, less what idlers bear."""
+    length, lift, stop = 300.0, 45.0, 1.0
+    off = {"schedule": {"kind": "step", "time": stop, "before": 1.0, "value": 0.0}}
+    brake = {"kind": "brake", "torque": {"kind": "ramp", "start": stop, "end": stop + 0.5, "value": 1e4}}
+    hold = {"kind": "holdback", "torque": 60e3}
+    loads = [[motor("head", **off), brake, hold], [motor("second", **off)]]
+    drive = conveyor(length, lift, 120e3, loads, duration=25.0, start="steady", output_interval=0.02)
+    run = bd.simulate(drive).dataset
+    speed, time = run.shaft_speed.values[:, 0], run.time.values
+    assert speed[0] > 7.9
+    assert speed.min() > -2e-3
+    assert np.abs(speed[time > 10.0]).max() < 2e-3
+    assert float(np.abs(run.energy_closure).max()) < 1e-3
+    held = float(run.shaft_torque.values[time > 20.0, 0].mean())
+    lifted, idle = lift * GRAVITY * GOODS * RADIUS, FRICTION * GRAVITY * length * (2.0 * BELT + GOODS + 24.4) * RADIUS
+    assert lifted - idle < held < lifted + idle
