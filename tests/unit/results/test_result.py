@@ -71,6 +71,11 @@ def test_a_file_whose_drive_is_none_is_refused(grip: Result, tmp_path: Path) -> 
         open_result(grip.save(tmp_path / "grip.nc"))
 
 
+def test_a_file_that_does_not_exist_is_not_called_damaged(tmp_path: Path) -> None:
+    with pytest.raises(ModelError, match=r"none\.nc does not exist\. Give"):
+        open_result(tmp_path / "none.nc")
+
+
 def test_its_figures_are_those_of_its_kind(grip: Result, run: Run, tmp_path: Path) -> None:
     with pytest.raises(ModelError, match="there is no figure for grip"):
         plot.save_all(grip, tmp_path)
