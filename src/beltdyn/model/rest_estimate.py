@@ -5,6 +5,9 @@ differ from those of a path without penetration. The length of the belt is that 
 (w l)^2 l / 24 T^2 to a span of length l with the weight w across it. Between heights the tension differs by the weight
 of the belt between them. Neglected are the weight of tensioners, and what arcs miss that are shorter than the layers at
 their ends.
+
+Goods on slopes are held at the arc of the driver, as in static equilibrium. Of their weight only the part along a span
+counts.
 """
 
 from dataclasses import dataclass
@@ -145,13 +148,15 @@ class _Belt:
         on_arcs = sum(
             wrap * r / arc.stretch for wrap, r, arc in zip(path.wrap_angles.tolist(), inner, self.arcs, strict=True)
         )
-        return float((path.span_lengths.sum() + sag + ends) / self.stretch + on_arcs)
+        along = path.span_lengths / self.prepared.belt.stretch_parameters.stretch(self.span_tensions)
+        return float(along.sum() + (sag + ends) / self.stretch + on_arcs)
 
     @property
     def excess(self) -> FloatArray:
         """Force of each spring and its stops over that of the belt, N or N m; see `balance_tensioners`."""
+        loads = self.hub_loads
         excess = [
-            one.force(q) - self.tension * float(self.spans.gradient(one.pulley) @ one.place(q)[1])
+            one.force(q) + float(loads[one.pulley] @ one.place(q)[1])
             for one, q in zip(self.prepared.carriers, self.positions.tolist(), strict=True)
         ]
         return np.array(excess)
@@ -160,6 +165,10 @@ class _Belt:
     def span_tensions(self) -> FloatArray:
         """In the middle of the spans, N; the mean of a closed belt, and that at a pulled end, is the tension."""
         lifted = -(self.spans.span_points.mean(axis=1) @ self._weight)
+        before, behind = self._goods
+        first = self.prepared.reference
+        passed = np.roll(np.cumsum(np.roll(before + behind, -first)), first)
+        lifted = lifted + passed - behind
         pulled = [number for number, end in enumerate(self.prepared.path_ends) if end.pull is not None]
         if self.spans.ends is None or not pulled:
             return np.asarray(self.tension + lifted - lifted.mean())
@@ -176,8 +185,25 @@ class _Belt:
         free = np.array([parts.sum() for parts in self._hanging(path)])[:, None]
         carried = 0.5 * (path.span_lengths[:, None] - free) * (along @ self._weight)[:, None] * along
         carried += 0.5 * free * self._weight
+        of_goods = [-part[:, None] * along for part in self._goods]
         arcs = (path.wrap_angles * np.abs(path.radii))[:, None] * self._weight
-        return np.asarray(pulls[: path.count] - pulls[before] + arcs + carried[: path.count] + carried[before])
+        own = (carried + of_goods[0])[: path.count] + (carried + of_goods[1])[before]
+        return np.asarray(pulls[: path.count] - pulls[before] + arcs + own)
+
+    @cached_property
+    def _goods(self) -> tuple[FloatArray, FloatArray]:
+        """By how much goods at rest raise the tension of each span before and behind its middle, N, shape (s,)."""
+        path, found = self.spans, np.zeros((2, self.spans.spans))
+        for one in self.prepared.goods:
+            stretch, share = self.prepared.stretch(one), 1.0
+            if one.schedule is not None:
+                share = float(one.schedule.at([0.0])[0])
+            middle = 0.5 * float(path.span_lengths[stretch.span])
+            uphill = -float(path.span_directions[stretch.span] @ np.array(self.prepared.gravity))
+            for half, (start, stop) in enumerate(((-np.inf, middle), (middle, np.inf))):
+                length = max(0.0, min(stretch.end, stop) - max(stretch.start, start))
+                found[half, stretch.span] += share * one.mass_per_length * uphill * length
+        return found[0], found[1]
 
     def _hanging(self, path: Path) -> list[FloatArray]:
         """Lengths of the parts of each span of a path that no support carries, m."""
