@@ -342,7 +342,7 @@ def _torque(load: Load, speed: float, time: float) -> float:
 def _sudden_start(drive: Drive, installation: Installation) -> Iterator[Finding]:
     """Prescribed speeds above zero at the start of a run from rest."""
     settings, belt = drive.simulation, drive.belt
-    if drive.is_web or settings.start not in ("equilibrium", "laid"):
+    if settings.start not in ("equilibrium", "laid"):
         return
     radii = np.abs(drive.radii)
     speeds = {

@@ -101,7 +101,8 @@ def _bodies(prepared: Prepared, system: System) -> tuple[str, ...]:
         for number, load in enumerate(one.load, 1)
         if load.state_lag is not None
     ]
-    flow = [f"belt at {name}" for name in names] if isinstance(system.frame, FlowingByArcs) else []
+    winder = [] if prepared.drive.winder is None else [prepared.drive.winder.name]
+    flow = [f"belt at {name}" for name in names + winder] if isinstance(system.frame, FlowingByArcs) else []
     flow += ["belt"] if isinstance(system.frame, OverTime) else []
     tensioners = (f"{names[pulley]} tensioner" for pulley in system.tensioners.pulley)
     return (*names, *hubs, *lags, *flow, *tensioners, *_carriages(prepared))

@@ -86,7 +86,7 @@ def _facts(given: Drive, drive: Drive, installation: Installation) -> list[tuple
         ("element length", f"{1e3 * length / drive.elements:.3g} mm{_in_the_mean(drive)}"),
         *([("not used", f"{', '.join(unused)} (only for a travelling mesh)")] if unused else []),
         *_lost_in_the_belt(drive),
-        *([] if drive.is_web else [("result size", f"about {describe_size(prepare(drive))}")]),
+        ("result size", f"about {describe_size(prepare(drive))}"),
         *([("computing time", time)] if (time := describe_time(drive)) else []),
     ]
 

@@ -17,9 +17,9 @@ from beltdyn.arrays import BoolArray, ComplexArray, FloatArray, IntArray
 from beltdyn.quadrature import running_integral
 from beltdyn.solvers.eigenvalues import arnoldi, unit_masses
 from beltdyn.solvers.engine import linearise
-from beltdyn.system.arc_mesh import arc_count
 from beltdyn.system.arrays import Motion, System, TangentFactors
 from beltdyn.system.frame import OverTime
+from beltdyn.system.guide import rows_of_ties
 from beltdyn.system.motion import new_equations, no_multipliers
 from beltdyn.system.moving_center import pulley_speeds
 from beltdyn.system.ring_matrix import entries, places
@@ -49,7 +49,7 @@ class Vibrations:
         multipliers = self.size - len(system.scale) * system.joint
         self._ties = np.maximum(self._rows, self._columns) >= multipliers
         if isinstance(system.frame, OverTime):
-            self._ties |= self._rows >= self.size - 1 - arc_count(system.frame)
+            self._ties |= np.isin(self._rows, rows_of_ties(system, self.size))
 
     def tangents(
         self, time: float, position: FloatArray, velocity: FloatArray

@@ -15,6 +15,7 @@ from beltdyn.model.defaults import MOST
 from beltdyn.model.resolution import FINENESS
 from beltdyn.model.simulation import Instants
 from beltdyn.results import mesh_error_attribute
+from beltdyn.results.balance import WEB_LINE
 from beltdyn.results.checks.ending import LEAST_WINDOWS, SETTLED, least_window
 from beltdyn.solvers.progress import Progress, Report
 from beltdyn.solvers.trajectory import Chunk, Integrator, Statistics, Task, drive_task
@@ -24,7 +25,7 @@ from beltdyn.state.staying import FINER, Standing, anchor_at, bring_to_stand, st
 from beltdyn.system.arc_mesh import base_lengths, mesh_attributes, shifts_of
 from beltdyn.system.arrays import System
 from beltdyn.system.build_machines import profile_arrays
-from beltdyn.system.build_staying import flowing_system, on_other_mesh
+from beltdyn.system.build_staying import flowing_system, on_other_mesh, open_ended
 from beltdyn.system.meshing import tooth_phases, turning
 from beltdyn.system.observe import observe_motion
 from beltdyn.system.state import State
@@ -207,12 +208,12 @@ def begin_flowing(prepared: Prepared, progress: Report | None) -> Beginning:
     meshed = _meshed(prepared)
     if prepared.simulation.start == "steady":
         meshed = _running(meshed, prepared.simulation.force_tolerance)
-    system, direction = meshed.system, anchor_at(meshed.state, True).direction
+    system, direction = open_ended(meshed.rest.prepared, meshed.system), anchor_at(meshed.state, True).direction
     toothed = turning(system, meshed.state)
     flowing = with_angles(meshed.rest.prepared, flowing_system(toothed, direction))
     errors = meshed.errors or {"peak pressure": float("nan")}  # not known
     said = {mesh_error_attribute(name): error for name, error in errors.items()} | {DIRECTION: direction}
-    said |= tooth_phases(toothed) | mesh_attributes(system)
+    said |= tooth_phases(toothed) | mesh_attributes(system) | ({WEB_LINE: 1} if prepared.drive.is_web else {})
     return Beginning(meshed.rest.prepared, flowing, with_passage(system, meshed.state, meshed.speed), attributes=said)
 
 
@@ -247,7 +248,7 @@ def _meshed(prepared: Prepared) -> _Meshed:
 
 def _running(meshed: _Meshed, force_tolerance: float | None) -> _Meshed:
     """Steady running at the beginning, on the same mesh, or on one that is refined up to a tolerance."""
-    rest, time = meshed.rest, meshed.rest.prepared.simulation.begin
+    rest, prepared, time = meshed.rest, meshed.rest.prepared, meshed.rest.prepared.simulation.begin
     if force_tolerance is None:
         search, system, errors = SteadySearch(rest.prepared, rest.system, rest.state, time), rest.system, meshed.errors
         search.run(rest)
@@ -255,6 +256,9 @@ def _running(meshed: _Meshed, force_tolerance: float | None) -> _Meshed:
         search, rest, _, errors, _ = steady_from_rest(rest, time, _same_mesh, force_tolerance, bands=False)
         system = on_other_mesh(rest.prepared, rest.system, base_lengths(search.constant))
         shifts_of(system.frame)[:] = shifts_of(search.constant.frame)
+    if prepared.drive.is_web:
+        rest = rest._replace(prepared=search.prepared)
+        system = on_other_mesh(search.prepared, system, search.constant.length)
     system = system._replace(rims=search.constant.rims)
     return meshed._replace(rest=rest, system=system, state=search.running(), speed=search.belt_parameter, errors=errors)
 

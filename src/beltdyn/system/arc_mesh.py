@@ -53,7 +53,7 @@ def zones_of(prepared: Prepared) -> list[Zone]:
     found = list[Zone]()
     for p in range(path.count):
         size = abs(float(path.radii[p])) * float(path.wrap_angles[p])
-        first = (path.span_start((p - 1) % path.count) + float(path.span_lengths[p - 1]) - laid.start) % path.length
+        first = (path.span_start((p - 1) % path.spans) + float(path.span_lengths[p - 1]) - laid.start) % path.length
         shortest = min(float(path.span_lengths[p - 1]), float(path.span_lengths[p])) / laid.stretch
         beyond = min(margin, 0.2 * shortest)
         found.append(Zone(first / laid.stretch - beyond, (first + size) / laid.stretch + beyond, p))
@@ -62,11 +62,20 @@ def zones_of(prepared: Prepared) -> list[Zone]:
 
 def staying_by_arcs(prepared: Prepared, system: System) -> System:
     """The same drive on a mesh that stays at every arc, with arrays of its own."""
+    zones = zones_of(prepared)
+    before, after, share = _shares(prepared, zones, system.length)
+    moved = by_arcs(prepared, system, zones, before, after, share)
+    holding = _holding(prepared, zones, system.length)
+    return moved._replace(frame=moved.frame._replace(arcs=moved.frame.arcs._replace(holding=holding)))
+
+
+def by_arcs(
+    prepared: Prepared, system: System, zones: list[Zone], before: IntArray, after: IntArray, share: FloatArray
+) -> System:
+    """The same drive on a mesh that stays at the arcs of zones, by the arcs beside nodes, which nothing holds."""
     frame, lengths = system.frame, system.length.copy()
     assert isinstance(frame, Staying)
     vectors = np.array(system.vectors)
-    zones = zones_of(prepared)
-    before, after, share = _shares(prepared, zones, lengths)
     starts = np.cumsum(lengths) - lengths
     node = np.zeros(len(zones), dtype=np.int64)
     place, direction = np.zeros((len(zones), 2)), np.zeros((len(zones), 2))
@@ -84,10 +93,11 @@ def staying_by_arcs(prepared: Prepared, system: System) -> System:
     growth = _growth(system, frame.derivative, lengths)
     arcs = ArcMesh(
         node=node,
-        holding=_holding(prepared, zones, lengths),
+        holding=np.zeros((0, 2)),
         direction=direction,
         place=place,
         carrier=carrier,
+        gravity=np.array(prepared.gravity),
         before=before,
         after=after,
         share=share,
@@ -180,7 +190,7 @@ def _fit(frame: Any, system: System, position: FloatArray) -> None:
                 for axis in range(2):
                     system.mass[element, vectors[a] + axis, vectors[b] + axis] = mass
     if changed:
-        _weigh(system)
+        _weigh(frame.arcs.gravity, system)
 
 
 @kernel(inline=True)
@@ -189,10 +199,9 @@ def _power(ratio: float, order: int) -> float:
 
 
 @kernel
-def _weigh(system: System) -> None:
+def _weigh(gravity: FloatArray, system: System) -> None:
     """Weight of the belt as nodal forces."""
     force, dof, vectors = system.supports.force, len(system.scale), system.vectors
-    gravity: FloatArray = system.carrying.gravity  # type: ignore[union-attr]
     force[:] = 0.0
     for element in range(system.length.size):
         node_j = (element + 1) % system.nodes
@@ -268,7 +277,7 @@ def passed_at(system: System, ways: ComplexArray, along: FloatArray) -> ComplexA
         shifts = np.append(ways[-1 - arcs.node.size : -1], 0.0)  # the last is that of node 0, whose number is -1
         nodes = (1.0 - arcs.share) * shifts[arcs.before] + arcs.share * shifts[arcs.after]
         ends = np.append(0.0, np.cumsum(system.length))
-        nodes = np.append(nodes, nodes[0])
+        nodes = nodes if nodes.size == ends.size else np.append(nodes, nodes[0])
         passed += np.interp(along, ends, nodes.real) + 1j * np.interp(along, ends, nodes.imag)
     return passed
 

@@ -20,7 +20,7 @@ from beltdyn.kernel import by_type, kernel
 from beltdyn.system.arc_mesh import first_arc
 from beltdyn.system.arrays import Equations, Motion, System, TangentFactors
 from beltdyn.system.body_forces import differentiates_forces
-from beltdyn.system.carrying import CarryingFactors, add_to_element, find_accelerations, has_any
+from beltdyn.system.carrying import CarryingFactors, add_carried, find_accelerations
 from beltdyn.system.flow_tangent import add_flow_forces, find_rate, flow_factors, scatter_column
 from beltdyn.system.frame import ArcMesh, FlowingByArcs, Staying, StayingByArcs, flow_at_ends
 
@@ -52,9 +52,8 @@ def arcs_element(
     find_accelerations(frame, system, motion, element, work)
     _add_inertia(frame, system, motion, factors, element, wanted, work)
     add_flow_forces(system, motion, element, differentiated, equations)
-    if has_any(system.carrying, element):
-        by = CarryingFactors(factors.by_position, factors.by_velocity, factors.by_velocity, factors.by_acceleration)
-        add_to_element(system.carrying, system, motion, element, by, work, equations.forces)
+    by = CarryingFactors(factors.by_position, factors.by_velocity, factors.by_velocity, factors.by_acceleration)
+    add_carried(system.carrying, system, motion, element, by, work, equations.forces)
     if wanted:
         scatter_column(system, element, equations)
         scatter_shifts(frame, system, element, work.flow.by_speed, equations)

@@ -17,7 +17,8 @@ from beltdyn.system.discretization import discretize
 from beltdyn.system.frame import FlowingByArcs, StayingByArcs, flowing, staying
 from beltdyn.system.hysteresis import hysteresis_rows
 from beltdyn.system.meshing import meshing, on_lengths
-from beltdyn.system.web import web_line
+from beltdyn.system.running_web import RunningWeb, running_web
+from beltdyn.system.web import WebLine, web_line
 
 _STAYING_ELASTIC, _STAYING_CONTACT = 8, 12
 """Gauss points of an element that stays, for elastic forces and for contact."""
@@ -113,11 +114,17 @@ def _with_section(system: System, **numbers: Any) -> System:
     return system._replace(element=Quintic(element.section._replace(**numbers), element.elastic))
 
 
+def open_ended(prepared: Prepared, system: System) -> System:
+    """The arrays of a web line whose ends have flows of their own, for equations over time; those of a belt."""
+    return running_web(prepared, system) if isinstance(system.carriage, WebLine) else system
+
+
 def flowing_system(system: System, direction: FloatArray) -> System:
     """The same drive for equations over time: lengths of belt that have passed are the last coordinates of the border.
 
-    `direction` is the unit vector along the belt at node 0.
+    `direction` is the unit vector along the belt at node 0, which is held as a whole in a web line.
     """
+    direction = np.zeros(2) if isinstance(system.carriage, RunningWeb) else direction
     at = system.bodies.size - system.tensioners.size
     last = int(np.max(system.bodies.unknown, initial=-1)) + 1
     given, more = system.frame, arc_count(system.frame)

@@ -441,3 +441,22 @@ def _add_nothing(
 add_carrying: Callable[..., None] = by_type({Bare: _add_nothing, Carrying: _add}, "add_carrying")
 """Add supports and goods to residual, tangent and column of an element, and what they take to the powers; the first
 argument is that part of the system."""
+
+
+@kernel(inline=True)
+def _add_carried(
+    carrying: Carrying,
+    system: System,
+    motion: Motion,
+    element: int,
+    factors: CarryingFactors,
+    work: np.record,
+    forces: BodyForces,
+) -> None:
+    """The same with accelerations that are found already."""
+    if has_any(carrying, element):
+        add_to_element(carrying, system, motion, element, factors, work, forces)
+
+
+add_carried: Callable[..., None] = by_type({Bare: _add_nothing, Carrying: _add_carried}, "add_carried")
+"""The same as `add_carrying`, where the accelerations of the element are in the workspace."""

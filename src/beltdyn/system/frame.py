@@ -128,6 +128,8 @@ class ArcMesh(NamedTuple):
     """Where it stays if the tensioner of the pulley is at zero, m, shape (P, 2)."""
     carrier: IntArray
     """Tensioner of the pulley, -1 without one, shape (P,)."""
+    gravity: FloatArray
+    """m/s^2, shape (2,)."""
     before: IntArray
     """Arc that is next to a node on one side, or -1 for node 0, shape (N,)."""
     after: IntArray

@@ -13,12 +13,13 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from beltdyn.arrays import FloatArray
+from beltdyn.arrays import FloatArray, IntArray
 from beltdyn.kernel import by_type, kernel
 from beltdyn.machines.profiles.functions import Profiles, profile_rows, profile_value
 from beltdyn.machines.tensioners.tensioner import SPRING, spring_force
 from beltdyn.model import Prepared
 from beltdyn.records import Records, record, records
+from beltdyn.system.arc_mesh import arc_count
 from beltdyn.system.arrays import (
     BODY,
     SPRING_ENERGY,
@@ -31,6 +32,7 @@ from beltdyn.system.arrays import (
     System,
     TangentFactors,
 )
+from beltdyn.system.running_web import RunningWeb, carry_web, push_running
 from beltdyn.system.web import WebLine, push_web
 
 GUIDE = record(
@@ -110,18 +112,18 @@ def _push(
 
 
 push_carriage: Callable[..., None] = by_type(
-    {NoCarriage: _push_nothing, Guided: _push, WebLine: push_web}, "push_carriage"
+    {NoCarriage: _push_nothing, Guided: _push, WebLine: push_web, RunningWeb: push_running}, "push_carriage"
 )
 """Add the forces on a carriage to those on bodies, their power and, if it is wanted, their tangent."""
 
 
 @kernel(inline=True)
-def _carry_nothing(carriage: NoCarriage, system: System, wanted: bool, matrix: RingMatrix) -> None:
+def _carry_nothing(carriage: NoCarriage, system: System, motion: Motion, wanted: bool, matrix: RingMatrix) -> None:
     pass
 
 
 @kernel
-def _carry(carriage: Guided, system: System, wanted: bool, matrix: RingMatrix) -> None:
+def _carry(carriage: Guided, system: System, motion: Motion, wanted: bool, matrix: RingMatrix) -> None:
     """Give equations and increments of the ends to the carriage; ends of one that is held stay."""
     row = carriage.table[0]
     own = system.bodies[row.body].unknown
@@ -177,5 +179,17 @@ def _clear_end(end: int, nodes: int, own: int, direction: FloatArray, matrix: Ri
             matrix.column[end, a, own] = -direction[a]
 
 
-carry_ends: Callable[..., None] = by_type({NoCarriage: _carry_nothing, Guided: _carry}, "carry_ends")
+carry_ends: Callable[..., None] = by_type(
+    {NoCarriage: _carry_nothing, Guided: _carry, RunningWeb: carry_web}, "carry_ends"
+)
 """Let a carriage carry the ends of the belt, when all else is assembled."""
+
+
+def rows_of_ties(system: System, size: int) -> IntArray:
+    """Rows of equations, of as many as given, that keep a staying mesh in its place, or ends of a web line."""
+    last, arcs = size - 1, arc_count(system.frame)
+    if not isinstance(system.carriage, RunningWeb):
+        return np.arange(last - arcs, size)
+    dof = len(system.scale)
+    ends = dof * np.array([0, system.nodes - 1])[:, None] + np.arange(2)
+    return np.concatenate([ends.ravel(), np.arange(last - arcs, last - 1)])

@@ -6,7 +6,7 @@ step is known beforehand.  With d(t) the difference between an action and the st
 ends of the step, the step misses the integral of d: an angle of a prescribed speed, an angular impulse of a torque.
 """
 
-from typing import Final
+from typing import Any, Final
 
 import numpy as np
 
@@ -22,8 +22,10 @@ from beltdyn.machines.profiles.functions import (
     profile_value,
     schedule_value,
 )
-from beltdyn.system.arrays import COUPLING_LOSS, DRIVER_WORK, TORQUE_WORK, Motion, System
+from beltdyn.system.arrays import COUPLING_LOSS, DRIVER_WORK, TORQUE_WORK, Motion, NoCarriage, System
 from beltdyn.system.frame import Flowing, FlowingByArcs, Travelling, flow_at_ends
+from beltdyn.system.guide import Guided
+from beltdyn.system.running_web import RunningWeb, gone_with_web
 
 _PARTS: Final = 4
 """A step that holds a wave is seen in so many parts at least,"""
@@ -369,4 +371,13 @@ def numerical_loss(system: System, before: Motion, after: Motion, impulse: Float
             momentum = 0.5 * (after.velocity[i] ** 2 - before.velocity[i] ** 2)
             given = 0.5 * (impulse[0, i] + impulse[1, i]) * (before.velocity[i] + after.velocity[i])
             total += system.bodies[body].kinetic * (inertia - momentum) + given
-    return total
+    return total - _gone_with_web(system.carriage, system, before, after, work)
+
+
+@kernel(inline=True)
+def _none_gone(carriage: Any, system: System, before: Motion, after: Motion, work: np.record) -> float:
+    """The whole belt stays."""
+    return 0.0
+
+
+_gone_with_web = by_type({NoCarriage: _none_gone, Guided: _none_gone, RunningWeb: gone_with_web}, "gone_with_web")

@@ -22,7 +22,7 @@ from beltdyn.state.staying import stand
 from beltdyn.state.steady import require_steady_start
 from beltdyn.system.arrays import System
 from beltdyn.system.build import drive_system
-from beltdyn.system.build_staying import flowing_system, staying_system
+from beltdyn.system.build_staying import flowing_system, open_ended, staying_system
 from beltdyn.system.constant_drive import constant_drive
 from beltdyn.system.discretization import curve_lengths, nodal_coordinates, point_coordinates
 from beltdyn.system.frame import centreline_points
@@ -110,9 +110,8 @@ def settled(drive: Drive, integrator: Integrator) -> tuple[Drive, Frame]:
 
 
 def compile_ahead(drive: Drive) -> None:
-    """Compile the kernels of a run once, before several processes need them; a web line has none."""
-    if not drive.is_web:
-        compile_kernels(*_before_run(prepare(drive)))
+    """Compile the kernels of a run once, before several processes need them."""
+    compile_kernels(*_before_run(prepare(drive)))
 
 
 def compile_solving_ahead(prepared: Prepared) -> AbstractContextManager[None]:
@@ -125,7 +124,7 @@ def _before_run(prepared: Prepared) -> tuple[System, State]:
     if prepared.frame.stays:
         given = staying_system(prepared, prepared.equal_lengths(prepared.elements))
         at_zero = at_rest(given, np.zeros((given.nodes, len(given.scale))))
-        system = flowing_system(turning(given, at_zero), np.array([1.0, 0.0]))
+        system = flowing_system(turning(open_ended(prepared, given), at_zero), np.array([1.0, 0.0]))
     else:
         system = drive_system(prepared)
     return system, laid(system, prepared.path)
@@ -133,11 +132,6 @@ def _before_run(prepared: Prepared) -> tuple[System, State]:
 
 def mesh_of(prepared: Prepared, integrator: Integrator, progress: Report | None = None) -> Beginning:
     """The mesh of a run, with the state on it where the mesh is found by that."""
-    if prepared.drive.is_web:
-        raise ModelError(
-            "a web line has no run over time: more or less web enters it than leaves. Find how it runs steadily with "
-            "`beltdyn steady-state`."
-        )
     settings, staying = prepared.simulation, prepared.frame.stays
     if staying and not isinstance(integrator, GeneralizedAlpha):
         raise ModelError(

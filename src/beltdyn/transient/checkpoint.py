@@ -48,6 +48,7 @@ from beltdyn.stretch import LAWS as STRETCH_LAWS
 from beltdyn.system.arrays import Bare, BodyForces, Carrying, NoCarriage, Supports, System
 from beltdyn.system.frame import ArcMesh, Flowing, FlowingByArcs, Staying, StayingByArcs, Travelling
 from beltdyn.system.guide import Guided
+from beltdyn.system.running_web import RunningWeb
 from beltdyn.system.state import State
 
 # Objects as bytes and back: JSON, arrays behind it, and a checksum before both
@@ -243,7 +244,8 @@ STATE = (IntegratorState, Trial, Profiles)
 
 _SYSTEM = (
     *(System, Supports, Section, Quadrature, ContactLaw, RoundRims, ShapedRims, ToothedRims, ShaftLoads),
-    *(Travelling, Staying, Flowing, StayingByArcs, FlowingByArcs, ArcMesh, Bare, Carrying, State, NoCarriage, Guided),
+    *(Travelling, Staying, Flowing, StayingByArcs, FlowingByArcs, ArcMesh, Bare, Carrying, State),
+    *(NoCarriage, Guided, RunningWeb),
 )
 _INTEGRATION = (AlphaIntegration, GeneralizedAlpha, Settings, Task, Statistics, Instants, Chunk, BodyForces)
 _RECORDING = (*(Observer, FrictionWork, WorkSoFar, MaterialWork, EnergyAccount, FlutterWatch, BandLimit, SlipThrough),)

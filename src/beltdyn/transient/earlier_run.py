@@ -19,7 +19,7 @@ from beltdyn.state.settling import DIRECTION, Beginning
 from beltdyn.system.arc_mesh import MESH_LENGTHS, lengths_of
 from beltdyn.system.arrays import System
 from beltdyn.system.build import drive_system
-from beltdyn.system.build_staying import flowing_system, staying_system
+from beltdyn.system.build_staying import flowing_system, open_ended, staying_system
 from beltdyn.system.discretization import point_coordinates
 from beltdyn.system.meshing import TOOTH_PHASES, turned_by
 from beltdyn.system.state import State, at_rest
@@ -94,7 +94,7 @@ def begin_from(drive: Drive) -> Beginning:
         }
         if prepared.frame.stays:
             direction = np.array(run.dataset.attrs[DIRECTION], dtype=float)
-            system = flowing_system(staying_mesh(prepared, run), direction)
+            system = flowing_system(open_ended(prepared, staying_mesh(prepared, run)), direction)
         else:
             system = turned_by(prepared, drive_system(prepared), attributes.get(TOOTH_PHASES))
         _require_same_mesh(system, run)

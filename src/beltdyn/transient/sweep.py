@@ -84,6 +84,11 @@ def sweep(
     >>> run.dataset.pulley_speed.sel(pulley="driver")[-1].round(4).item()  # rad/s
     2.0944
     """
+    if drive.is_web:
+        raise ModelError(
+            "a run-up needs a closed belt, and this is a web line, whose rollers keep their draws. Give them speeds "
+            "over time, and use `beltdyn simulate`."
+        )
     start, end = _speed_in(drive, "from", from_), _speed_in(drive, "to", to)
     length = number_in("duration", duration, "s")
     longest = length if settling is None else number_in("settling", settling, "s")

@@ -317,7 +317,7 @@ def campbell(
         raise ModelError(f"count = {count} must be 1 or more.")
     if dry_tensioners not in (SLIDING, STUCK):
         raise ModelError(f'dry_tensioners = {dry_tensioners!r} must be "{SLIDING}" or "{STUCK}".')
-    require_closed(drive)
+    require_closed(drive, web=True)
     held = held_at(averaged(drive), at)
     number = driver_of(held) if pulley is None else held.number_of(pulley)
     name, sense = held.pulleys[number].name, sense_of(held, number)

@@ -119,7 +119,8 @@ def _points_at(motions: SmallMotions, along: FloatArray, length: FloatArray) -> 
     deep = depths(system, motions.state, place)
     touched = np.where(deep.max(axis=0) >= 0.0, deep.argmax(axis=0), -1)
     last = np.maximum.accumulate(np.where(touched >= 0, np.arange(touched.size), -1))
-    span = np.where(last >= 0, touched[last], touched[touched >= 0][-1])
+    before = touched[touched >= 0][-1] if motions.prepared.path.ends is None else system.pulleys.size
+    span = np.where(last >= 0, touched[last], before)
     return Points(along, motions.drive.belt.mass_per_length * length, place, slope, span)
 
 
@@ -169,7 +170,8 @@ def _share(motions: SmallMotions, points: Points, value: complex, vector: Comple
     of_pulley = rim_of_bodies(motions.system)
     rotation = np.array([shafts[of_pulley == number].sum() for number in range(pulleys)])
     total = across.sum() + along.sum() + shafts.sum() + arms.sum()
-    return np.bincount(points.span, across, pulleys) / total, rotation / total, along.sum() / total, arms / total
+    spans = np.bincount(points.span, across, motions.prepared.path.spans)
+    return spans / total, rotation / total, along.sum() / total, arms / total
 
 
 def _ways_of_bodies(motions: SmallMotions, vector: ComplexArray) -> tuple[ComplexArray, ComplexArray]:

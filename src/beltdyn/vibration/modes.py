@@ -254,8 +254,7 @@ def modes(
             raise ModelError("about cannot be given with a run, which is itself the state. Omit about.")
         about, drive = drive, drive.drive
     _require_sense(about, speed, pulley, at, count)
-    if drive.is_web:
-        require_closed(drive)
+    require_closed(drive, web=about == STEADY or (isinstance(about, Run) and runs_steadily(about.dataset)))
     if isinstance(about, Run) and not runs_steadily(about.dataset):
         require_mesh_that_stays(about)
         drive, instant = about.drive, instant_of(about, at)

@@ -218,7 +218,7 @@ def response(
     """
     if dry_tensioners not in (SLIDING, STUCK):
         raise ModelError(f'dry_tensioners = {dry_tensioners!r} must be "{SLIDING}" or "{STUCK}".')
-    require_closed(drive)
+    require_closed(drive, web=True)
     given, exciting = held_at(averaged(drive), at), at_instant(drive, at)
     number = driver_of(given) if pulley is None else given.number_of(pulley)
     name, sense = given.pulleys[number].name, sense_of(given, number)

@@ -21,7 +21,7 @@ from beltdyn.state.steady import search_from
 from beltdyn.system.arrays import System
 from beltdyn.system.build import drive_system
 from beltdyn.system.build_carrying import with_resistance
-from beltdyn.system.build_staying import flowing_system, staying_system, without_hysteresis
+from beltdyn.system.build_staying import flowing_system, open_ended, staying_system, without_hysteresis
 from beltdyn.system.constant_drive import constant_drive, dry_friction_of, rim_of_bodies, twists, without_actions
 from beltdyn.system.meshing import stopped, turning
 from beltdyn.system.state import State
@@ -145,11 +145,11 @@ def about_rest(drive: Drive) -> SmallMotions:
     return about_standing(bring_to_stand(prepare(drive)))
 
 
-def require_closed(drive: Drive) -> None:
-    """Refuse belts with ends."""
-    if drive.is_web:
-        raise ModelError("modes need a closed belt, and this is a web line. Use `beltdyn steady-state`.")
-    if drive.ends:
+def require_closed(drive: Drive, *, web: bool = False) -> None:
+    """Refuse belts with ends, and web lines where they are not told to serve."""
+    if drive.is_web and not web:
+        raise ModelError('a web line has modes about steady running alone. Set about = "steady", or omit it.')
+    if drive.ends and not drive.is_web:
         other = "Use `beltdyn stroke`" if drive.carriage else "Simulate the drive with `beltdyn simulate`"
         raise ModelError(f"the belt is open, but modes need a closed belt. {other}.")
 
@@ -177,10 +177,10 @@ def sticking_rate(tension: float, system: System) -> float:
 
 def about_steady(run: Run, *, all_shafts: bool = False) -> SmallMotions:
     """A drive in steady running."""
-    require_closed(run.drive)
+    require_closed(run.drive, web=True)
     search = search_from(run.prepared, run, float(run.dataset.attrs["steady_at"]))
     search.resume()
-    return _in_motion(run.prepared, search.constant, search.state, search.belt_parameter, all_shafts=all_shafts)
+    return _in_motion(search.prepared, search.constant, search.state, search.belt_parameter, all_shafts=all_shafts)
 
 
 def about_instant(run: Run, time: float) -> SmallMotions:
@@ -208,6 +208,7 @@ def _linearised(prepared: Prepared, held: System, state: State, speed: float) ->
     for kind in tensioners.dtype.names or ():
         for name in _DRY if "spring" in (tensioners.dtype[kind].names or ()) else ():
             tensioners[kind]["spring"][name] = 0.0
+    held = open_ended(prepared, held)
     turned = turning(held._replace(tensioners=tensioners), state)
     system = flowing_system(turned, anchor_at(state, True).direction)
     flowing = with_passage(held, state, speed)
