@@ -108,6 +108,7 @@ FIGURES: dict[str, list[Panel]] = {
         Panel("driven", "Angle from the inlet of the driven pulley [°]", "", "linear"),
     ],
     "toothed": [Panel("", "Place on the arc [mm]", "Load of a tooth [N]", "linear")],
+    "web_draw": [Panel("", "Time [s]", "Tension [N]", "linear")],
     "published_drive": [
         Panel("speed", "Time [s]", "Driven pulley [rad/s]", "linear"),
         Panel("arc", "Angle on the driven pulley [°]", "Tension [N]", "linear"),

@@ -371,7 +371,7 @@ def numerical_loss(system: System, before: Motion, after: Motion, impulse: Float
             momentum = 0.5 * (after.velocity[i] ** 2 - before.velocity[i] ** 2)
             given = 0.5 * (impulse[0, i] + impulse[1, i]) * (before.velocity[i] + after.velocity[i])
             total += system.bodies[body].kinetic * (inertia - momentum) + given
-    return total - _gone_with_web(system.carriage, system, before, after, work)
+    return float(total - _gone_with_web(system.carriage, system, before, after, work))
 
 
 @kernel(inline=True)
