@@ -149,6 +149,8 @@ def require_closed(drive: Drive, *, web: bool = False) -> None:
     """Refuse belts with ends, and web lines where they are not told to serve."""
     if drive.is_web and not web:
         raise ModelError('a web line has modes about steady running alone. Set about = "steady", or omit it.')
+    if drive.is_web and drive.nips:
+        raise ModelError("a web line with nips has no modes. Use `beltdyn steady-state`, or remove its [[nip]].")
     if drive.ends and not drive.is_web:
         other = "Use `beltdyn stroke`" if drive.carriage else "Simulate the drive with `beltdyn simulate`"
         raise ModelError(f"the belt is open, but modes need a closed belt. {other}.")

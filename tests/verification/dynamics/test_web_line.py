@@ -6,6 +6,7 @@ it at its own speed, v = c g with the stretch g of the span before it, so that T
 
 from collections.abc import Callable
 from functools import partial
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -115,3 +116,9 @@ def test_powers_of_shafts_and_web_balance() -> None:
 def test_what_a_web_line_has_not_is_told(analysis: Callable[[Drive], Any], told: str) -> None:
     with pytest.raises(ModelError, match=told):
         analysis(line({}, {"speed": SPEED / RADIUS}))
+
+
+@pytest.mark.parametrize("analysis", [bd.simulate, bd.modes])
+def test_a_web_line_with_nips_runs_steadily_alone(analysis: Callable[[Drive], Any]) -> None:
+    with pytest.raises(ModelError, match="a web line with nips has no"):
+        analysis(bd.load(Path(__file__).parents[3] / "docs" / "tasks" / "calender.toml"))
