@@ -227,4 +227,6 @@ def unreadable(path: Path, error: Exception) -> str:
         return f"{said} A run is writing it, or was killed while doing so: try again in a moment."
     if isinstance(error, FileNotFoundError):
         return f"{path} does not exist. Give the result file of `beltdyn simulate` or another analysis."
-    return f"{said} Give a file written by `beltdyn simulate`; if it is such a file, it is damaged: run the drive again."
+    return (
+        f"{said} Give a file written by `beltdyn simulate`; if it is such a file, it is damaged: run the drive again."
+    )

@@ -99,6 +99,11 @@ def settled(drive: Drive, integrator: Integrator) -> tuple[Drive, Frame]:
 
     Where the drive leaves the mesh open, it is that of an earlier run, and travels where the integrator needs it.
     """
+    if drive.is_web and drive.nips:
+        raise ModelError(
+            "a web line with nips has no run over time. Find how it runs steadily with `beltdyn steady-state`, or "
+            "remove its [[nip]]."
+        )
     refuse_forces(drive.nips)
     begun = with_instant(drive)
     if begun.simulation.frame != drive.simulation.frame:
@@ -133,11 +138,6 @@ def _before_run(prepared: Prepared) -> tuple[System, State]:
 def mesh_of(prepared: Prepared, integrator: Integrator, progress: Report | None = None) -> Beginning:
     """The mesh of a run, with the state on it where the mesh is found by that."""
     settings, staying = prepared.simulation, prepared.frame.stays
-    if prepared.drive.is_web and prepared.drive.nips:
-        raise ModelError(
-            "a web line with nips has no run over time. Find how it runs steadily with `beltdyn steady-state`, or "
-            "remove its [[nip]]."
-        )
     if staying and not isinstance(integrator, GeneralizedAlpha):
         raise ModelError(
             f'the integrator "{integrator.name}" does not support simulation.frame = "staying". Omit the '
