@@ -107,6 +107,10 @@ FIGURES: dict[str, list[Panel]] = {
         Panel("driver", "Angle from the inlet of the driver [°]", "Slip velocity / v_c", "linear"),
         Panel("driven", "Angle from the inlet of the driven pulley [°]", "", "linear"),
     ],
+    "conveyor": [
+        Panel("start", "Time [s]", "Rim speed, start [m/s]", "linear"),
+        Panel("stop", "Time [s]", "Rim speed, stop [m/s]", "linear"),
+    ],
     "toothed": [Panel("", "Place on the arc [mm]", "Load of a tooth [N]", "linear")],
     "web_draw": [Panel("", "Time [s]", "Tension [N]", "linear")],
     "published_drive": [
