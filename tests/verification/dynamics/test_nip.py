@@ -157,3 +157,15 @@ def test_a_web_is_pressed_between_unwinder_and_winder() -> None:
     power = float((last.shaft_torque * last.pulley_speed).sum()) + speed * float(tension[1] - tension[0])
     lost = float(last.friction_power.sum() + last.contact_damping_power.sum())
     assert power == pytest.approx(lost, rel=0.01)
+
+
+@pytest.mark.slow
+def test_a_run_over_time_keeps_the_nip_of_steady_running(idle: bd.Run) -> None:
+    """With the gap that was found for a force, a run from steady running stays there."""
+    gap = float(bd.derived.nips(idle).gap[0])
+    held = drive(**{"nip[1].force": None, "nip[1].gap": gap, "simulation.start": "steady", "simulation.duration": 0.01})
+    run = bd.simulate(held)
+    one, two = bd.derived.nips(idle).isel(nip=0), bd.derived.nips(run).isel(nip=0)
+    assert float(two.force) == pytest.approx(500.0, rel=1e-3)
+    assert float(two.width) == pytest.approx(float(one.width), rel=0.01)
+    assert abs(float(run.dataset.energy_closure[-1])) < 1e-4

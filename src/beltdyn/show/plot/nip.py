@@ -1,11 +1,15 @@
 """Figures of nips: pressure and shear on both faces of the belt."""
 
+from collections.abc import Callable
+from functools import partial
+
 from matplotlib.axes import Axes
+from matplotlib.figure import Figure
 
 from beltdyn.results import Run, derived
 from beltdyn.show.plot.legends import name_lines
-from beltdyn.show.plot.registry import figure
-from beltdyn.show.plot.style import axes_or_new, color, dash
+from beltdyn.show.plot.registry import Choice, figure
+from beltdyn.show.plot.style import axes_or_new, color, dash, panels
 
 _KILO = 1e3
 
@@ -15,7 +19,12 @@ def _has_nips(run: Run) -> bool:
     return bool(run.drive.nips) and run.dataset.sizes["field_time"] > 0
 
 
-@figure(_has_nips)
+def _by_nips(draw: Callable[..., Axes], run: Run, choice: Choice) -> Figure:
+    """Lay out a panel for each nip."""
+    return panels([[partial(draw, run, nip.roller) for nip in run.drive.nips] or [partial(draw, run)]])
+
+
+@figure(_has_nips, _by_nips)
 def nip_pressure(run: Run, roller: str | int | None = None, time: float | None = None, ax: Axes | None = None) -> Axes:
     """Draw pressure and shear over a nip on both faces of the belt.
 
@@ -58,5 +67,6 @@ def nip_pressure(run: Run, roller: str | int | None = None, time: float | None =
             ax.plot(1e3 * own["distance"], values, color=color(number), linestyle=style, label=f"{part}, {face}")
     ax.axhline(0.0, color="0.4", linewidth=0.8, zorder=1)
     ax.set(xlabel=f"{profile['distance'].attrs['long_name']} [mm]", ylabel="Stress in the nip [kPa]")
+    ax.set_title(" on ".join(profile["face"].values.tolist()))
     name_lines(ax)
     return ax

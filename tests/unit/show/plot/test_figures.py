@@ -94,11 +94,11 @@ def test_slip_in_vibration_is_drawn_as_means_over_a_turn(make_run: Callable[...,
 
 
 _OF_TEETH = ("load_sharing", "transmission_error", "transmission_orders")
-_NOT_OF_IT = ("waterfall", "orders", "carriage_error", *_OF_TEETH)
+_NOT_OF_IT = ("waterfall", "orders", "carriage_error", "nip_pressure", *_OF_TEETH)
 
 
 def test_all_figures_of_a_drive_with_a_tensioner(tmp_path: Path, run: Run) -> None:
-    """Those of a sweep need more turns than this run has, others teeth or a carriage; they are tried elsewhere."""
+    """Those of a sweep need more turns than this run has, others teeth, carriages, nips; they are tried elsewhere."""
     tensioned = tensioned_run(run)
     chosen = [name for name, one in plot.FIGURES.items() if RUN in one.of and name not in _NOT_OF_IT]
     assert [path.stem for path in plot.save_all(tensioned, tmp_path, chosen)] == chosen
