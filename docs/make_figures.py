@@ -3,6 +3,7 @@
 from collections.abc import Callable, Mapping
 from functools import partial
 from pathlib import Path
+from tempfile import TemporaryDirectory
 
 from matplotlib.axes import Axes
 
@@ -52,5 +53,10 @@ if __name__ == "__main__":
     draw(fan, {"speeds": bd.plot.speeds, "tensions": bd.plot.span_tensions}, PICTURES / "readme.png")
     contact = partial(bd.plot.contact_forces, pulley="driver")
     draw(bd.simulate(loaded_drive()), {"speeds": bd.plot.speeds, "contact": contact}, PICTURES / "two_pulley.png")
-    pressed = bd.steady_state(bd.load(Path(__file__).parent / "tasks" / "press_roller.toml"))
+    tasks = Path(__file__).parent / "tasks"
+    pressed = bd.steady_state(bd.load(tasks / "press_roller.toml"))
     bd.plot.nip_pressure(pressed).figure.figure.savefig(PICTURES / "nip_pressure.png", dpi=110, bbox_inches="tight")
+    calender = bd.steady_state(bd.load(tasks / "calender.toml"))
+    with TemporaryDirectory() as folder:
+        (picture,) = bd.plot.save_all(calender, folder, ["nip_pressure"])
+        (PICTURES / "calender.png").write_bytes(picture.read_bytes())
