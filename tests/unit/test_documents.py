@@ -313,7 +313,9 @@ def test_commands_run_one_after_another(document: str, tmp_path: Path, monkeypat
         assert ended.value.code == 0, words
         for file in tmp_path.glob("*.toml"):
             drive = file.read_text(encoding="utf-8")
-            file.write_text(re.sub(r"^duration = .*$", "duration = 0.01", drive, flags=re.MULTILINE), encoding="utf-8")
+            for key, value in ("duration", "0.01"), ("output_interval", "0.001"):
+                drive = re.sub(f"^{key} = .*$", f"{key} = {value}", drive, flags=re.MULTILINE)
+            file.write_text(drive, encoding="utf-8")
     plt.close("all")
 
 
