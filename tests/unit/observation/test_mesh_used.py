@@ -13,14 +13,12 @@ from beltdyn.show.sheet import Facts, sheet
 
 Change = Callable[..., Drive]
 ASKED = (None, *ELEMENTS)
-QUICK = (None, "truss")
-"""Elements that other tests have compiled."""
 FLOWING: Mapping[str, Callable[[Drive], Result]] = {
     "steady": lambda drive: steady_state(drive, at=1.0),
     "modes": lambda drive: modes(drive, about="rest", count=2),
 }
 """Analyses about rest or steady running, on a mesh that stays."""
-SLOW = [pytest.param(one, marks=() if one in QUICK else pytest.mark.slow) for one in ASKED]
+SLOW = [pytest.param(one, marks=() if one is None else pytest.mark.slow) for one in ASKED]
 
 
 @pytest.fixture

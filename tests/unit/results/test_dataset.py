@@ -56,9 +56,9 @@ def take_extras(file: h5py.File) -> None:
 
 
 def test_the_kept_file_is_drawn(kept: Path, tmp_path: Path) -> None:
-    """All but what the drive has not, tensioners, teeth and carriage, and what needs more turns of the belt."""
+    """All but what the drive has not, tensioners, teeth, nips and carriage, and what needs more turns of the belt."""
     teeth = ("load_sharing", "transmission_error", "transmission_orders")
-    left = ("tensioners", "carriage_error", *teeth, "waterfall", "orders")
+    left = ("tensioners", "carriage_error", "nip_pressure", *teeth, "waterfall", "orders")
     chosen = [name for name, figure in plot.FIGURES.items() if "run" in figure.of and name not in left]
     assert len(plot.save_all(open_run(kept), tmp_path, chosen)) == len(chosen)
     plt.close("all")

@@ -84,6 +84,7 @@ def expected_growth(velocity: float) -> float:
     return -(DAMPING + PITCH**2 * slope) / (2.0 * INERTIA)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("speed", [2.0, 10.0, 30.0])
 def test_tensions_and_growth(speed: float) -> None:
     """Tensions to 0.3 %, 2 EI / R^2 T of bending stiffness; growth to 1 % of its part by friction."""

@@ -108,6 +108,7 @@ def test_the_drum_slips_beyond_eulers_limit() -> None:
         bd.steady_state(conveyor(grip=0.98 * needed))
 
 
+@pytest.mark.slow
 def test_the_first_longitudinal_mode_is_that_of_two_rods_and_the_take_up() -> None:
     line, mass, inertia = (1.2, 12.0), 2800.0, 40.0
     drive = conveyor(
@@ -131,6 +132,7 @@ def test_the_first_longitudinal_mode_is_that_of_two_rods_and_the_take_up() -> No
     np.testing.assert_allclose(np.sort(found.frequency.values)[:2], expected, rtol=0.005)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("ends", [(0.0, 0.2), (0.2, 0.0)], ids=["start", "stop"])
 def test_the_wave_of_a_start_or_stop_arrives_at_the_tail_after_the_length_over_its_speed(
     ends: tuple[float, float], curve: Callable[..., None], measured: Callable[..., None]

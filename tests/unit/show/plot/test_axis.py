@@ -8,6 +8,7 @@ from beltdyn.errors import ModelError
 from beltdyn.results import Run
 
 
+@pytest.mark.slow
 def test_the_error_of_the_carriage_is_drawn_in_micrometers() -> None:
     run = bd.simulate(bd.example("printer_axis").with_({"simulation.duration": 0.06}))
     ax = bd.plot.carriage_error(run)
