@@ -297,7 +297,7 @@ def test_python_of_the_pages_on_results_runs(new_drive: str, tmp_path: Path, mon
     ],
 )
 def test_commands_run_one_after_another(document: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    """With short runs; a run-up has too few turns for its figures then, and nothing moves at their end.
+    """With short runs; a run-up has too few turns for its figures then, and nothing moves at their end, or yet.
 
     The optimization of an edited file is that of `test_tensioner_study.py`.
     """
@@ -309,7 +309,7 @@ def test_commands_run_one_after_another(document: str, tmp_path: Path, monkeypat
         if words[0] in ("sweep", "optimize") or any("-sweep" in word or "-optimize" in word for word in words):
             continue
         with pytest.raises(SystemExit) as ended:
-            main([*words, "--at", "1"] if words[0] in ("steady-state", "operating-map", "traction") else words)
+            main([*words, "--at", "60"] if words[0] in ("steady-state", "operating-map", "traction") else words)
         assert ended.value.code == 0, words
         for file in tmp_path.glob("*.toml"):
             drive = file.read_text(encoding="utf-8")
