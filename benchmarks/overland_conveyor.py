@@ -4,13 +4,11 @@ Processor time of one thread, medians; compilation is apart: each analysis is do
 """
 
 import math
-import statistics
-import time
-from collections.abc import Callable
 from functools import partial
 
 from rich.console import Console
 from rich.table import Table
+from steady import seconds
 
 import beltdyn as bd
 
@@ -61,17 +59,6 @@ def conveyor(start: str) -> bd.Drive:
     )
 
 
-def seconds(analysis: Callable[[], object]) -> float:
-    """Median processor time of an analysis, s."""
-    analysis()
-    taken = []
-    for _ in range(ROUNDS):
-        begun = time.process_time()
-        analysis()
-        taken.append(time.process_time() - begun)
-    return statistics.median(taken)
-
-
 def main() -> None:
     """Print the table."""
     table = Table("analysis", "elements", "processor time, s", title="A conveyor of 5 km")
@@ -79,7 +66,7 @@ def main() -> None:
     idlers = sum(math.floor(LENGTH / spacing) for spacing, _ in LINES.values())
     for name, analysis in (("steady running", bd.steady_state), ("start in 60 s", bd.simulate)):
         run = analysis(drive)
-        table.add_row(name, str(run.dataset.sizes["element"]), f"{seconds(partial(analysis, drive)):.2f}")
+        table.add_row(name, str(run.dataset.sizes["element"]), f"{seconds(partial(analysis, drive), ROUNDS):.2f}")
     Console().print(table)
     Console().print(f"{idlers} idlers on both strands.")
 

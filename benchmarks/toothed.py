@@ -5,19 +5,17 @@ single teeth are those of a belt with 120 teeth HTD 8M at 3000 rpm, from steady 
 transmission error at meshing frequency show what a mesh and a tolerance leave.
 """
 
-import statistics
 import time
-from collections.abc import Callable
 from typing import Any
 
 import numpy as np
 from rich.console import Console
 from rich.table import Table
+from steady import seconds
 
 import beltdyn as bd
 from beltdyn.arrays import FloatArray
 
-ROUNDS = 5
 TEETH, SPEED = 22, 100.0 * np.pi
 SECONDS = 0.1
 """Simulated time of a run with single teeth, s."""
@@ -66,16 +64,6 @@ def at_meshing(run: bd.Run) -> float:
     return float(2.0 * abs(np.sum(window * (values - values.mean()) * turned)))
 
 
-def seconds(analysis: Callable[[], object], rounds: int = ROUNDS) -> float:
-    """Median processor time of an analysis, s."""
-    taken = []
-    for _ in range(rounds):
-        begun = time.process_time()
-        analysis()
-        taken.append(time.process_time() - begun)
-    return statistics.median(taken)
-
-
 def main() -> None:
     """Print the tables."""
     console, timing, axis = Console(), bd.example("timing_drive"), bd.example("printer_axis")
@@ -88,7 +76,7 @@ def main() -> None:
     table = Table("elements", "rtol", "s a second", "begin, s", "steps", "iterations", "largest load, N", "error, nm")
     bd.simulate(single_teeth(1e-3, 1e-3))
     for mesh in MESHES:
-        begin = seconds(lambda mesh=mesh: bd.simulate(single_teeth(1e-3, **mesh)), 1)  # type: ignore[misc]
+        begin = seconds(lambda mesh=mesh: bd.simulate(single_teeth(1e-3, **mesh)), 1)
         begun = time.process_time()
         run = bd.simulate(single_teeth(SECONDS, **mesh))
         taken = time.process_time() - begun - begin

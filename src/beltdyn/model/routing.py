@@ -9,7 +9,7 @@ import numpy as np
 from beltdyn.arrays import FloatArray
 from beltdyn.model.belt import Belt
 from beltdyn.model.end import End, PathEnd, pulling
-from beltdyn.model.nip import Nip, check_nips, check_places, numbered
+from beltdyn.model.nip import Nip, check_places, numbered
 from beltdyn.model.path import Path, Surroundings, crossings, obstacle
 from beltdyn.model.pulley import Pulley
 
@@ -67,10 +67,9 @@ class _Fault(NamedTuple):
 
 
 def lay_path(pulleys: Sequence[Pulley], belt: Belt, ends: Sequence[PathEnd] = (), nips: Sequence[Nip] = ()) -> Path:
-    """Lay a path around pulleys in belt order, and check it, with the rollers of nips beside it."""
+    """Lay a path around pulleys in belt order, and check it, with the rollers of nips (see `check_nips`) beside it."""
     if not nips:
         return _lay(pulleys, belt, ends)
-    check_nips(nips, pulleys, belt)
     pairs = numbered(nips, pulleys)
     beside = {roller for roller, _ in pairs}
     alone = _lay([one for number, one in enumerate(pulleys) if number not in beside], belt, ends)

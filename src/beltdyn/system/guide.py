@@ -32,6 +32,7 @@ from beltdyn.system.arrays import (
     System,
     TangentFactors,
 )
+from beltdyn.system.ring_matrix import hold_at_end
 from beltdyn.system.running_web import RunningWeb, carry_web, push_running
 from beltdyn.system.web import WebLine, push_web
 
@@ -135,7 +136,7 @@ def _carry(carriage: Guided, system: System, motion: Motion, wanted: bool, matri
         if wanted:
             if own >= 0:
                 _move_columns(system, end, own, row.direction, matrix)
-            _clear_end(end, system.nodes, own, row.direction, matrix)
+            _clear_end(end, own, row.direction, matrix)
 
 
 @kernel(inline=True)
@@ -161,20 +162,10 @@ def _move_columns(system: System, end: int, own: int, direction: FloatArray, mat
 
 
 @kernel(inline=True)
-def _clear_end(end: int, nodes: int, own: int, direction: FloatArray, matrix: RingMatrix) -> None:
+def _clear_end(end: int, own: int, direction: FloatArray, matrix: RingMatrix) -> None:
     """Let the place of an end follow the carriage: dr = u ds, or zero."""
     for a in range(2):
-        matrix.diagonal[end, a, :] = 0.0
-        matrix.diagonal[end, :, a] = 0.0
-        matrix.diagonal[end, a, a] = 1.0
-        if end == 0:
-            matrix.upper[end, a, :] = 0.0
-            matrix.lower[end, :, a] = 0.0
-        else:
-            matrix.lower[end - 1, a, :] = 0.0
-            matrix.upper[end - 1, :, a] = 0.0
-        matrix.column[end, a, :] = 0.0
-        matrix.row[end, :, a] = 0.0
+        hold_at_end(matrix, end, a)
         if own >= 0:
             matrix.column[end, a, own] = -direction[a]
 

@@ -159,6 +159,22 @@ def clear(matrix: RingMatrix, whole: bool) -> None:
         matrix.corner[:] = 0.0
 
 
+@kernel(inline=True)
+def hold_at_end(matrix: RingMatrix, node: int, c: int) -> None:
+    """Let coordinate c of the first or the last node of an open belt stay, and no other equation depend on it."""
+    matrix.diagonal[node, c, :] = 0.0
+    matrix.diagonal[node, :, c] = 0.0
+    matrix.diagonal[node, c, c] = 1.0
+    if node == 0:
+        matrix.upper[node, c, :] = 0.0
+        matrix.lower[node, :, c] = 0.0
+    else:
+        matrix.lower[node - 1, c, :] = 0.0
+        matrix.upper[node - 1, :, c] = 0.0
+    matrix.column[node, c, :] = 0.0
+    matrix.row[node, :, c] = 0.0
+
+
 def entries(matrix: RingMatrix) -> FloatArray:
     """Entries of all blocks, one block after another, in the order of `places`."""
     blocks = (matrix.diagonal, matrix.upper, matrix.lower, matrix.column, matrix.row, matrix.corner)

@@ -22,6 +22,7 @@ from beltdyn.system.arc_mesh import Zone, by_arcs, zones_of
 from beltdyn.system.arrays import TORQUE_WORK, BodyForces, Motion, RingMatrix, System, TangentFactors
 from beltdyn.system.element_state import gather_motion
 from beltdyn.system.frame import flow_speed, node_shift
+from beltdyn.system.ring_matrix import hold_at_end
 from beltdyn.system.web import WebLine
 
 
@@ -146,7 +147,7 @@ def carry_web(line: RunningWeb, system: System, motion: Motion, wanted: bool, ma
         for axis in range(2):
             matrix.node_side[node, axis] = 0.0
             if wanted:
-                _hold(node, system.nodes, axis, matrix)
+                hold_at_end(matrix, node, axis)
 
 
 @kernel(inline=True)
@@ -159,19 +160,3 @@ def _give_row(node: int, nodes: int, own: int, axis: int, factor: float, matrix:
         matrix.row[beside, own, c] += factor * (matrix.upper[node, axis, c] if first else matrix.lower[beside, axis, c])
     for k in range(matrix.corner.shape[0]):
         matrix.corner[own, k] += factor * matrix.column[node, axis, k]
-
-
-@kernel(inline=True)
-def _hold(node: int, nodes: int, axis: int, matrix: RingMatrix) -> None:
-    """Let a coordinate of a node at an end stay."""
-    matrix.diagonal[node, axis, :] = 0.0
-    matrix.diagonal[node, :, axis] = 0.0
-    matrix.diagonal[node, axis, axis] = 1.0
-    if node == 0:
-        matrix.upper[node, axis, :] = 0.0
-        matrix.lower[node, :, axis] = 0.0
-    else:
-        matrix.lower[nodes - 2, axis, :] = 0.0
-        matrix.upper[nodes - 2, :, axis] = 0.0
-    matrix.column[node, axis, :] = 0.0
-    matrix.row[node, :, axis] = 0.0

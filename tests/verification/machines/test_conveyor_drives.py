@@ -8,11 +8,9 @@ import pytest
 from scipy.optimize import brentq
 
 import beltdyn as bd
+from tests.verification.machines.test_conveyors import BELT, CARRYING, EA, GRAVITY, RADIUS, RETURN, STRIP, idlers
 
-GRAVITY, FRICTION, RADIUS, EA = 9.81, 0.02, 0.5, 72e6
-BELT, GOODS = 25.0, 104.0
-CARRYING, RETURN = (1.2, 22.0), (3.0, 18.0)
-"""Spacing (m) and rotating mass (kg) of idlers."""
+FRICTION, GOODS = 0.02, 104.0
 MOTORS = {"head": (60e3, 0.05, 8.1), "second": (30e3, 0.06, 8.1)}
 """Breakdown torque (N m) and slip, synchronous speed (rad/s), seen from the drums."""
 
@@ -34,13 +32,7 @@ def conveyor(
     free = {"radius": RADIUS, "inertia": 1200.0}
     return bd.Drive(
         gravity=[0.0, -GRAVITY],
-        belt={
-            "width": 1.0,
-            "thickness": 0.016,
-            "axial_stiffness": EA,
-            "bending_stiffness": 20.0,
-            "mass_per_length": BELT,
-        },
+        belt=STRIP,
         pulley=[
             free | {"name": "head", "center": [0.0, lift], "load": loads[0]},
             free | {"name": "second", "center": [12.0, lift - 4.0], "load": loads[1]},
@@ -57,10 +49,7 @@ def conveyor(
                 "damping": 2e4,
             }
         ],
-        support=[
-            {"kind": "idlers", "span": span, "spacing": line[0], "idler_mass": line[1], "friction": FRICTION}
-            for span, line in ((["tail", "head"], CARRYING), (["bend", "tail"], RETURN))
-        ],
+        support=[idlers("tail", "head", CARRYING, FRICTION), idlers("bend", "tail", RETURN, FRICTION)],
         goods=[{"span": ["tail", "head"], "mass_per_length": GOODS}],
         contact={"friction": 0.35, "standstill_creep": 1e-4},
         simulation={"duration": 60.0} | simulation,

@@ -14,6 +14,14 @@ LENGTH, LIFT, GRAVITY = 1000.0, 20.0, 9.81
 EA, BELT = 72e6, 25.0
 CARRYING, RETURN = (1.2, 22.0), (3.0, 18.0)
 """Spacing (m) and rotating mass (kg) of idlers."""
+STRIP = {
+    "width": 1.0,
+    "thickness": 0.016,
+    "axial_stiffness": EA,
+    "bending_stiffness": 20.0,
+    "mass_per_length": BELT,
+}
+"""A steel-cord belt."""
 PRELOAD, RADIUS = 90e3, 0.5
 COEFFICIENT = 0.02
 
@@ -41,14 +49,7 @@ def conveyor(
     slide = {"kind": "sliding", "pulley": "tail", "direction": [1.0, 0.0], "mass": more.pop("slide", 2000.0)}
     return bd.Drive(
         gravity=[0.0, -GRAVITY],
-        belt={
-            "width": 1.0,
-            "thickness": 0.016,
-            "axial_stiffness": EA,
-            "bending_stiffness": 20.0,
-            "mass_per_length": BELT,
-            "contact_stiffness": 2e8,
-        },
+        belt=STRIP | {"contact_stiffness": 2e8},
         pulley=pulleys,
         tensioner=[slide | {"preload": PRELOAD, "damping": more.pop("damping", 2e4)}],
         support=[idlers("tail", "head", carrying, friction), idlers("head", "tail", returning, friction)],
