@@ -19,10 +19,9 @@ from beltdyn.arrays import FloatArray
 from beltdyn.model import Pulley, prepare
 from beltdyn.model.hysteresis import compression_losses
 from beltdyn.results import summarize
-from beltdyn.theory.capstan import capstan_ratio
-from beltdyn.theory.elastic_creep import gross_slip_tensions, speed_loss
+from beltdyn.theory.creep import capstan_ratio, gross_slip_tensions, speed_loss
 from beltdyn.theory.hysteresis import bending_loss
-from beltdyn.theory.path import open_belt
+from beltdyn.theory.span import open_belt
 
 RPM = pi / 30.0
 

@@ -18,8 +18,7 @@ from beltdyn.model import Path, prepare
 from beltdyn.model.carrier import moved
 from beltdyn.results import summarize
 from beltdyn.results.derived import slip_safety
-from beltdyn.theory.capstan import capstan_ratio
-from beltdyn.theory.elastic_creep import slip_arc
+from beltdyn.theory.creep import capstan_ratio, slip_arc
 
 STEP = 1e-5
 """Of a tensioner's position, for differences of the path, rad."""

@@ -21,7 +21,7 @@ from beltdyn.results.friction_work import FrictionWork, Touch
 from beltdyn.results.mechanics import cells
 from beltdyn.results.mid_span import mid_span_displacements
 from beltdyn.results.schema import FILTERED
-from beltdyn.results.slipping import sliding_of_pulleys
+from beltdyn.results.slip_safety import sliding_of_pulleys
 
 Arrays = dict[str, NDArray[Any]]
 

@@ -31,7 +31,7 @@ from .model import (
 )
 from .points.duty import duty
 from .points.life import life
-from .points.operating_map import operating_map
+from .points.operating_points import operating_map
 from .points.rating import rating
 from .points.tensioner_sheet import tensioner_sheet
 from .points.traction import traction
@@ -46,8 +46,8 @@ from .results import (
     write_csv,
 )
 from .show import plot
-from .show.check import check
 from .show.report import interactive, write_report
+from .show.rest_sheet import check
 from .state.equilibrium import equilibrium
 from .state.steady import steady_state
 from .transient.simulate import simulate

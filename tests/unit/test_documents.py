@@ -18,15 +18,15 @@ import tomli_w
 
 from beltdyn.analyses import ANALYSES, EQUILIBRIUM, RUN
 from beltdyn.cli import main
+from beltdyn.designs.calibrate import read_measured
 from beltdyn.designs.designs import free_number
-from beltdyn.designs.residuals import read_measured
 from beltdyn.machines import profiles
 from beltdyn.model import Belt, Contact, Limits, Pulley, Rating, Simulation, Steady, Toothing, dumps, loads
 from beltdyn.model.belt_form import Nominal, Sold
 from beltdyn.model.catalogue import Entry, read_catalogue
 from beltdyn.model.pulley import Diameter
 from beltdyn.model.study import CalibrationStudy, OptimizationStudy
-from beltdyn.model.toml_reader import example
+from beltdyn.model.toml import example
 from beltdyn.model.tooth_rating import ToothRating
 from beltdyn.parts.part import Part
 from beltdyn.show.plot import FIGURES

@@ -27,7 +27,6 @@ ELSEWHERE = {
     "machines/tensioners/registry.py": "unit/machines/tensioners/test_tensioner.py",
     "stretch/*.py": "unit/stretch/test_laws.py",
     "results/checks/*.py": "unit/results/test_checks.py",
-    "kernel/fingerprint.py": "unit/kernel/test_kinds.py",
     "show/plot/__init__.py": "unit/test_extend.py",
     # Parts of one calculation, which is tested as a whole: forces by their energies, tangents by differences.
     "system/arc_tangent.py": "unit/system/test_arc_mesh.py",
@@ -39,28 +38,21 @@ ELSEWHERE = {
     "model/cover.py": "unit/theory/test_nip.py",
     "system/element_state.py": "unit/system/test_discretization.py",
     "system/observations.py": "unit/system/test_observe.py",
-    "solvers/engine.py": "unit/solvers/test_alpha_advance.py",
+    "solvers/engine.py": "unit/solvers/test_alpha_step_alpha_advance.py",
     "designs/designs.py": "unit/designs/test_optimize.py",
     "designs/optimization_history.py": "unit/designs/test_optimize.py",
     "designs/goals.py": "unit/designs/test_optimize.py",
-    "designs/residuals.py": "unit/designs/test_calibrate.py",
     "designs/proposal.py": "unit/designs/test_selection.py",
     "designs/named_results.py": "unit/designs/test_sensitivity.py",
     "state/newton.py": "unit/state/test_steady.py",
     "state/refinement.py": "unit/state/test_steady.py",
-    "designs/study_table.py": "unit/designs/test_study.py",
     # Seen by a user through something else, and tested there.
-    "app/numbers_view.py": "unit/app/test_page.py",
-    "app/results_view.py": "unit/app/test_page.py",
-    "app/table_dialog.py": "unit/app/test_page.py",
     "__init__.py": "unit/test_public_names.py",
     "analyses.py": "unit/cli/test_analysis.py",
     "cli/*.py": "unit/cli/test_commands.py",
     "cosimulation/beltdyn_fmi*.py": "unit/cosimulation/test_fmu.py",
     "cosimulation/slave.py": "unit/cosimulation/test_fmu.py",
     "results/__init__.py": "unit/test_public_names.py",
-    "show/rest_sheet.py": "unit/cli/test_commands.py",
-    "results/means.py": "unit/results/test_summary.py",
 }
 """Where modules are tested that have no test of their name."""
 

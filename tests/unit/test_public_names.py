@@ -47,7 +47,7 @@ OF_THE_PACKAGE = {
 
 def test_modules_are_there_without_anything_else_being_used_before() -> None:
     used = (
-        "bd.results.VARIABLES, bd.derived.slips, bd.theory.capstan.capstan_ratio, bd.plot.speeds, bd.model.Fan, "
+        "bd.results.VARIABLES, bd.derived.slips, bd.theory.creep.capstan_ratio, bd.plot.speeds, bd.model.Fan, "
         "bd.extend.figure"
     )
     assert run(f"import beltdyn as bd; print(len([{used}]))") == "6"

@@ -115,7 +115,7 @@ def green_law(axial: float, unstretched: float) -> Law:
 
 
 def run_steadily(law: Law) -> Steady:
-    """Creep theory with Coulomb friction (theory/elastic_creep.py), any law of stretch, penetration and weight.
+    """Creep theory with Coulomb friction (theory/creep.py), any law of stretch, penetration and weight.
 
     Where the belt runs onto a pulley it adheres; over the angle in which (T - m v^2) changes by e^(mu theta) it slides.
     The torque of the tensions balances the load and the weight of the belt on the arc, w 2R about the shaft.

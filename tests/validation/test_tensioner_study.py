@@ -6,7 +6,7 @@ from tensioner_study import found
 
 from beltdyn import Result, summarize
 from beltdyn.parts.quantity import RPM
-from beltdyn.points.operating_map import at_point
+from beltdyn.points.operating_points import at_point
 from beltdyn.state.steady import steady_state
 from beltdyn.transient.sweep import without_schedules
 

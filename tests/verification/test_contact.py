@@ -21,7 +21,7 @@ from beltdyn.system.build import belt_system
 from beltdyn.system.motion import new_equations, no_multipliers
 from beltdyn.system.observe import observe
 from beltdyn.system.state import State, at_rest, laid
-from beltdyn.theory.capstan import capstan_ratio
+from beltdyn.theory.creep import capstan_ratio
 
 RADIUS = 0.1
 STIFFNESS, DAMPING, FRICTION = 1e7, 50.0, 0.4

@@ -6,7 +6,7 @@ from math import pi, tanh
 import numpy as np
 
 from beltdyn.model import Drive, install
-from beltdyn.theory.capstan import capstan_ratio
+from beltdyn.theory.creep import capstan_ratio
 
 _ROUNDS = 100
 

@@ -6,7 +6,7 @@ from types import MappingProxyType
 from typing import Any
 
 from beltdyn.model import Drive, loads
-from beltdyn.model.toml_reader import example_text
+from beltdyn.model.toml import example_text
 
 RISE = MappingProxyType({"start": 0.05, "end": 0.6})
 """When speed and torque rise, s (Eqs. 28 and 29)."""

@@ -154,7 +154,7 @@ Shown = tuple[tuple[Table | Facts, ...], tuple[str, ...], Findings]
 
 def _rest(asked: Asked) -> Shown:
     """The drive at rest, as `beltdyn check` finds it."""
-    from beltdyn.show.check import check
+    from beltdyn.show.rest_sheet import check
 
     checked = check(loads(asked.text, asked.folder))
     if checked.failure:

@@ -1,7 +1,8 @@
 """Numbers beside the canvas, updated with each change: rest, steady running and modes."""
 
+import math
 import time
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from html import escape
 from typing import Any
 from uuid import uuid4
@@ -9,14 +10,198 @@ from uuid import uuid4
 from nicegui import background_tasks, ui
 from nicegui.events import ValueChangeEventArguments
 
-from beltdyn.app.charts import charts
 from beltdyn.app.computing import Answer, Asked, Calculator, in_words
-from beltdyn.app.findings import Findings, at_rest
+from beltdyn.app.findings import Around, Column, Figure, Findings, Rows, Shape, at_rest
 from beltdyn.app.session import Session
+from beltdyn.app.units import System, unit_in
 from beltdyn.errors import BeltdynError
 from beltdyn.model import estimate_at_rest, prepare
+from beltdyn.parts.text_file import shorten
 from beltdyn.show.rest_sheet import rest_sheet
 from beltdyn.show.sheet import Facts, Table
+
+_WIDTH, _HEIGHT = 400.0, 165.0
+"""Size of the chart of tensions, in its own units."""
+_LEFT, _RIGHT, _TOP, _BASE = 40.0, 394.0, 28.0, 143.0
+_LINES = (11.0, 22.0)
+"""Where names of pulleys stand, on two lines lest they lie on each other."""
+_LONGEST = 14
+"""Letters of a name."""
+_TICKS = 4
+_LETTER = 5.6
+"""Width of a letter."""
+_BIG = 1e4
+
+
+def charts(found: Findings, system: System) -> str:
+    """All that is shown of some findings, one below the other."""
+    parts = [_figures(found.figures, system)]
+    if found.around is not None:
+        parts.append(_section("Tension around the belt, N", tension_chart(found.around, system)))
+    if found.shapes:
+        shapes = "".join(map(_shape, found.shapes))
+        parts.append(_section("Mode shapes, at their largest displacement", f'<div class="bd-shapes">{shapes}</div>'))
+    parts += [_section(one.title, _table(one, system)) for one in found.rows]
+    return "".join(parts)
+
+
+def number_in(value: float, unit: str, system: System) -> tuple[str, str]:
+    """A number and its unit as they are shown."""
+    if not math.isfinite(value):
+        return "–", ""
+    if unit == "%":
+        return f"{100.0 * value:.3g}", "%"
+    if unit == "W":
+        return (_digits(value / 1e3), "kW") if abs(value) >= 1e3 else (_digits(value), "W")
+    shown = unit_in(system, unit)
+    return _digits(value / shown.size), shown.shown
+
+
+def _digits(value: float) -> str:
+    """A number with three or four digits, and never as a power of ten where it is a usual one."""
+    if abs(value) >= 1e3:
+        return f"{value:.0f}" if abs(value) < _BIG * 1e2 else f"{value:.3g}"
+    return f"{value:.3g}"
+
+
+def _section(title: str, content: str) -> str:
+    return f'<section><h3 class="bd-title">{escape(title)}</h3>{content}</section>'
+
+
+def _figures(figures: Iterable[Figure], system: System) -> str:
+    """The numbers that count, side by side."""
+    cards = []
+    for one in figures:
+        number, unit = number_in(one.value, one.unit, system)
+        of = f'<div class="bd-of">{escape(one.of)}</div>' if one.of else ""
+        cards.append(
+            f'<div class="bd-figure"><div class="bd-name">{escape(one.name)}</div>'
+            f'<div class="bd-number">{number}<span> {unit}</span></div>{of}</div>'
+        )
+    return f'<div class="bd-figures">{"".join(cards)}</div>' if cards else ""
+
+
+class _Axes:
+    """Where places along the belt and tensions are drawn."""
+
+    def __init__(self, around: Around) -> None:
+        self.end = around.places[-1] or 1.0
+        self.low, self.high, self.step = _nice(min(around.tensions), max(around.tensions))
+        self.base = self.y(self.low)
+
+    def x(self, place: float) -> float:
+        return _LEFT + (_RIGHT - _LEFT) * min(place / self.end, 1.0)
+
+    def y(self, tension: float) -> float:
+        return _BASE - (_BASE - _TOP) * (tension - self.low) / (self.high - self.low)
+
+
+def tension_chart(around: Around, system: System) -> str:
+    """The tension around the belt, with the arcs on pulleys shaded."""
+    axes = _Axes(around)
+    points = zip(around.places, around.tensions, strict=True)
+    curve = "L".join(f"{axes.x(place):.1f} {axes.y(tension):.1f}" for place, tension in points)
+    ends = [f"{axes.x(place):.1f} {axes.base:.1f}" for place in (around.places[0], axes.end)]
+    length = " ".join(number_in(axes.end, "m", system))
+    parts = [
+        *_arcs(around, axes),
+        *_rules(axes),
+        f'<path class="bd-under" d="M{ends[0]}L{curve}L{ends[1]}Z"/>',
+        f'<path class="bd-line" d="M{curve}"/>',
+        f'<text class="bd-tick" x="{_LEFT}" y="{_HEIGHT - 6}">along the belt</text>',
+        f'<text class="bd-tick" x="{_RIGHT}" y="{_HEIGHT - 6}" text-anchor="end">{length}</text>',
+    ]
+    told = f"Tension around the belt, from {min(around.tensions):.0f} to {max(around.tensions):.0f} N"
+    return _svg(f"0 0 {_WIDTH:g} {_HEIGHT:g}", "bd-chart", told, parts)
+
+
+def _arcs(around: Around, axes: _Axes) -> Iterator[str]:
+    """The arcs on pulleys, and the names that have room."""
+    taken = [-math.inf] * len(_LINES)
+    for name, begin, stop in around.arcs:
+        left, right = axes.x(begin), axes.x(stop)
+        size = f'width="{right - left:.1f}" height="{axes.base - _TOP}"'
+        yield f'<rect class="bd-arc" x="{left:.1f}" y="{_TOP}" {size}/>'
+        label = shorten(name, _LONGEST)
+        half = 0.5 * _LETTER * len(label)
+        middle = min(max(0.5 * (left + right), _LEFT + half), _RIGHT - half)
+        line = next((number for number, end in enumerate(taken) if middle - half > end), None)
+        if line is not None:
+            taken[line] = middle + half
+            at = f'x="{middle:.1f}" y="{_LINES[line]}"'
+            yield f'<text class="bd-tick" {at} text-anchor="middle">{escape(label)}</text>'
+
+
+def _rules(axes: _Axes) -> Iterator[str]:
+    """Lines of equal tension, with their numbers."""
+    for count in range(round((axes.high - axes.low) / axes.step) + 1):
+        tension = axes.low + count * axes.step
+        yield f'<path class="bd-rule" d="M{_LEFT} {axes.y(tension):.1f}H{_RIGHT}"/>'
+        at = f'x="{_LEFT - 5}" y="{axes.y(tension) + 3.5:.1f}"'
+        yield f'<text class="bd-tick" {at} text-anchor="end">{tension:g}</text>'
+
+
+def _svg(box: str, kind: str, told: str, parts: Sequence[str]) -> str:
+    return f'<svg class="{kind}" viewBox="{box}" role="img" aria-label="{escape(told)}">{"".join(parts)}</svg>'
+
+
+def _nice(least: float, largest: float) -> tuple[float, float, float]:
+    """Limits of an axis from zero, or from below where there is less, and the step of its numbers."""
+    low, high = min(least, 0.0), max(largest, 1e-9)
+    rough = (high - low) / _TICKS
+    power = 10.0 ** math.floor(math.log10(rough))
+    step = next(one * power for one in (1.0, 2.0, 2.5, 5.0, 10.0) if one * power >= rough * 0.999)
+    return math.floor(low / step) * step, math.ceil(1.02 * high / step) * step, step
+
+
+def _table(rows: Rows, system: System) -> str:
+    """Numbers with a bar below each."""
+    heads = "".join(f"<th>{escape(one.name)}{_in(one, system)}</th>" for one in rows.columns)
+    largest = [max((abs(value) for value in one.values if math.isfinite(value)), default=0.0) for one in rows.columns]
+    lines = []
+    for place, name in enumerate(rows.names):
+        cells = "".join(
+            _cell(one, one.values[place], most, system) for one, most in zip(rows.columns, largest, strict=True)
+        )
+        lines.append(f"<tr><td>{escape(name)}</td>{cells}</tr>")
+    return f'<table class="bd-bars"><thead><tr><th></th>{heads}</tr></thead><tbody>{"".join(lines)}</tbody></table>'
+
+
+def _in(column: Column, system: System) -> str:
+    """The unit of a column, in its heading."""
+    if not column.unit:
+        return ""
+    return f"<span>{'%' if column.unit == '%' else unit_in(system, column.unit).shown}</span>"
+
+
+def _cell(column: Column, value: float, most: float, system: System) -> str:
+    if not math.isfinite(value):
+        return '<td class="bd-none">–</td>'
+    number = number_in(value, column.unit, system)[0]
+    share = abs(value) / most if most else 0.0
+    kind = "bd-bar bd-low" if value < column.least else "bd-bar"
+    return f'<td>{number}<div class="{kind}" style="width:{100.0 * share:.0f}%"></div></td>'
+
+
+def _shape(one: Shape) -> str:
+    """A mode: the drive at rest, pale, and displaced."""
+    left, top, width, height = one.extent
+    parts = [f'<path class="bd-rest" d="{one.rest}"/>']
+    for x, y, radius, angle in one.pulleys:
+        turned = f"rotate({angle:.2f} {x:.1f} {y:.1f})"
+        parts.append(f'<circle class="bd-hubs" cx="{x:.1f}" cy="{y:.1f}" r="{radius:.1f}"/>')
+        parts.append(
+            f'<path class="bd-hubs" transform="{turned}" d="M{x - radius:.1f} {y:.1f}h{2 * radius:.1f}'
+            f'M{x:.1f} {y - radius:.1f}v{2 * radius:.1f}"/>'
+        )
+    parts.append(f'<path class="bd-line" d="{one.belt}"/>')
+    told = f"Mode at {one.frequency:.4g} Hz, {one.about}"
+    picture = _svg(f"{left:.1f} {top:.1f} {width:.1f} {height:.1f}", "bd-mode", told, parts)
+    return (
+        f'<div class="bd-shape">{picture}<div class="bd-number">{one.frequency:.4g}<span> Hz</span></div>'
+        f'<div class="bd-of">damping ratio {one.damping:.2%}</div><div class="bd-of">{escape(one.about)}</div></div>'
+    )
+
 
 # Tables and facts of a sheet on the page
 

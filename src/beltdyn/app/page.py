@@ -10,10 +10,10 @@ from nicegui.element import Element
 from nicegui.events import GenericEventArguments, KeyEventArguments
 
 from beltdyn.app.form_view import FormView
+from beltdyn.app.pulley_table import TableDialog
 from beltdyn.app.results_view import ResultsView
 from beltdyn.app.scene import MILLIMETRES, groups, scene
 from beltdyn.app.session import Session
-from beltdyn.app.table_dialog import TableDialog
 from beltdyn.app.units import SYSTEMS, Unit, unit_in
 from beltdyn.app.workspace import EMPTY, STARTS, Example, Workspace, examples, thumbnail
 from beltdyn.errors import BeltdynError

@@ -19,7 +19,7 @@ from beltdyn.show.plot.style import tension_colors
 from beltdyn.show.report.motion import along_belt
 from beltdyn.show.sheet import Table
 
-_OFTEN = 0.4
+_REFRESH = 0.4
 """Least interval of snapshots, s."""
 _SHARE = 10.0
 """Least interval of snapshots over the cost of one."""
@@ -72,7 +72,7 @@ class Watcher:
             return _glimpse(self._run(values))
         finally:
             spent = time.perf_counter() - begun
-            self._next = begun + min(max(_OFTEN, _SHARE * spent), _LONGEST)
+            self._next = begun + min(max(_REFRESH, _SHARE * spent), _LONGEST)
 
     def _run(self, values: Mapping[str, FloatArray]) -> Run:
         """A run of one instant; what all instants share is read once, which takes longest."""

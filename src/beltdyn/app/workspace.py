@@ -10,7 +10,7 @@ from beltdyn.app.computing import Calculator
 from beltdyn.app.jobs import Job
 from beltdyn.errors import ModelError
 from beltdyn.model import loads
-from beltdyn.model.toml_reader import example_texts
+from beltdyn.model.toml import example_texts
 from beltdyn.parts.messages import reason
 from beltdyn.parts.text_file import LONGEST_TOML, read_text, shorten
 from beltdyn.results.atomic import atomic_path

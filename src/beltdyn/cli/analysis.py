@@ -11,8 +11,8 @@ from cyclopts import Parameter as Option
 from cyclopts.validators import Number
 
 from beltdyn.analyses import Analysis
-from beltdyn.cli.batch import analyse_several, read_given, takes_runs
 from beltdyn.cli.output import Extras, analyse_to, doubt, ended, require_output
+from beltdyn.cli.study import analyse_several, read_given, takes_runs
 from beltdyn.errors import ModelError
 
 if TYPE_CHECKING:

@@ -59,7 +59,7 @@ def check(
 def _check(file: Path, figure: Path | None, equilibrium: bool | None, force: bool) -> None:
     """Check one drive file."""
     from beltdyn.model import load
-    from beltdyn.show.check import check as check_drive
+    from beltdyn.show.rest_sheet import check as check_drive
 
     drive = load(file)
     if figure is not None:

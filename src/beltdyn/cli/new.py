@@ -29,7 +29,7 @@ def new(
     if example is None:
         name, text = "drive", files("beltdyn.cli").joinpath("new_drive.toml").read_text(encoding="utf-8")
     else:
-        from beltdyn.model.toml_reader import example_text
+        from beltdyn.model.toml import example_text
 
         name, text = example.removesuffix(".toml").replace("-", "_"), example_text(example)
     target = file or Path(f"{name}.toml")

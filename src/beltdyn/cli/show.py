@@ -195,7 +195,7 @@ def demo(folder: Path = Path("beltdyn-demo"), /) -> int:
         The folder for the drive file, its results and its figures.
     """
     from beltdyn.model import load
-    from beltdyn.model.toml_reader import example_text
+    from beltdyn.model.toml import example_text
 
     file, text = folder / f"{_DRIVE}.toml", example_text(_DRIVE)
     if not (file.is_file() and file.read_text("utf-8", "replace") == text):

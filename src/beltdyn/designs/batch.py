@@ -7,8 +7,7 @@ from pathlib import Path
 from typing import Any
 
 from beltdyn.analyses import ANALYSES, SIMULATE, Analysis
-from beltdyn.designs.processes import SPAWN, LocalProcesses, bare_workers
-from beltdyn.designs.worker import Ending, Work, analyse, begin_batch
+from beltdyn.designs.processes import SPAWN, Ending, LocalProcesses, Work, analyse, bare_workers, begin_batch
 from beltdyn.model import Drive
 from beltdyn.model.drive import refuse_functions, refuse_kinds_of_scripts
 from beltdyn.observation.compilation import usable_cores

@@ -24,8 +24,8 @@ from beltdyn.points.duty import Column, at_row, durations_of, duty, duty_of
 from beltdyn.points.quasi_steady import QuasiSteady, Running, Torques, torques_between, torques_of
 from beltdyn.points.tensioner_sheet import length_of
 from beltdyn.results import Result, Variable, build_result
+from beltdyn.results.means import rate, utilization
 from beltdyn.results.schema import AXIS_NAMES, COORDINATES
-from beltdyn.results.utilization import rate, utilization
 from beltdyn.solvers.progress import Progress, Report
 from beltdyn.state.installation import looked_at
 from beltdyn.state.staying import bring_to_stand

@@ -16,8 +16,7 @@ from beltdyn.designs.named_results import variable_and_label
 from beltdyn.designs.watched import OperatingPoint
 from beltdyn.errors import ModelError
 from beltdyn.model import Drive
-from beltdyn.model.toml_reader import loads
-from beltdyn.model.toml_writer import edited
+from beltdyn.model.toml import edited, loads
 from beltdyn.results import Result, Variable, build_result
 from beltdyn.results.atomic import atomic_path, locked_output, require_replaceable, target_of
 from beltdyn.results.dataset import is_result

@@ -14,7 +14,7 @@ from beltdyn.designs.watched import held, study_points
 from beltdyn.errors import ConvergenceError, ModelError
 from beltdyn.model import Drive
 from beltdyn.model.study import OptimizationStudy
-from beltdyn.model.toml_reader import read_study
+from beltdyn.model.toml import read_study
 from beltdyn.results import Result
 from beltdyn.solvers.progress import Progress, Report
 

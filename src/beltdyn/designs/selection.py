@@ -17,9 +17,8 @@ from beltdyn.model.rating import RatedBelt, Rating
 from beltdyn.model.tensioning import RUN_IN
 from beltdyn.parts.messages import reason
 from beltdyn.parts.quantity import RPM, number_in, numbers_in
-from beltdyn.theory.belt_rating import least_tension
-from beltdyn.theory.path import OpenBelt, center_distance, open_belt
-from beltdyn.theory.span import lowest_frequency
+from beltdyn.theory.rating import least_tension
+from beltdyn.theory.span import OpenBelt, center_distance, lowest_frequency, open_belt
 
 DIAMETERS = tuple(
     1e-3 * one

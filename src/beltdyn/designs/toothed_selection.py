@@ -9,9 +9,8 @@ import numpy as np
 from beltdyn.designs.proposal import Proposal, Task
 from beltdyn.model import Entry
 from beltdyn.model.tooth_rating import RatedTeeth
-from beltdyn.theory.path import OpenBelt, center_distance, open_belt
-from beltdyn.theory.span import lowest_frequency
-from beltdyn.theory.tooth_rating import least_rest_tension, pull_of_cords
+from beltdyn.theory.rating import least_rest_tension, pull_of_cords
+from beltdyn.theory.span import OpenBelt, center_distance, lowest_frequency, open_belt
 
 TEETH = (
     *(10, 11, 12, 13, 14, 15, 16, 17, 18, 19, 20, 21, 22, 23, 24, 25, 26, 27, 28, 29, 30, 32, 34, 36, 38, 40, 42, 44),

@@ -20,7 +20,7 @@ from beltdyn.model.study import Obstacle, Order, Points
 from beltdyn.parts.quantity import RPM, numbers_in
 from beltdyn.points.changed_drive import driver_of
 from beltdyn.points.duty import at_row, durations_of, read_duty
-from beltdyn.points.operating_map import at_point, load_factors
+from beltdyn.points.operating_points import at_point, load_factors
 from beltdyn.transient.sweep import without_schedules
 
 # The operating points of a study: rows of a duty table, or places of a map

@@ -4,8 +4,8 @@ Numba's own cache watches the file of the compiled function only.  A kernel that
 keep the old physics after that law was edited.  Here the cache lives in a folder named by a hash of every source
 file that takes part in compiled code, so that an edit anywhere in them starts an empty cache.
 
-What lies there is run as machine code.  So nobody else may write there, and `beltdyn.kernel.seal` puts a checksum
-around every file.
+What lies there is run as machine code.  So nobody else may write there, and `beltdyn.kernel.fingerprint` puts a
+checksum around every file.
 """
 
 import atexit

@@ -12,9 +12,8 @@ from numba.extending import overload
 
 from beltdyn.kernel.by_type import Dispatch
 from beltdyn.kernel.cache import compiles_quickly, holds_kernels, kernel_cache
-from beltdyn.kernel.fingerprint import own_classes
+from beltdyn.kernel.fingerprint import SealedFolder, own_classes, setting
 from beltdyn.kernel.progress import CompilationCount
-from beltdyn.kernel.seal import SealedFolder, setting
 
 OPTIONS = {"nogil": True, "error_model": "numpy", "fastmath": {"contract", "nsz"}}
 """Options of every kernel."""

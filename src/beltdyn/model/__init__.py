@@ -65,8 +65,7 @@ from beltdyn.model.rest_estimate import estimate_at_rest
 from beltdyn.model.simulation import Limits, Simulation, Steady
 from beltdyn.model.study import CalibrationStudy, OptimizationStudy, ParameterStudy
 from beltdyn.model.tensioner_balance import TensionerBalance
-from beltdyn.model.toml_reader import example, json_schema, load, loads
-from beltdyn.model.toml_writer import dumps
+from beltdyn.model.toml import dumps, example, json_schema, load, loads
 from beltdyn.model.toothing import Toothing
 from beltdyn.model.web import Unwinder, Winder
 

@@ -17,7 +17,7 @@ from beltdyn.model.pulley import Pulley, fastest_rim
 from beltdyn.model.tooth_rating import RatedTeeth
 from beltdyn.parts.messages import Finding, listing
 from beltdyn.parts.quantity import RPM
-from beltdyn.theory.tooth_rating import REST_SHARE
+from beltdyn.theory.rating import REST_SHARE
 
 _DIAMETER_POWER = 5.6
 """Exponent of belt life over pulley diameter: published fits have 5.6 and 5.65."""

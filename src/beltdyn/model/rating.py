@@ -8,7 +8,7 @@ from pydantic import Field, model_validator
 from beltdyn.arrays import BoolArray, FloatArray
 from beltdyn.parts.part import Part
 from beltdyn.parts.quantity import Force, Length, MassPerLength, Ratio, Speed, Torque
-from beltdyn.theory.belt_rating import (
+from beltdyn.theory.rating import (
     RatingLaw,
     belts_factor,
     pulleys_factor,
@@ -25,7 +25,7 @@ MOST_BELTS = 1000
 
 
 class Rating(Part):
-    """The power rating of a profile, of one rib or V-belt: coefficients of the law of `beltdyn.theory.belt_rating`.
+    """The power rating of a profile, of one rib or V-belt: coefficients of the law of `beltdyn.theory.rating`.
 
     Examples
     --------

@@ -10,11 +10,11 @@ from beltdyn.arrays import BoolArray, FloatArray
 from beltdyn.model.toothing import Toothing
 from beltdyn.parts.part import Part
 from beltdyn.parts.quantity import AngularSpeed, Length, Ratio, Speed
-from beltdyn.theory.tooth_rating import mesh_factor, speed_factor
+from beltdyn.theory.rating import mesh_factor, speed_factor
 
 
 class ToothRating(Part):
-    """How the teeth of a profile are rated, with standard widths; the law is that of `beltdyn.theory.tooth_rating`.
+    """How the teeth of a profile are rated, with standard widths; the law is that of `beltdyn.theory.rating`.
 
     Examples
     --------

@@ -12,11 +12,11 @@ from beltdyn.model import Prepared
 from beltdyn.parts.quantity import RPM
 from beltdyn.results.checks.sliding import SWEEP_REMEDY
 from beltdyn.results.friction_work import FrictionWork, MaterialWork, Touch
-from beltdyn.results.jumps import JUMPS
+from beltdyn.results.incidents import JUMPS
 from beltdyn.results.mechanics import across
 from beltdyn.results.mid_span import mid_span_displacements
 from beltdyn.results.schema import FILTERED
-from beltdyn.results.slipping import sliding_of_pulleys
+from beltdyn.results.slip_safety import sliding_of_pulleys
 from beltdyn.solvers.flutter import Flutter, FlutterWatch
 from beltdyn.solvers.trajectory import Chunk
 from beltdyn.system.arrays import BENDING_LOSS, ENERGY_WORKS, STRETCH_LOSS, System

@@ -13,12 +13,12 @@ from beltdyn.model.tooth_rating import MeshRating, RatedTeeth
 from beltdyn.parts.messages import listing
 from beltdyn.points.changed_drive import held_at
 from beltdyn.results import Result, Variable, build_result
+from beltdyn.results.means import rate, utilization
 from beltdyn.results.schema import COORDINATES
 from beltdyn.results.summary import means_of
-from beltdyn.results.utilization import rate, utilization
 from beltdyn.solvers.progress import Report
 from beltdyn.state.steady import steady_state
-from beltdyn.theory.belt_rating import belts_factor, pulleys_factor
+from beltdyn.theory.rating import belts_factor, pulleys_factor
 
 _PULLEY = ("pulley",)
 
@@ -76,8 +76,8 @@ def rating(
 ) -> Result:
     """Rate the belt in steady running: rated power, utilization, and belts, ribs or width needed at each pulley.
 
-    The rated power is that of the belt's profile in the catalogue, by the law of `beltdyn.theory.belt_rating` with the
-    wrap, length, belts and pulleys factors. That of a toothed belt is by the law of `beltdyn.theory.tooth_rating`, with
+    The rated power is that of the belt's profile in the catalogue, by the law of `beltdyn.theory.rating` with the
+    wrap, length, belts and pulleys factors. That of a toothed belt is by the law of `beltdyn.theory.rating`, with
     the teeth in mesh and the speed of the pulley. The design power is the power of a pulley times the service factor.
 
     Parameters

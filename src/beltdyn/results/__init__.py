@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Any
 from beltdyn.results.balance import Balance, power_balance
 from beltdyn.results.checks import Finding
 from beltdyn.results.export import export
-from beltdyn.results.jumps import Jump, jumps
+from beltdyn.results.incidents import Jump, jumps
 from beltdyn.results.layout import Layout, describe_size, expected_bytes, require_room
 from beltdyn.results.limits import KeyNumber, key_numbers
 from beltdyn.results.means import PulleySummary, SpanSummary, TensionerSummary

@@ -14,7 +14,7 @@ from filelock import FileLock, Timeout
 
 from beltdyn.errors import ModelError
 from beltdyn.parts.text_file import open_file
-from beltdyn.results.checksums import find_checksums
+from beltdyn.results.staged_file import find_checksums
 
 _LONGEST_REASON = 200
 

@@ -11,10 +11,9 @@ from numpy.typing import NDArray
 from beltdyn.analyses import RUN
 from beltdyn.errors import ModelError
 from beltdyn.results.atomic import unreadable
-from beltdyn.results.checksums import DamageError, verify
 from beltdyn.results.layout import Layout
 from beltdyn.results.schema import AXIS_NAMES, COORDINATES, DERIVED, FORMAT, OPTIONAL, TIMES, VARIABLES, Variable
-from beltdyn.results.staged_file import is_marked
+from beltdyn.results.staged_file import DamageError, is_marked, verify
 
 if TYPE_CHECKING:
     import xarray as xr

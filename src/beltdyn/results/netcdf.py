@@ -16,10 +16,9 @@ import h5py
 import numpy as np
 from numpy.typing import NDArray
 
-from beltdyn.results.checksums import Checksums
 from beltdyn.results.layout import Layout, chunk_rows
 from beltdyn.results.schema import AUXILIARY_COORDINATES, COORDINATES, RECORDED, TIMES, Variable
-from beltdyn.results.staged_file import RESERVE, StagedFile, identity, mark
+from beltdyn.results.staged_file import RESERVE, Checksums, StagedFile, identity, mark
 
 if TYPE_CHECKING:
     import xarray as xr

@@ -2,20 +2,175 @@
 
 import math
 from bisect import bisect_left
+from dataclasses import dataclass, field, replace
+from typing import NamedTuple
 
 import numpy as np
 
-from beltdyn.model import Drive, Installation, Path, alignment, describe_time, prepare, tensioner_balances
+from beltdyn.errors import BeltdynError, ConvergenceError
+from beltdyn.model import (
+    Drive,
+    Installation,
+    Path,
+    advise,
+    alignment,
+    describe_time,
+    estimate_at_rest,
+    install,
+    prepare,
+    tensioner_balances,
+    unstable_balance,
+)
 from beltdyn.model.alignment import is_given
 from beltdyn.model.hysteresis import bending_resistance, compression_losses
 from beltdyn.model.meshing import teeth_in_mesh
 from beltdyn.model.plausibility import other_diameters
 from beltdyn.model.simulation import unused_settings
+from beltdyn.model.tensioning import DEFLECTION, TensionCheck, tension_checks
 from beltdyn.model.tooth_rating import RatedTeeth
 from beltdyn.parts.messages import aligned
 from beltdyn.results.layout import describe_size
-from beltdyn.show.sheet import Facts, Sheet, Table
-from beltdyn.show.tensioning import instruction
+from beltdyn.show.notebook import picture, templates
+from beltdyn.show.sheet import Facts, Sheet, Table, as_text
+from beltdyn.solvers.progress import Report
+from beltdyn.state.installation import bring_to_rest, is_compiled
+
+
+@dataclass(frozen=True, repr=False)
+class Check:
+    """A drive at rest, and what is probably not meant in it; ``print`` shows all."""
+
+    drive: Drive
+    """The drive, with the belt length or the take-up that gives its installed tension."""
+    installation: Installation
+    """Tension, penetrations, hub loads and span frequencies at rest."""
+    warnings: list[str]
+    """What is probably not meant, by how much it matters, and remedies."""
+    sheet: Sheet
+    """Tables and facts for a reader."""
+    computed: bool = field(default=True)
+    """Whether the installation is that of the computed equilibrium, and not of closed forms."""
+    failure: ConvergenceError | None = field(default=None)
+    """Why there is no static equilibrium, if it was sought."""
+
+    def __repr__(self) -> str:
+        count = len(self.warnings)
+        return (
+            f'Check of "{self.drive.title}": {self.installation.tension:.4g} N at rest'
+            f"{' (closed form)' * (not self.computed)}, {count or 'no'} warning{'s' * (count != 1)}"
+        )
+
+    def __str__(self) -> str:
+        return "\n".join([as_text(self.sheet), *(f"warning: {warning}" for warning in self.warnings)])
+
+    def _repr_html_(self) -> str:
+        page = templates().get_template("result.html.jinja")
+        shown = {"drive": self.drive, "picture": picture(self.drive), "sheet": self.sheet.parts}
+        return page.render(**shown, kind="drive", status="at rest", warnings=self.warnings)
+
+
+def check(drive: Drive, progress: Report | None = None, *, equilibrium: bool | None = None) -> Check:
+    """Bring a drive to rest, and look for what is probably not meant.
+
+    Closed forms need no compilation of kernels. Their tensions, hub loads and span frequencies are within 1 % of the
+    computed equilibrium on meshes that resolve the tension; see `beltdyn.model.estimate_at_rest`.
+
+    Parameters
+    ----------
+    drive : Drive
+        The drive.
+    progress : callable, optional
+        Called with a `Progress` before compilation and before the search.
+    equilibrium : bool, optional
+        Whether to compute the static equilibrium; by default where its kernels are compiled. Belts with teeth, supports
+        or goods are judged by closed forms.
+
+    Returns
+    -------
+    Check
+        With a `failure`, and of closed forms, if there is no static equilibrium.
+
+    Examples
+    --------
+    >>> checked = bd.check(drive)
+    >>> round(checked.installation.tension), len(checked.warnings)  # N
+    (27, 4)
+    >>> checked.installation.hub_loads.shape
+    (2, 2)
+    """
+    told = advise(drive, install(drive))
+    if not drive.stays_at_rest and (equilibrium or (equilibrium is None and is_compiled(drive))):
+        try:
+            rest = bring_to_rest(drive, progress)
+        except ConvergenceError as error:
+            return replace(_estimated(drive, told), failure=error)
+        unstable = [str(unstable_balance(rest.unstable))] if rest.unstable else []
+        found = rest.installation
+        return Check(rest.drive, found, [*unstable, *told], rest_sheet(drive, rest.drive, found))
+    return _estimated(drive, told)
+
+
+def _estimated(drive: Drive, told: list[str]) -> Check:
+    """A drive at rest by closed forms."""
+    prepared, found = estimate_at_rest(prepare(drive))
+    sheet = rest_sheet(drive, prepared.drive, found, computed=False)
+    return Check(prepared.drive, found, told, sheet, computed=False)
+
+
+_NAMED = {"new": "of a new belt", "run in": "run in", "least": "before it is tensioned again"}
+
+
+class Tensioning(NamedTuple):
+    """An instruction to tension a belt."""
+
+    facts: tuple[tuple[str, str], ...]
+    table: Table
+    """Frequency and force of each span."""
+
+
+def tensioning(drive: Drive, specified: float | None = None) -> Tensioning | None:
+    """Say how to tension a belt: its tension at rest, and how spans vibrate and deflect with it; None if slack."""
+    try:
+        return instruction(drive, install(drive), specified)
+    except (BeltdynError, ValueError):
+        return None
+
+
+def instruction(drive: Drive, installation: Installation, specified: float | None = None) -> Tensioning | None:
+    """Say how to tension a belt with its state at rest; None if it is slack."""
+    checks = tension_checks(drive, installation, specified)
+    if not checks or not all(check.frequencies.min() > 0.0 for check in checks):
+        return None
+    return Tensioning(tuple(_tension_facts(drive, checks)), _tension_table(drive, installation, checks))
+
+
+def _tension_facts(drive: Drive, checks: tuple[TensionCheck, ...]) -> list[tuple[str, str]]:
+    fixed = [one for one in drive.tensioners if one.kind == "fixed"]
+    centers = [(one.pulley, drive.centers[drive.carried(one)]) for one in fixed]
+    held = len(checks) == 1
+    said = [("tension at rest", f"{checks[0].tension:.4g} N, held by its tensioner")] if held else []
+    said += [(f"tension {_NAMED[one.state]}", f"{one.tension:.4g} N") for one in checks if not held]
+    each = f"each of {drive.belt.v_belts} V-belts" if drive.belt.v_belts > 1 else "the belt"
+    return [
+        *said,
+        *((f"center of {name}", f"[{x:.5g}, {y:.5g}] m after take-up") for name, (x, y) in centers),
+        ("frequency meter", "first frequency of a span plucked at rest"),
+        ("force", f"on {each} across the middle of a span, which deflects it by {1e3 * DEFLECTION:.3g} mm per m"),
+    ]
+
+
+def _tension_table(drive: Drive, installation: Installation, checks: tuple[TensionCheck, ...]) -> Table:
+    """Frequency and force of each span, in each state."""
+    lengths = installation.path.span_lengths.tolist()
+    columns = [aligned(lengths, 4), aligned([1e3 * DEFLECTION * one for one in lengths], 3)]
+    headings = ["", "length\nm", "deflection\nmm"]
+    for check in checks:
+        for unit, values in (("Hz", check.frequencies), ("N", check.forces)):
+            headings.append(f"{check.state}\n{unit}")
+            columns.append(aligned(values.tolist(), 3))
+    names = [f"{start} to {end}" for start, end in drive.spans]
+    return Table("Tensioning", tuple(headings), tuple(zip(names, *columns, strict=True)))
+
 
 _PULLEY_HEADINGS = (
     "",

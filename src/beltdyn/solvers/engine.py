@@ -11,7 +11,7 @@ import numpy as np
 from beltdyn.arrays import FloatArray
 from beltdyn.errors import ConvergenceError
 from beltdyn.kernel import kernel
-from beltdyn.solvers import alpha_advance
+from beltdyn.solvers import alpha_step
 from beltdyn.solvers.integrator_state import (
     IntegratorState,
     Settings,
@@ -75,7 +75,7 @@ def dispatch(
     """
     kind, trial = request.kind, state.trial
     if kind == ADVANCE:
-        return alpha_advance.advance(system, settings, state, equations, request.time, request.budget, steps)
+        return alpha_step.advance(system, settings, state, equations, request.time, request.budget, steps)
     motion = trial_motion(state, request.time)
     if kind == ACCELERATE:
         prescribe(system, motion)

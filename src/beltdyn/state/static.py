@@ -22,7 +22,7 @@ from beltdyn.system.meshing import phases, turning_grooves, unloaded
 from beltdyn.system.motion import new_equations, no_multipliers
 from beltdyn.system.state import State
 
-_TOLERANCE = 1e-11
+_STATE_TOLERANCE = 1e-11
 _FORCE_TOLERANCE = 1e-11
 """Of nodal forces over E A alpha1."""
 _SMALLEST_SHIFT, _LARGEST_SHIFT = 1e-6, 1e12
@@ -66,7 +66,7 @@ def find_equilibrium(
     iterates, norms = [start.nodes(system).copy()], list[float]()
     while len(norms) < max_iterations and shift < _LARGEST_SHIFT:
         norm = search.linearise(shift)
-        converged = shift == 0.0 and norm < _TOLERANCE
+        converged = shift == 0.0 and norm < _STATE_TOLERANCE
         if method == "newton" or converged:
             search.step(1.0)
         elif not search.step_naturally():

@@ -1,12 +1,12 @@
 """Stretch laws, tension over stretch, one per file; importing one here registers it."""
 
 from beltdyn.kernel import by_type
-from beltdyn.stretch.green import Green as Green
+from beltdyn.stretch.elastic import Green as Green
+from beltdyn.stretch.elastic import Linear as Linear
 from beltdyn.stretch.law import LAWS as LAWS
 from beltdyn.stretch.law import Stretching as Stretching
 from beltdyn.stretch.law import StretchLaw as StretchLaw
 from beltdyn.stretch.law import StretchParameters as StretchParameters
-from beltdyn.stretch.linear import Linear as Linear
 from beltdyn.stretch.measured import Measured as Measured
 from beltdyn.stretch.measured import through as through
 

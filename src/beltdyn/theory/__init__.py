@@ -4,19 +4,5 @@ import lazy_loader
 
 __getattr__, __dir__, __all__ = lazy_loader.attach(
     __name__,
-    submodules=[
-        "belt_rating",
-        "capstan",
-        "creep",
-        "elastic_creep",
-        "hoop",
-        "hysteresis",
-        "nip",
-        "path",
-        "running_drive",
-        "sliding_flutter",
-        "span",
-        "static_tension",
-        "tooth_rating",
-    ],
+    submodules=["creep", "hysteresis", "nip", "rating", "running_drive", "span", "static_tension"],
 )

@@ -1,17 +1,158 @@
-"""Creep-rate friction on a rigid pulley in steady running: f_t = -nu_s (v - omega R), capped at mu f_n (Eq. 22).
+"""Friction of a belt on a pulley: capstan, creep and flutter of sliding.
+
+Creep-rate friction on a rigid pulley in steady running: f_t = -nu_s (v - omega R), capped at mu f_n (Eq. 22).
 
 A belt that runs along a fixed curve passes every place with the same transport speed c, in reference length per second,
 and has the speed v = c g where its stretch is g.  Along the reference coordinate X of an arc of radius R
 
     d(T - rho A c^2 g) / dX = -f_t,        f_n = (T - rho A c^2 g) g / R.
+
+Flutter of a sliding belt: friction couples the normal force with longitudinal waves.
+
+On an arc let w be the displacement outwards and u that along the belt, both as exp(i q x + s t).  The belt stretches by
+u' + w / R, presses less by k_p w + c_p dw/dt, and where it slides friction is mu times that, whatever u does:
+
+    (m s^2 + c_p s + k_p + EA / R^2) w + i q EA / R u = 0
+    (m s^2 + EA q^2) u - (i q EA / R - mu (k_p + c_p s)) w = 0
+
+Waves of stretch in tune with the belt on its penalty springs, q sqrt(EA / m) = sqrt(k_p / m), take energy from what
+drives the pulley, like the coupled modes of brakes that squeal.  Where the belt creeps, friction damps them.  Bending
+and the belt's own tension are left out.
 """
 
-from math import exp, expm1, tanh
+from math import exp, expm1, log, pi, tanh
+from typing import NamedTuple
 
 import numpy as np
 
 from beltdyn.arrays import FloatArray
 from beltdyn.stretch import StretchParameters
+from beltdyn.theory.span import open_belt
+
+
+def capstan_ratio(friction: float, angle: float) -> float:
+    """Ratio e^(mu theta) of the tensions at the ends of an arc of sliding.
+
+    Examples
+    --------
+    Half a turn with a friction of 0.5:
+
+    >>> from math import pi
+    >>> round(bd.theory.creep.capstan_ratio(0.5, pi), 3)
+    4.81
+    """
+    return exp(friction * angle)
+
+
+def tight_tension(
+    slack: float, friction: float, angle: float, *, mass_per_length: float = 0.0, speed: float = 0.0
+) -> float:
+    """Tension T1 at the tight end: (T1 - rho A v^2) = (T2 - rho A v^2) e^(mu theta).
+
+    Examples
+    --------
+    >>> from math import pi
+    >>> round(bd.theory.creep.tight_tension(100.0, 0.5, pi, mass_per_length=0.1, speed=20.0), 1)
+    328.6
+    """
+    lifted = mass_per_length * speed**2
+    return lifted + (slack - lifted) * capstan_ratio(friction, angle)
+
+
+def sliding_angle(
+    tight: float, slack: float, friction: float, *, mass_per_length: float = 0.0, speed: float = 0.0
+) -> float:
+    """Sliding arc between two tensions, ln((T1 - rho A v^2) / (T2 - rho A v^2)) / mu, rad.
+
+    Parameters are those of `tight_tension`, with the tight tension T1 (N) in place of the angle.
+
+    Examples
+    --------
+    >>> round(bd.theory.creep.sliding_angle(tight=300.0, slack=100.0, friction=0.5), 3)
+    2.197
+    """
+    lifted = mass_per_length * speed**2
+    return log((tight - lifted) / (slack - lifted)) / friction
+
+
+def speed_loss(tight: float, slack: float, law: StretchParameters) -> float:
+    """Loss of speed (v1 - v2) / v1 = 1 - g(T2) / g(T1) of the rims, (T1 - T2) / EA at small strain.
+
+    Where the belt runs onto a pulley it adheres and has the speed of the rim: c g(T1) on the driver, c g(T2) on the
+    driven pulley, with the same c, the reference length that passes per second.
+
+    Examples
+    --------
+    >>> from beltdyn.stretch import Linear
+    >>> f"{bd.theory.creep.speed_loss(tight=300.0, slack=100.0, law=Linear(1e5)):.3%}"
+    '0.199%'
+    """
+    return 1.0 - float(law.stretch(slack) / law.stretch(tight))
+
+
+def slip_arc(tight: float, slack: float, friction: float, *, mass_per_length: float = 0.0, speed: float = 0.0) -> float:
+    """Sliding arc before the exit of a pulley, rad; on the rest of the wrap the belt adheres.
+
+    Parameters are those of `sliding_angle`.
+    """
+    return sliding_angle(tight, slack, friction, mass_per_length=mass_per_length, speed=speed)
+
+
+def entry_strain(
+    tension: FloatArray,
+    radii: FloatArray,
+    *,
+    bending_stiffness: float,
+    axial_stiffness: float,
+    contact_stiffness: float,
+    bent_strain: float,
+    loss_factor: float = 0.0,
+) -> FloatArray:
+    """Strain lost by the belt at the entry of a pulley against its span, and the resulting loss of rim speed.
+
+    In a span of tension T the belt bends towards a rim of stiffness k.  With q = EI k / T^2 the beam on springs, E I
+    d'''' - T d'' + k d = T / R, meets the rim with the curvature kappa and the angle alpha,
+
+        kappa R = sqrt(q) / (1 + sqrt(q) + sqrt(1 + 2 sqrt(q))),    alpha^2 = T / (k R^2).
+
+    What does not depend on the place along a belt, T g - psi and the energy of bending, takes (1/2 - e) EI kappa^2 from
+    the strain's EA, with e EI kappa^2 / EA the strain of a bent belt without tension; hysteresis takes pi/8 eta EI
+    kappa^2, half of what bending forth and back loses.  The rim sees cos(alpha) of the belt's speed.
+    """
+    pull = np.maximum(tension, 1e-9 * axial_stiffness)
+    root = np.sqrt(bending_stiffness * contact_stiffness) / pull
+    bent = (root / (1.0 + root + np.sqrt(1.0 + 2.0 * root)) / radii) ** 2
+    share = 0.5 - bent_strain + pi / 8.0 * loss_factor
+    return np.asarray(share * bending_stiffness / axial_stiffness * bent + 0.5 * pull / (contact_stiffness * radii**2))
+
+
+def gross_slip_tensions(
+    installed: float,
+    friction: float,
+    distance: float,
+    radius: float,
+    *,
+    mass_per_length: float = 0.0,
+    speed: float = 0.0,
+) -> tuple[float, float]:
+    """Tight and slack tension of a drive with equal pulleys at gross slip.
+
+    At small strain the belt's length fixes the mean of the tension over the path: with the lifted tension
+    T0 = rho A v^2, span l, T1 - T0 = (T2 - T0) e^(mu pi), and arcs with the mean (T1 - T2) / (mu pi),
+
+        l (T1 - T0 + T2 - T0) + 2 R (T1 - T2) / mu = (2 l + 2 pi R) (T - T0).
+
+    Examples
+    --------
+    >>> tight, slack = bd.theory.creep.gross_slip_tensions(200.0, friction=0.3, distance=0.4, radius=0.05)
+    >>> round(tight, 1), round(slack, 1)
+    (293.5, 114.4)
+    """
+    belt, lifted = open_belt(distance, (radius, radius)), mass_per_length * speed**2
+    ratio = exp(friction * belt.wrap[0])
+    weight = belt.span * (ratio + 1.0) + 2.0 * radius * (ratio - 1.0) / friction
+    slack = belt.length * (installed - lifted) / weight
+    return lifted + ratio * slack, lifted + slack
 
 
 def layer_length(
@@ -91,3 +232,56 @@ def creeping_arc(
         0
     ]
     return found, friction_force(found, law.stretch(found))
+
+
+_SHORTEST = 20.0
+"""Largest wave number considered, over that of the tuned waves."""
+_WAVES = 4000
+
+
+class Flutter(NamedTuple):
+    """A wave that grows like exp(rate t)."""
+
+    rate: float
+    """1/s; negative if it decays."""
+    frequency: float
+    """Hz."""
+    wave_number: float
+    """q, 1/m."""
+
+
+class SlidingBelt(NamedTuple):
+    """A belt sliding on a pulley of radius R."""
+
+    mass_per_length: float
+    """m, kg/m."""
+    axial_stiffness: float
+    """EA, N: the rate dN/dg of the law of stretch at the tension of the belt."""
+    radius: float
+    """R, m."""
+    stiffness: float
+    """k_p, N/m^2."""
+    damping: float
+    """c_p, N s/m^2."""
+    friction: float
+    """mu."""
+
+
+def flutter_at(belt: SlidingBelt, wave_number: float) -> Flutter:
+    """The wave of a wave number q (1/m) that grows fastest, running either way."""
+    axial, radius = belt.axial_stiffness, belt.radius
+    radial = np.array([belt.mass_per_length, belt.damping, belt.stiffness + axial / radius**2])
+    along = np.array([belt.mass_per_length, 0.0, axial * wave_number**2])
+    stretch = 1j * wave_number * axial / radius
+    rubbing = np.array([0.0, -belt.friction * belt.damping, -belt.friction * belt.stiffness])
+    coupling = np.convolve([0.0, 0.0, stretch], rubbing + np.array([0.0, 0.0, stretch]))
+    roots = np.roots(np.convolve(radial, along) + coupling)
+    fastest = roots[np.argmax(roots.real)]
+    return Flutter(float(fastest.real), float(abs(fastest.imag)) / (2.0 * np.pi), wave_number)
+
+
+def fastest_flutter(belt: SlidingBelt) -> Flutter:
+    """The fastest growing wave on an infinite arc, a bound for partly sliding arcs."""
+    in_tune = np.sqrt(belt.stiffness / belt.axial_stiffness)
+    waves = in_tune * np.linspace(0.0, _SHORTEST, _WAVES + 1)[1:]
+    return max((flutter_at(belt, float(wave)) for wave in waves), key=lambda flutter: flutter.rate)

@@ -21,7 +21,7 @@ import numpy as np
 from beltdyn.arrays import FloatArray
 from beltdyn.errors import ConvergenceError
 from beltdyn.stretch import StretchParameters
-from beltdyn.theory.path import OpenBelt, open_belt
+from beltdyn.theory.span import OpenBelt, open_belt
 from beltdyn.theory.static_tension import static_tension
 
 _X, _Y, _SECTION, _SECTION_RATE, _FORCE_X, _FORCE_Y, _TORQUE = range(7)

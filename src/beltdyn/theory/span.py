@@ -1,4 +1,6 @@
-"""A span between its pulleys: lowest frequency with sag, and the force that deflects it.
+"""Spans and circular arcs of a tight string.
+
+A span between its pulleys: lowest frequency with sag, and the force that deflects it.
 
 Frequency (Irvine and Caughey 1974).  A parabola between ends that hold it is stretched as it swings, since it sags.
 With the weight w per length across it
@@ -17,7 +19,8 @@ which is F l / 4T of a string for large u, and F l^3 / 48 EI of a beam for small
 stretched by 2 w^2 / l, as by a bent line of two straight halves.
 """
 
-from math import cos, pi, sin, sqrt, tanh
+from math import asin, cos, pi, sin, sqrt, tanh
+from typing import NamedTuple
 
 _SMALLEST = 1e-12
 """lambda^2 below which a span is straight."""
@@ -97,3 +100,90 @@ def _flexibility(length: float, tension: float, bending: float) -> float:
         return 1.0
     half = 0.5 * length * sqrt(tension / bending)
     return half**2 / 3.0 if half < _SMALL else 1.0 - tanh(half) / half
+
+
+def hoop_tension(mass_per_length: float, speed: float) -> float:
+    """Centrifugal tension T = rho A v^2 (Routh 1860) of a running belt without contact.
+
+    Examples
+    --------
+    >>> bd.theory.span.hoop_tension(mass_per_length=0.1, speed=20.0)
+    40.0
+    """
+    return mass_per_length * speed**2
+
+
+def hoop_stretch(
+    transport_speed: float,
+    axial_stiffness: float,
+    mass_per_length: float,
+    *,
+    bending_stiffness: float = 0.0,
+    turning: float = 0.0,
+) -> float:
+    """Stretch g of a spinning hoop by Green's strain, exactly: g^2 = 1 + (2 rho A c^2 - 3 EI kappa^2) / EA.
+
+    With v = c g and rho A / g kg in a running meter the hoop tension is rho A c^2 g.  The belt carries it by stretch,
+    EA (g^2 - 1) g / 2, and, as it was straight unstressed, by bending, 3/2 EI kappa^2 g (Eq. 14).
+
+    Examples
+    --------
+    >>> round(bd.theory.span.hoop_stretch(20.0, axial_stiffness=1e5, mass_per_length=0.1), 6)
+    1.0004
+    """
+    inertia = 2.0 * mass_per_length * transport_speed**2
+    return sqrt(1.0 + (inertia - 3.0 * bending_stiffness * turning**2) / axial_stiffness)
+
+
+class OpenBelt(NamedTuple):
+    """Path of an open (not crossed) belt around two pulleys."""
+
+    span: float
+    """Length of each span, m."""
+    tilt: float
+    """Angle between the spans and the line of centers, positive towards the second pulley, rad."""
+    wrap: tuple[float, float]
+    """Wrap angles, rad."""
+    length: float
+    """m."""
+
+
+def open_belt(distance: float, radii: tuple[float, float]) -> OpenBelt:
+    """Path of length 2 D cos b + R1 (pi - 2 b) + R2 (pi + 2 b) around two pulleys, sin b = (R2 - R1) / D.
+
+    Examples
+    --------
+    >>> round(bd.theory.span.open_belt(distance=0.4, radii=(0.05, 0.1)).length, 4)
+    1.2775
+    """
+    tilt = asin((radii[1] - radii[0]) / distance)
+    span = sqrt(distance**2 - (radii[1] - radii[0]) ** 2)
+    wrap = (pi - 2.0 * tilt, pi + 2.0 * tilt)
+    return OpenBelt(span, tilt, wrap, 2.0 * span + radii[0] * wrap[0] + radii[1] * wrap[1])
+
+
+_CLEAR = 1.05
+"""Least center distance over that of touching pulleys."""
+
+
+def center_distance(length: float, radii: tuple[float, float]) -> float | None:
+    """Center distance at which the path around two pulleys has a length, m; None if the pulleys would touch.
+
+    By Newton's method: the path grows by twice the cosine of the tilt.
+
+    Examples
+    --------
+    >>> round(bd.theory.span.center_distance(1.2775, radii=(0.05, 0.1)), 3)
+    0.4
+    """
+    least = _CLEAR * sum(radii)
+    if open_belt(least, radii).length > length:
+        return None
+    distance = 0.5 * (length - pi * sum(radii))
+    for _ in range(20):
+        path = open_belt(max(distance, least), radii)
+        step = (length - path.length) / (2.0 * cos(path.tilt))
+        distance = max(distance, least) + step
+        if abs(step) < 1e-12:
+            break
+    return distance

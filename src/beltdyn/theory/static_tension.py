@@ -7,7 +7,7 @@ import numpy as np
 
 from beltdyn.errors import ModelError
 from beltdyn.stretch import StretchParameters
-from beltdyn.theory.path import open_belt
+from beltdyn.theory.span import open_belt
 
 _DEEPEST = 0.15
 """Largest tension over k_p R^2 considered; above 1/6, a penetration of R/3, there is no equilibrium."""

@@ -11,7 +11,7 @@ from beltdyn.model.path import span_directions
 from beltdyn.points.quasi_steady import Running
 from beltdyn.vibration.excitation import LOAD, SPEED, Excitation, own_excitations, speed_waves, torque_waves
 from beltdyn.vibration.lumped import LumpedDrive, lumped_drive
-from beltdyn.vibration.response_range import friction_dashpots
+from beltdyn.vibration.response_answers import friction_dashpots
 
 _ROUNDS, _SETTLED = 30, 1e-3
 """Rounds in which dashpots for dry friction settle, at most, and the relative change that ends them."""

@@ -19,8 +19,7 @@ from beltdyn.results import Result, Run, Variable, open_run
 from beltdyn.solvers.progress import Report
 from beltdyn.vibration.excitation import Excitation, averaged
 from beltdyn.vibration.modes import SLIDING, STUCK
-from beltdyn.vibration.response_answers import RESPONSES, Answers, ForcedMotion
-from beltdyn.vibration.response_range import SMALL_ERROR
+from beltdyn.vibration.response_answers import RESPONSES, SMALL_ERROR, Answers, ForcedMotion
 from beltdyn.vibration.small_motions import require_closed
 
 if TYPE_CHECKING:

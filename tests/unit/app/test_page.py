@@ -13,11 +13,11 @@ from nicegui import ui
 from nicegui.testing import User, user_simulation
 
 from beltdyn.app import numbers_view
-from beltdyn.app.analysis_view import AnalysisView
 from beltdyn.app.computing import Answer, Asked, Calculator
 from beltdyn.app.jobs import Outcome
 from beltdyn.app.numbers_view import table_html
 from beltdyn.app.page import Canvas, Page
+from beltdyn.app.results_view import AnalysisView
 from beltdyn.app.session import Session
 from beltdyn.app.workspace import Workspace
 from beltdyn.show.sheet import Facts, Table

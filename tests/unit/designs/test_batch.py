@@ -16,7 +16,7 @@ import pytest
 
 from beltdyn import simulate
 from beltdyn.designs.batch import simulate_all
-from beltdyn.designs.worker import Ending
+from beltdyn.designs.processes import Ending
 from beltdyn.errors import ModelError
 from beltdyn.model import Drive
 from beltdyn.results import Run, open_run, summarize

@@ -13,8 +13,8 @@ from beltdyn.errors import ModelError
 from beltdyn.model import install, loads, prepare, read_catalogue
 from beltdyn.model.rating import RatedBelt
 from beltdyn.model.tensioning import RUN_IN
-from beltdyn.results.utilization import rate
-from beltdyn.theory.path import open_belt
+from beltdyn.results.means import rate
+from beltdyn.theory.span import open_belt
 
 RPM = 30.0 / pi
 TASK: dict[str, Any] = {"power": "7.5 kW", "speed": "1450 rpm", "driven_speed": "700 rpm", "service_factor": 1.2}

@@ -13,8 +13,8 @@ import numpy as np
 import pytest
 
 from beltdyn.designs import point_work
+from beltdyn.designs.processes import ThisProcess
 from beltdyn.designs.study import study
-from beltdyn.designs.worker import ThisProcess
 from beltdyn.errors import ModelError
 from beltdyn.model import Drive, ParameterStudy
 from beltdyn.results import Result, open_result

@@ -13,9 +13,8 @@ import numpy as np
 import pytest
 
 from beltdyn.designs.point_work import Outcome, PointWork
-from beltdyn.designs.processes import LocalProcesses
+from beltdyn.designs.processes import DaskWorkers, LocalProcesses, ThisProcess, Workers
 from beltdyn.designs.study import Dispatch, study
-from beltdyn.designs.worker import DaskWorkers, ThisProcess, Workers
 from beltdyn.errors import SimulationError
 from beltdyn.kinds import register
 from beltdyn.model import Drive, ParameterStudy

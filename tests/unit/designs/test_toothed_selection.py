@@ -12,9 +12,9 @@ from beltdyn.designs.toothed_selection import TEETH
 from beltdyn.errors import ModelError
 from beltdyn.model import install, prepare, read_catalogue
 from beltdyn.model.advice import advise
-from beltdyn.results.utilization import rate
-from beltdyn.theory.path import open_belt
-from beltdyn.theory.tooth_rating import REST_SHARE
+from beltdyn.results.means import rate
+from beltdyn.theory.rating import REST_SHARE
+from beltdyn.theory.span import open_belt
 
 RPM = 30.0 / pi
 TASK: dict[str, Any] = {"power": "3 kW", "speed": "1450 rpm", "driven_speed": "725 rpm", "service_factor": 1.4}

@@ -6,7 +6,7 @@ import pytest
 
 from beltdyn.errors import ModelError
 from beltdyn.model import OptimizationStudy
-from beltdyn.model.toml_reader import read_study
+from beltdyn.model.toml import read_study
 
 STUDY = """
 [[number]]

@@ -3,7 +3,7 @@
 import pytest
 
 from beltdyn.errors import ModelError
-from beltdyn.model.toml_reader import example, example_texts
+from beltdyn.model.toml import example, example_texts
 
 
 @pytest.mark.parametrize("name", example_texts())

@@ -7,7 +7,7 @@ import pytest
 
 from beltdyn.designs.sensitivity import numbers_of
 from beltdyn.model import Drive, dumps, loads
-from beltdyn.model.toml_writer import edited, spelled_out
+from beltdyn.model.toml import edited, spelled_out
 from beltdyn.parts.change import unit_at
 from beltdyn.parts.tolerances import tolerances_of
 

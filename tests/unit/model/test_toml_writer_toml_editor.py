@@ -6,7 +6,7 @@ import pytest
 
 from beltdyn.errors import ModelError
 from beltdyn.model import Drive, loads
-from beltdyn.model.toml_writer import edited
+from beltdyn.model.toml import edited
 
 
 def test_the_rest_stays_as_its_author_wrote_it(drive: Drive, drive_text: str) -> None:

@@ -170,7 +170,7 @@ def test_other_processes_import_the_module_that_registers_a_kind(tmp_path: Path)
     (tmp_path / "laws.py").write_text(SCRIPT, encoding="utf-8")
     program = """
 import beltdyn as bd, laws
-from beltdyn.designs.worker import LocalProcesses
+from beltdyn.designs.processes import LocalProcesses
 drive = bd.example("two_pulley")
 drive = drive.replace(contact=drive.contact.replace(friction_law="sloped", slope=3.0, creep_rate_factor=None))
 workers = LocalProcesses(1)

@@ -8,7 +8,7 @@ import pytest
 
 from beltdyn.errors import ModelError
 from beltdyn.model import alignment, loads
-from beltdyn.model.toml_writer import dumps, edited
+from beltdyn.model.toml import dumps, edited
 from beltdyn.parts.tolerances import tolerances_of
 from validation.published.cases import demo_text
 

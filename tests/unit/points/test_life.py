@@ -9,7 +9,7 @@ import pytest
 from beltdyn.errors import ModelError
 from beltdyn.model import Drive, dumps
 from beltdyn.points.life import life
-from beltdyn.points.operating_map import operating_map
+from beltdyn.points.operating_points import operating_map
 from beltdyn.results import Result, Run, open_result
 from beltdyn.results.fatigue import Damage
 from beltdyn.state.steady import steady_state

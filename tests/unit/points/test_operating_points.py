@@ -14,8 +14,7 @@ from beltdyn.model import Drive
 from beltdyn.points import operating_points
 from beltdyn.points.changed_drive import at_speed, held_at
 from beltdyn.points.duty import duty
-from beltdyn.points.operating_map import operating_map
-from beltdyn.points.operating_points import OperatingPoints, serpentine
+from beltdyn.points.operating_points import OperatingPoints, operating_map, serpentine
 from beltdyn.points.traction import traction
 from beltdyn.results import Result, Run, Variable
 from beltdyn.state.steady import steady_state

@@ -16,8 +16,8 @@ from beltdyn.results.fatigue import (
     hourly_damage,
     known_variables,
     miner,
+    rainflow_of_turn,
 )
-from beltdyn.results.rainflow import rainflow_of_turn
 from beltdyn.state.steady import steady_state
 from beltdyn.transient.simulate import simulate
 

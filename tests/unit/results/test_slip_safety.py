@@ -12,7 +12,7 @@ from scipy.optimize import brentq
 from beltdyn.arrays import FloatArray
 from beltdyn.model import Drive, loads, prepare
 from beltdyn.results.slip_safety import friction_used, slip_safety_of_states
-from beltdyn.theory.capstan import tight_tension
+from beltdyn.theory.creep import tight_tension
 
 EXACT = 1e-5
 

@@ -12,8 +12,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from beltdyn.results import staged_file
-from beltdyn.results.checksums import PAGE, DamageError, find_checksums, verify
-from beltdyn.results.staged_file import RESERVE, StagedFile, identity
+from beltdyn.results.staged_file import PAGE, RESERVE, DamageError, StagedFile, find_checksums, identity, verify
 
 BLOCK = 16384
 CONTENTS = bytes(range(256)) * 200

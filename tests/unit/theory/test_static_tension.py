@@ -5,7 +5,7 @@ import pytest
 
 from beltdyn.errors import ModelError
 from beltdyn.stretch import Green, StretchParameters
-from beltdyn.theory.path import open_belt
+from beltdyn.theory.span import open_belt
 from beltdyn.theory.static_tension import static_tension, stretch_with_penetration
 
 RADII = (0.08, 0.1)

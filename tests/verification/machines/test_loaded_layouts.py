@@ -12,8 +12,7 @@ import xarray as xr
 
 from beltdyn import simulate
 from beltdyn.model import Drive
-from beltdyn.theory.capstan import sliding_angle, tight_tension
-from beltdyn.theory.elastic_creep import speed_loss
+from beltdyn.theory.creep import sliding_angle, speed_loss, tight_tension
 
 Make = Callable[..., Drive]
 Measured = Callable[..., None]

@@ -11,7 +11,7 @@ import xarray as xr
 
 from beltdyn import simulate
 from beltdyn.model import Drive
-from beltdyn.theory.elastic_creep import gross_slip_tensions, slip_arc, speed_loss
+from beltdyn.theory.creep import gross_slip_tensions, slip_arc, speed_loss
 from beltdyn.theory.static_tension import static_tension
 
 FRICTION, SPEED = 0.4, 12.0

@@ -19,7 +19,7 @@ from beltdyn.system.discretization import belt_section
 from beltdyn.system.observations import Observations
 from beltdyn.system.observe import observe
 from beltdyn.system.state import State
-from beltdyn.theory.hoop import hoop_stretch, hoop_tension
+from beltdyn.theory.span import hoop_stretch, hoop_tension
 
 SPEED, TURNS = 200.0, 2.0
 

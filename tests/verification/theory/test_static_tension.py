@@ -15,8 +15,8 @@ from beltdyn.state.static import find_equilibrium
 from beltdyn.system.build import drive_system
 from beltdyn.system.observe import observe
 from beltdyn.system.state import laid
-from beltdyn.theory.path import open_belt
 from beltdyn.theory.running_drive import RunningDrive, run_steadily
+from beltdyn.theory.span import open_belt
 from beltdyn.theory.static_tension import StaticTension, static_tension
 
 Change = Callable[..., Drive]

@@ -17,7 +17,7 @@ from beltdyn.quadrature import gauss_points
 from beltdyn.records import blank
 from beltdyn.state.installation import bring_to_rest
 from beltdyn.system.discretization import belt_section
-from beltdyn.theory.elastic_creep import speed_loss
+from beltdyn.theory.creep import speed_loss
 
 CURVE = {"strains": [0.01, 0.02, 0.03, 0.05], "tensions": [70.0, 120.0, 155.0, 200.0]}
 """A belt that softens: 8.3 kN without strain, 2.9 kN at 155 N."""

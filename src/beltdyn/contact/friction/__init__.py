@@ -1,12 +1,12 @@
 """Friction laws, one per file (Eqs. 20 and 22, Fig. 3); importing one here registers it."""
 
 from beltdyn.contact.friction.air_film import AirFilm as AirFilm
-from beltdyn.contact.friction.coefficient_slope import CoefficientSlope as CoefficientSlope
-from beltdyn.contact.friction.force_slope import ForceSlope as ForceSlope
+from beltdyn.contact.friction.creep_rate import CoefficientSlope as CoefficientSlope
+from beltdyn.contact.friction.creep_rate import ForceSlope as ForceSlope
+from beltdyn.contact.friction.creep_rate import RelativeCreep as RelativeCreep
 from beltdyn.contact.friction.law import LAWS as LAWS
 from beltdyn.contact.friction.law import FrictionLaw as FrictionLaw
 from beltdyn.contact.friction.law import FrictionParameters as FrictionParameters
-from beltdyn.contact.friction.relative_creep import RelativeCreep as RelativeCreep
 from beltdyn.contact.friction.stribeck import Stribeck as Stribeck
 from beltdyn.kernel import by_type, kernel
 

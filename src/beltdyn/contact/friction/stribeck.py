@@ -13,8 +13,8 @@ from typing import NamedTuple
 from numpy.typing import ArrayLike
 
 from beltdyn.arrays import FloatArray
+from beltdyn.contact.friction.creep_rate import CREEP_KEYS, RelativeCreep, creep_velocity, relative_creep
 from beltdyn.contact.friction.law import FrictionLaw
-from beltdyn.contact.friction.relative_creep import CREEP_KEYS, RelativeCreep, creep_velocity, relative_creep
 from beltdyn.kernel import kernel
 from beltdyn.kinds import Parameter, register
 

@@ -4,8 +4,8 @@ from beltdyn.contact.normal.law import LAWS as LAWS
 from beltdyn.contact.normal.law import NormalForce as NormalForce
 from beltdyn.contact.normal.law import NormalLaw as NormalLaw
 from beltdyn.contact.normal.law import NormalParameters as NormalParameters
-from beltdyn.contact.normal.no_pull import NoPull as NoPull
-from beltdyn.contact.normal.published import Published as Published
+from beltdyn.contact.normal.penalty import NoPull as NoPull
+from beltdyn.contact.normal.penalty import Published as Published
 from beltdyn.kernel import by_type, kernel
 
 _pressed = by_type(LAWS.by_class("force"), "normal_force")

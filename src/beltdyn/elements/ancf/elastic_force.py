@@ -12,8 +12,7 @@ import numpy as np
 
 from beltdyn.arrays import FloatArray
 from beltdyn.elements.ancf.cross_section import NodalShear, add_shear_curvature, nodal_shear, shear_gradient
-from beltdyn.elements.ancf.element import Ancf
-from beltdyn.elements.ancf.shape_functions import Four, bends, slopes
+from beltdyn.elements.ancf.element import Ancf, Four, bends, slopes
 from beltdyn.elements.kind import Section
 from beltdyn.kernel import kernel
 from beltdyn.records import record

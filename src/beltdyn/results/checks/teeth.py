@@ -6,7 +6,7 @@ import numpy as np
 
 from beltdyn.parts.messages import Finding, listing
 from beltdyn.results.checks.evidence import Evidence
-from beltdyn.results.jumps import jumps_in
+from beltdyn.results.incidents import jumps_in
 from beltdyn.results.tooth_loads import ToothLoads, loads_over_time
 
 _LIFTS = 1.01

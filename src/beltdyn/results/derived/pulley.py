@@ -8,8 +8,7 @@ from beltdyn.results.cycles import Cycle, Window, plain_window, turn_window
 from beltdyn.results.derived.labels import labelled, window
 from beltdyn.results.mechanics import rim_speeds, tensions_at_arcs
 from beltdyn.results.run import Run
-from beltdyn.results.slip_safety import slip_safety_of
-from beltdyn.results.slipping import slip_parts
+from beltdyn.results.slip_safety import slip_parts, slip_safety_of
 
 # Pulley powers over time
 
@@ -198,7 +197,7 @@ def slips(run: Run, start: float | None = None, end: float | None = None, *, tur
 
     with the stretches g of the spans that reach the two pulleys, (T_d - T_i) / E A at small strain, is the creep
     of a belt without bending stiffness under Coulomb friction (Reynolds 1874, Grashof 1883). ``bending`` is due to the
-    stretch lost in bending and its hysteresis at the inlet (`theory.elastic_creep.entry_strain`), and
+    stretch lost in bending and its hysteresis at the inlet (`theory.creep.entry_strain`), and
     ``regularization``, the rest, to the slope of the friction law. Sliding has no bound, as on an overloaded pulley.
 
     Parameters

@@ -3,18 +3,24 @@
 from typing import Any
 
 from beltdyn.show.plot.animation import animate as animate
-from beltdyn.show.plot.axis import carriage_error as carriage_error
-from beltdyn.show.plot.axis import stroke as stroke
 from beltdyn.show.plot.contact import contact_forces as contact_forces
 from beltdyn.show.plot.contact import contact_pressure as contact_pressure
+from beltdyn.show.plot.contact import load_sharing as load_sharing
+from beltdyn.show.plot.contact import nip_pressure as nip_pressure
+from beltdyn.show.plot.contact import transmission_error as transmission_error
+from beltdyn.show.plot.contact import transmission_orders as transmission_orders
 from beltdyn.show.plot.contact import wear_by_arc as wear_by_arc
 from beltdyn.show.plot.contact import wear_by_belt as wear_by_belt
+from beltdyn.show.plot.designs import belt_history as belt_history
+from beltdyn.show.plot.designs import damage_shares as damage_shares
 from beltdyn.show.plot.designs import optimization as optimization
 from beltdyn.show.plot.designs import sensitivity as sensitivity
+from beltdyn.show.plot.designs import sheet_slip_safety as sheet_slip_safety
+from beltdyn.show.plot.designs import sheet_tensions as sheet_tensions
 from beltdyn.show.plot.designs import tolerances as tolerances
 from beltdyn.show.plot.drive import configuration as configuration
-from beltdyn.show.plot.drive_sheet import sheet_slip_safety as sheet_slip_safety
-from beltdyn.show.plot.drive_sheet import sheet_tensions as sheet_tensions
+from beltdyn.show.plot.drive import save_stretch as save_stretch
+from beltdyn.show.plot.drive import stretch as stretch
 from beltdyn.show.plot.figures import save_all as save_all
 from beltdyn.show.plot.history import energy as energy
 from beltdyn.show.plot.history import mid_spans as mid_spans
@@ -25,10 +31,6 @@ from beltdyn.show.plot.history import tensioners as tensioners
 from beltdyn.show.plot.history import torques as torques
 from beltdyn.show.plot.layout import layout as layout
 from beltdyn.show.plot.layout import save_layout as save_layout
-from beltdyn.show.plot.legends import name_lines as name_lines
-from beltdyn.show.plot.life import belt_history as belt_history
-from beltdyn.show.plot.life import damage_shares as damage_shares
-from beltdyn.show.plot.nip import nip_pressure as nip_pressure
 from beltdyn.show.plot.operating_points import efficiency_map as efficiency_map
 from beltdyn.show.plot.operating_points import operating_points as operating_points
 from beltdyn.show.plot.operating_points import tensioner_sheet as tensioner_sheet
@@ -43,27 +45,25 @@ from beltdyn.show.plot.registry import FIGURES as FIGURES
 from beltdyn.show.plot.registry import always as always
 from beltdyn.show.plot.registry import figure as figure
 from beltdyn.show.plot.registry import over_time as over_time
-from beltdyn.show.plot.stretch import save_stretch as save_stretch
-from beltdyn.show.plot.stretch import stretch as stretch
 from beltdyn.show.plot.study import parallel_coordinates as parallel_coordinates
+from beltdyn.show.plot.study import sobol_indices as sobol_indices
 from beltdyn.show.plot.study import study_contour as study_contour
 from beltdyn.show.plot.study import study_lines as study_lines
-from beltdyn.show.plot.study_effects import sobol_indices as sobol_indices
-from beltdyn.show.plot.study_effects import tornado as tornado
+from beltdyn.show.plot.study import tornado as tornado
 from beltdyn.show.plot.style import axes_or_new as axes_or_new
 from beltdyn.show.plot.style import color as color
 from beltdyn.show.plot.style import dash as dash
 from beltdyn.show.plot.style import label as label
+from beltdyn.show.plot.style import name_lines as name_lines
 from beltdyn.show.plot.sweep import orders as orders
 from beltdyn.show.plot.sweep import waterfall as waterfall
-from beltdyn.show.plot.teeth import load_sharing as load_sharing
-from beltdyn.show.plot.teeth import transmission_error as transmission_error
-from beltdyn.show.plot.teeth import transmission_orders as transmission_orders
 from beltdyn.show.plot.vibration import animate_modes as animate_modes
 from beltdyn.show.plot.vibration import campbell as campbell
+from beltdyn.show.plot.vibration import carriage_error as carriage_error
 from beltdyn.show.plot.vibration import mode_damping as mode_damping
 from beltdyn.show.plot.vibration import mode_shape as mode_shape
 from beltdyn.show.plot.vibration import response as response
+from beltdyn.show.plot.vibration import stroke as stroke
 
 __all__ = [
     "FIGURES",

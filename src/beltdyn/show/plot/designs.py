@@ -10,10 +10,10 @@ from matplotlib.ticker import MaxNLocator
 
 from beltdyn.errors import ModelError
 from beltdyn.parts.messages import suggest
+from beltdyn.parts.quantity import RPM
 from beltdyn.results import Result
-from beltdyn.show.plot.legends import name_lines
 from beltdyn.show.plot.registry import Choice, always, figure
-from beltdyn.show.plot.style import INK, axes_or_new, color, panels, rows
+from beltdyn.show.plot.style import INK, axes_or_new, color, dash, name_lines, name_once, panels, rows
 
 # Tornado figures: sensitivity of results to the parameters of a drive
 
@@ -201,5 +201,196 @@ def _numbers(result: Result, *, ax: Axes) -> Axes:
         ax.plot(number, parts[:, line], "o-", markersize=3, color=color(line), label=str(name))
     ax.set(xlabel="Design", ylabel="Position between the bounds [%]", ylim=(-5.0, 105.0))
     ax.xaxis.set_major_locator(MaxNLocator(integer=True))
+    name_lines(ax)
+    return ax
+
+
+_HIGHEST_SAFETY = 10.0
+_MOST_SPANS = 6
+"""Pulleys or spans that are drawn: those nearest to a limit."""
+
+
+@figure(always, of=("sheet",))
+def sheet_slip_safety(result: Result, ax: Axes | None = None) -> Axes:
+    """Draw the slip safety of pulleys over the speed: at full load, and down to the least of all cases and frictions.
+
+    Parameters
+    ----------
+    result : Result
+        Of `sheet`.
+    ax : Axes, optional
+        Where to draw; a new figure by default.
+
+    Returns
+    -------
+    Axes
+        The axes.
+
+    Examples
+    --------
+    >>> found = bd.sheet(bd.example("alternator_drive"), points=4)
+    >>> bd.plot.sheet_slip_safety(found).get_ylabel()
+    'Slip safety'
+    """
+    dataset, ax = result.dataset, axes_or_new(ax)
+    speed = RPM * dataset["speed"].values
+    nominal, least = (dataset[f"{name}_over_speed"].values for name in ("slip_safety", "least_slip_safety"))
+    lowest = np.nan_to_num(np.fmin.reduce(least, axis=0), nan=np.inf)
+    worst = np.argsort(lowest, kind="stable")[:_MOST_SPANS]
+    safe = _HIGHEST_SAFETY <= lowest[worst[0]] < np.inf
+    top = 1.1 * float(np.nanmax(nominal[:, worst[0]])) if safe else _HIGHEST_SAFETY
+    loaded = worst[lowest[worst] < top].tolist()
+    for number, pulley in enumerate(sorted(loaded)):
+        tint, name = color(number), str(dataset["pulley"].values[pulley])
+        ax.plot(speed, nominal[:, pulley], color=tint, linestyle=dash(number), label=name)
+        ax.fill_between(speed, least[:, pulley], nominal[:, pulley], color=tint, alpha=0.15, linewidth=0.0)
+    ax.axhline(1.0, color=INK, linewidth=0.8)
+    ax.set(xlabel=_speed_label(result), ylabel="Slip safety", ylim=(0.0, top))
+    name_lines(ax)
+    return ax
+
+
+@figure(always, of=("sheet",))
+def sheet_tensions(result: Result, ax: Axes | None = None) -> Axes:
+    """Draw the tensions of the slackest and the tightest span over the speed: at full load, and in bands all cases.
+
+    The bands hold light load, acceleration and vibration.
+
+    Parameters
+    ----------
+    result : Result
+        Of `sheet`.
+    ax : Axes, optional
+        Where to draw; a new figure by default.
+
+    Returns
+    -------
+    Axes
+        The axes.
+
+    Examples
+    --------
+    >>> found = bd.sheet(bd.example("alternator_drive"), points=4)
+    >>> bd.plot.sheet_tensions(found).get_ylabel()
+    'Span tension [N]'
+    """
+    dataset, ax = result.dataset, axes_or_new(ax)
+    speed, cases = RPM * dataset["speed"].values, dataset["tension_of_case_over_speed"].values
+    mean, swing = dataset["span_tension_over_speed"].values, dataset["tension_amplitude_over_speed"].values
+    low, high = np.fmin.reduce(cases, axis=1) - swing, np.fmax.reduce(cases, axis=1) + swing
+    chosen = np.unique([np.argmin(np.nan_to_num(mean.mean(axis=0))), np.argmax(np.nan_to_num(mean.mean(axis=0)))])
+    for number, span in enumerate(chosen.tolist()):
+        tint, name = color(number), str(dataset["span"].values[span])
+        ax.plot(speed, mean[:, span], color=tint, linestyle=dash(number), label=name)
+        ax.fill_between(speed, low[:, span], high[:, span], color=tint, alpha=0.12, linewidth=0.0)
+    ax.set(xlabel=_speed_label(result), ylabel="Span tension [N]")
+    name_lines(ax)
+    return ax
+
+
+def _speed_label(result: Result) -> str:
+    return f"{result.dataset['speed'].attrs['long_name']} [rpm]"
+
+
+_HISTORIES = {"tension": ("Tension [N]", 1.0), "bending_strain": ("Bending strain inside [%]", 100.0)}
+"""Variables over a turn, with their labels and factors."""
+_MOST_ROWS = 6
+"""Rows of the table that are drawn: those with most damage."""
+_WIDTH = 0.8
+
+
+def _both(draw: Callable[..., Axes], result: Result, choice: Choice) -> Figure:
+    """Lay out both panels."""
+    page = panels(rows([partial(draw, result, name) for name in _HISTORIES]), sharey=False)
+    name_once(page)
+    return page
+
+
+@figure(always, _both, of=("life",))
+def belt_history(result: Result, variable: str = "tension", *, ax: Axes | None = None) -> Axes:
+    """Draw the tension or the bending strain that a material point of the belt meets over a turn.
+
+    Lines are rows of the duty table, at most the six with the largest damage. Names of pulleys stand over their arcs.
+
+    Parameters
+    ----------
+    result : Result
+        Of `life`.
+    variable : str
+        "tension" or "bending_strain".
+    ax : Axes, optional
+        Where to draw; a new figure by default.
+
+    Returns
+    -------
+    Axes
+        The axes.
+
+    Raises
+    ------
+    ModelError
+        If there is no such variable.
+
+    Examples
+    --------
+    >>> line = {"cycles": [1e7, 1e9], "forces": [100.0, 50.0], "bending_force": 0.1, "source": "test"}
+    >>> found = bd.life(drive.replace(belt=drive.belt.replace(cord_fatigue=line)))
+    >>> bd.plot.belt_history(found).get_ylabel()
+    'Tension [N]'
+    """
+    if variable not in _HISTORIES:
+        raise ModelError(f"variable = {variable!r} is no history of the belt. Choose one of {', '.join(_HISTORIES)}.")
+    dataset, ax = result.dataset, axes_or_new(ax)
+    title, factor = _HISTORIES[variable]
+    place = dataset["place"].values
+    damage = next(dataset[name] for name in ("cord_damage_rate", "rib_damage_rate") if name in dataset)
+    worst = np.argsort(-np.nan_to_num(damage.values))[:_MOST_ROWS]
+    for number, row in enumerate(sorted(worst.tolist())):
+        label = f"row {int(dataset['row'][row])}" if dataset.sizes["row"] > 1 else None
+        ax.plot(place, factor * dataset[variable].values[row], color=color(number), linestyle=dash(number), label=label)
+    for name, at in zip(dataset["pulley"].values, dataset["arc_place"].values[worst[0]], strict=True):
+        if np.isfinite(at):
+            ax.axvline(at, color=INK, linewidth=0.5, linestyle=dash(2))
+            over = ax.get_xaxis_transform()
+            ax.text(at, 0.98, str(name), transform=over, rotation=90, ha="right", va="top", fontsize=8, color=INK)
+    ax.set(xlabel="Length of belt passed [turns]", ylabel=title, xlim=(0.0, 1.0))
+    if dataset.sizes["row"] > 1:
+        name_lines(ax)
+    return ax
+
+
+@figure(always, of=("life",))
+def damage_shares(result: Result, ax: Axes | None = None) -> Axes:
+    """Draw the share of each pulley in the damage of cords and ribs.
+
+    Parameters
+    ----------
+    result : Result
+        Of `life`.
+    ax : Axes, optional
+        Where to draw; a new figure by default.
+
+    Returns
+    -------
+    Axes
+        The axes.
+
+    Examples
+    --------
+    >>> line = {"cycles": [1e7, 1e9], "forces": [100.0, 50.0], "bending_force": 0.1, "source": "test"}
+    >>> found = bd.life(drive.replace(belt=drive.belt.replace(cord_fatigue=line)))
+    >>> bd.plot.damage_shares(found).get_ylabel()
+    'Share in the damage [%]'
+    """
+    dataset, ax = result.dataset, axes_or_new(ax)
+    names = [str(name) for name in dataset["pulley"].values]
+    known = [what for what in ("cord", "rib") if f"{what}_share" in dataset]
+    width, places = _WIDTH / max(len(known), 1), np.arange(len(names))
+    for number, what in enumerate(known):
+        left = places + (number - 0.5 * (len(known) - 1)) * width
+        ax.bar(left, 100.0 * dataset[f"{what}_share"].values, width, color=color(number), label=f"{what}s")
+    ax.set_xticks(places, names)
+    ax.set(ylabel="Share in the damage [%]")
+    ax.grid(visible=False, axis="x")
     name_lines(ax)
     return ax

@@ -1,5 +1,6 @@
 """The picture of a drive at one instant, which can be moved to another instant."""
 
+import pathlib
 from collections.abc import Callable
 from typing import Any, NamedTuple
 
@@ -17,14 +18,27 @@ from numpy.typing import ArrayLike
 
 from beltdyn.analyses import EQUILIBRIUM, RUN
 from beltdyn.arrays import FloatArray
-from beltdyn.model import Drive, Path, Pulley, prepare
+from beltdyn.model import Drive, Entry, Path, Pulley, prepare
 from beltdyn.model.carrier import Carrier
 from beltdyn.results import Result, Run, StaticResult
 from beltdyn.results.mechanics import centerline, element_lengths, recorded_kind
+from beltdyn.show.plot.figures import save
 from beltdyn.show.plot.headline import at_instant
 from beltdyn.show.plot.registry import Choice, always, figure
-from beltdyn.show.plot.style import INK, PALE, axes_or_new, color, label, new_figure, tension_colors
+from beltdyn.show.plot.style import (
+    COLORS,
+    INK,
+    PALE,
+    axes_or_new,
+    color,
+    dash,
+    label,
+    new_figure,
+    styled,
+    tension_colors,
+)
 from beltdyn.show.plot.view import spread
+from beltdyn.stretch import Linear
 
 # Spring-loaded tensioners in pictures of a drive: arm and pivot, or the line on which one slides, and stops
 
@@ -303,3 +317,89 @@ def configuration(run: Run | StaticResult, time: float | None = None, ax: Axes |
     for pulley, center, speed in zip(run.drive.pulleys, centers, instant["pulley_speed"].values, strict=True):
         draw_rotation(ax, center, pulley.radius, float(speed))
     return ax
+
+
+_BEYOND = 1.1
+"""Largest strain that is drawn, over the last one that was measured."""
+_LARGEST = 0.01
+"""Largest strain that is drawn of a belt without a curve."""
+
+
+@styled
+def stretch(entry: Entry, name: str = "", ax: Axes | None = None) -> Axes:
+    """Draw the tension of a catalogue belt over its strain, with the measured points.
+
+    The dashed line is the initial slope.
+
+    Parameters
+    ----------
+    entry : Entry
+        The profile, as `beltdyn.read_catalogue` gives it.
+    name : str
+        The title; by default that of the entry.
+    ax : Axes, optional
+        Where to draw; a new figure by default.
+
+    Returns
+    -------
+    Axes
+        The axes.
+
+    Examples
+    --------
+    >>> bd.plot.stretch(bd.read_catalogue()["PK"], name="PK").get_xlabel()
+    'Strain [%]'
+    """
+    ax, curve = axes_or_new(ax), entry.stretch_curve
+    law = Linear(entry.axial_stiffness) if curve is None else curve.parameters
+    strain = np.linspace(0.0, _LARGEST if curve is None else _BEYOND * curve.strains[-1], 200)
+    tension = law.tension(1.0 + strain)
+    ax.plot(100.0 * strain, tension, color=COLORS[0], label="in a drive")
+    if curve is not None:
+        points = 100.0 * np.array(curve.strains), np.array(curve.tensions)
+        ax.plot(*points, color=COLORS[1], marker="o", linestyle="", label="measured")
+        begins = f"{entry.axial_stiffness:.4g} N × strain"
+        ax.plot(
+            100.0 * strain, entry.axial_stiffness * strain, color=INK, linewidth=0.8, linestyle=dash(1), label=begins
+        )
+        ax.set_ylim(0.0, 1.2 * float(max(tension)))
+        ax.legend(loc="lower right")
+    ax.set(xlabel="Strain [%]", ylabel="Tension [N]")
+    ax.set_title(name or entry.title)
+    return ax
+
+
+@styled
+def save_stretch(entry: Entry, path: pathlib.Path | str, name: str = "", *, overwrite: bool = False) -> pathlib.Path:
+    """Save the tension-strain diagram of a catalogue belt; see `stretch`.
+
+    Parameters
+    ----------
+    entry : Entry
+        The profile.
+    path : pathlib.Path or str
+        The file: PNG, SVG, PDF or another format of matplotlib.
+    name : str
+        The title; by default that of the entry.
+    overwrite : bool
+        Replace any regular file, and not only figures of beltdyn.
+
+    Returns
+    -------
+    pathlib.Path
+        The file.
+
+    Raises
+    ------
+    ModelError
+        If the format is unknown, the file cannot be written, or would replace one that is no figure of ours.
+
+    Examples
+    --------
+    >>> belt = bd.read_catalogue()["PK"]
+    >>> bd.plot.save_stretch(belt, "stretch.svg", name="PK").name
+    'stretch.svg'
+    """
+    figure = new_figure()
+    stretch(entry, name, figure.add_subplot())
+    return save(figure, pathlib.Path(path), overwrite)

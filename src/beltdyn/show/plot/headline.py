@@ -18,8 +18,7 @@ from beltdyn.parts.text_file import as_text
 from beltdyn.results import Result, Run, StaticResult, power_balance
 from beltdyn.results.cycles import mean_window
 from beltdyn.results.schema import runs_steadily
-from beltdyn.show.plot.legends import name_lines
-from beltdyn.show.plot.style import INK, NOTE, dash
+from beltdyn.show.plot.style import INK, NOTE, dash, name_lines
 
 # Several results in one figure: what each is called, and how its lines differ from those of the others
 

@@ -12,9 +12,20 @@ from beltdyn.parts.quantity import RPM
 from beltdyn.results import Run, derived
 from beltdyn.results.balance import largest_closure, losses_of
 from beltdyn.results.incidents import GROSS_SLIP, JUMP, SLACK, STOP, incidents
-from beltdyn.show.plot.legends import name_lines
 from beltdyn.show.plot.registry import figure, over_time
-from beltdyn.show.plot.style import SHADE, Dash, axes_or_new, color, dash, label, note, reserve, set_log_scale, unit
+from beltdyn.show.plot.style import (
+    SHADE,
+    Dash,
+    axes_or_new,
+    color,
+    dash,
+    label,
+    name_lines,
+    note,
+    reserve,
+    set_log_scale,
+    unit,
+)
 from beltdyn.show.plot.view import draw_limit, unit_of
 
 _SHOWN = 0.01

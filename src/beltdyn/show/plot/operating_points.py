@@ -13,9 +13,8 @@ from beltdyn.errors import ModelError
 from beltdyn.model.tensioner_balance import held_belt
 from beltdyn.parts.quantity import SHOWN_UNITS
 from beltdyn.results import Result
-from beltdyn.show.plot.legends import name_lines, name_once
 from beltdyn.show.plot.registry import Choice, always, figure
-from beltdyn.show.plot.style import INK, axes_or_new, color, dash, label, panels, rows
+from beltdyn.show.plot.style import INK, axes_or_new, color, dash, label, name_lines, name_once, panels, rows
 
 # Figures of tensioner sheets: tension and hub load over the travel of a tensioner, with belts of different leng
 

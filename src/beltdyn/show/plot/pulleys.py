@@ -16,9 +16,19 @@ from beltdyn.results.cycles import mean_window
 from beltdyn.results.incidents import GROSS_SLIP
 from beltdyn.show.plot.headline import names_of_results
 from beltdyn.show.plot.history import draw_limits, envelope, lines, mark_incidents
-from beltdyn.show.plot.legends import name_lines
 from beltdyn.show.plot.registry import Choice, figure, over_time, over_turns
-from beltdyn.show.plot.style import INK, POLAR_SIZE, axes_or_new, color, label, new_figure, note, polar_or_new, shade
+from beltdyn.show.plot.style import (
+    INK,
+    POLAR_SIZE,
+    axes_or_new,
+    color,
+    label,
+    name_lines,
+    new_figure,
+    note,
+    polar_or_new,
+    shade,
+)
 
 # Power losses by cause, of one run and of several
 

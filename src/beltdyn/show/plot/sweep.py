@@ -15,9 +15,8 @@ from beltdyn.arrays import FloatArray
 from beltdyn.errors import ModelError
 from beltdyn.parts.quantity import RPM, SHOWN_UNITS
 from beltdyn.results import Run, derived
-from beltdyn.show.plot.legends import name_lines, name_once
 from beltdyn.show.plot.registry import Choice, figure, on_request
-from beltdyn.show.plot.style import INK, axes_or_new, color, dash, label, panels, rows, unit
+from beltdyn.show.plot.style import INK, axes_or_new, color, dash, label, name_lines, name_once, panels, rows, unit
 
 # A variable over time of one pulley, span or tensioner, in the unit of run-up figures
 

@@ -10,7 +10,6 @@ from matplotlib.colors import to_hex, to_rgb
 
 from beltdyn.results import Run
 from beltdyn.show import plot
-from beltdyn.show.plot.legends import name_lines
 from beltdyn.show.plot.style import (
     COLORS,
     DASHES,
@@ -18,6 +17,7 @@ from beltdyn.show.plot.style import (
     color,
     dash,
     label,
+    name_lines,
     polar_or_new,
     set_log_scale,
     styled,

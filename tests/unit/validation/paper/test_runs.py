@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 import xarray as xr
 
-from beltdyn.designs.worker import Ending
+from beltdyn.designs.processes import Ending
 from beltdyn.model import Drive, load
 from beltdyn.results import Run
 from beltdyn.solvers.progress import BatchProgress

@@ -1,0 +1,66 @@
+"""Modes are followed by their shapes: through crossings, gaps, and beginnings."""
+
+import numpy as np
+import pytest
+
+from beltdyn.arrays import ComplexArray
+from beltdyn.vibration.campbell import SeenModes, Tracks, assurance
+from beltdyn.vibration.mode_shapes import Shares
+
+
+def seen(frequencies: list[float], shapes: list[list[complex]]) -> SeenModes:
+    """Modes with as much energy in the first span as their frequency says."""
+    speeds = np.array([np.array(one) / np.linalg.norm(one) for one in shapes], complex)
+    own = np.array(frequencies)
+    shares = Shares(own[:, None], 0.0 * own[:, None], 0.0 * own, np.zeros((own.size, 0)))
+    return SeenModes(-0.1 + 1j * own, speeds, shares)
+
+
+def angular(tracks: Tracks, states: int) -> list[list[float]]:
+    """Angular frequencies, zero where a mode is not found."""
+    values: ComplexArray = tracks.table(states).values
+    return [[float(one) for one in row] for row in np.nan_to_num(values.imag)]
+
+
+def test_assurance() -> None:
+    """One of a shape with itself, at any phase; none without common motion; a half between."""
+    first, second = np.eye(2, dtype=complex)
+    shapes = np.array([first, second])
+    others = np.array([np.exp(0.7j) * first, (first + 1j * second) / np.sqrt(2.0)])
+    np.testing.assert_allclose(assurance(shapes, others), [[1.0, 0.5], [0.0, 0.5]], atol=1e-15)
+
+
+def test_modes_that_cross_keep_their_columns() -> None:
+    tracks = Tracks(2)
+    tracks.take(seen([1.0, 2.0], [[1, 0], [0, 1]]))
+    tracks.take(seen([1.4, 1.5], [[0.1, 1], [1, -0.1]]))
+    tracks.take(seen([1.2, 1.8], [[0, 1], [1j, 0]]))
+    assert angular(tracks, 3) == [[1.0, 2.0], [1.5, 1.4], [1.8, 1.2]]
+    found = tracks.table(3)
+    assert np.isnan(found.assurance[0]).all()
+    assert found.assurance[1:].min() > 0.9
+    assert found.mean_shares(0).span == pytest.approx((1.0 + 1.5 + 1.8) / 3.0)
+    np.testing.assert_allclose(found.damping_ratio[0, 0], 0.1 / np.hypot(1.0, 0.1))
+
+
+def test_a_mode_goes_on_behind_a_gap() -> None:
+    tracks = Tracks(2)
+    tracks.take(seen([1.0, 2.0], [[1, 0], [0, 1]]))
+    tracks.take(None)
+    tracks.take(seen([1.1], [[1, 0]]))
+    assert angular(tracks, 4) == [[1.0, 2.0], [0.0, 0.0], [1.1, 0.0], [0.0, 0.0]]
+
+
+def test_what_agrees_with_none_begins_a_column_and_high_modes_are_left_out() -> None:
+    tracks = Tracks(1)
+    tracks.take(seen([1.0, 3.0], [[1, 0, 0], [0, 1, 0]]))
+    tracks.take(seen([0.5, 1.0], [[0, 0, 1], [1, 0, 0]]))
+    assert angular(tracks, 2) == [[1.0, 0.0], [1.0, 0.5]]
+
+
+def test_a_shape_alone_does_not_make_it_another_mode() -> None:
+    """Of ten times the frequency it is another one."""
+    tracks = Tracks(1)
+    tracks.take(seen([1.0], [[1, 0]]))
+    tracks.take(seen([10.0], [[1, 0]]))
+    assert angular(tracks, 2) == [[1.0, 0.0], [0.0, 10.0]]
