@@ -192,3 +192,72 @@ def test_a_force_over_time_swings_the_carriage_at_its_frequency() -> None:
     expected = 50.0 / stiffness * (1.0 - np.cos(2.0 * np.pi * frequency * (time[after] - 0.01)))
     first = time[after] < 0.01 + 2.0 / frequency
     assert way[after][first] == pytest.approx(expected[first], abs=0.05 * expected.max())
+
+
+LAND = 4e-3
+
+
+def on_lands(teeth: int, stiffness: float, land: float | None = LAND) -> bd.Drive:
+    """An axis that creeps over two pitches, with a smooth idler, and a belt that hardly bends and stretches."""
+    radius, pace = teeth * PITCH / (2.0 * np.pi), 0.05
+    toothing = {"pitch": PITCH, "tooth_stiffness": TOOTH, "tooth_damping": 20.0, "law": "discrete", "land_radius": land}
+    flanks = {"flank_angle": 0.3, "tooth_height": 3e-3}
+    motor = {"kind": "cosine_ramp", "start": 0.0, "end": 0.1, "value": -pace / radius}
+    agreed = TENSION / AXIAL
+    return bd.Drive(
+        belt=BELT
+        | {
+            "teeth": 62,
+            "elements": 248,
+            "bending_stiffness": 1e-6,
+            "mass_per_length": 1e-2,
+            "stretch_damping_time": 1e-3,
+            "toothing": toothing | flanks,
+        },
+        pulley=[
+            {"name": "motor", "center": [0.0, 0.0], "teeth": teeth, "speed": motor, "pitch_error": agreed},
+            {"name": "idler", "center": [0.2, 0.0], "radius": radius, "inertia": 1e-6},
+        ],
+        carriage={"center": [0.1, radius], "direction": [1.0, 0.0], "length": 0.02, "mass": 0.05},
+        contact={"friction": 0.0, "stiffness": stiffness},
+        tensioner=[{"kind": "fixed", "pulley": "idler", "direction": [1.0, 0.0]}],
+        simulation={"duration": 0.48, "rtol": 1e-3, "output_interval": 5e-4},
+    )
+
+
+def wave(teeth: FloatArray, speed: FloatArray) -> float:
+    """Amplitude of a speed once a tooth, by least squares with its multiples."""
+    turned = 2j * np.pi * teeth[:, None] * np.arange(1, 6)
+    basis = np.concatenate([np.ones((teeth.size, 1)), np.cos(turned.imag), np.sin(turned.imag)], axis=1)
+    fitted = np.linalg.lstsq(basis, speed, rcond=None)[0]
+    return float(np.hypot(fitted[1], fitted[6]))
+
+
+def on_a_polygon(teeth: int) -> FloatArray:
+    """Speed of the belt over that of the pulley, m, over a tooth."""
+    groove = 2.0 * np.pi / teeth
+    corner = 0.5 * groove * (teeth * PITCH * (1.0 + TENSION / AXIAL) / (2.0 * np.pi) - LAND) / np.sin(0.5 * groove)
+    return np.asarray(LAND + corner * np.cos((np.arange(1000) / 1000 - 0.5) * groove))
+
+
+def in_a_run(teeth: int, stiffness: float, land: float | None = LAND) -> tuple[FloatArray, FloatArray]:
+    """Teeth that have passed, and the speed of the carriage over that of the motor, m."""
+    late = bd.simulate(on_lands(teeth, stiffness, land)).dataset.sel(time=slice(0.15, 0.47))
+    passed = np.abs(late.pulley_angle.values[:, 0]) * teeth / (2.0 * np.pi)
+    return passed, np.abs(late.carriage_speed.values[:, 0] / late.pulley_speed.values[:, 0])
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize(("teeth", "stiffness"), [(12, 1e10), (20, 1e11)])
+def test_a_belt_that_runs_straight_from_land_to_land_has_the_ripple_of_a_polygon(teeth: int, stiffness: float) -> None:
+    passed, speed = in_a_run(teeth, stiffness)
+    expected = on_a_polygon(teeth)
+    assert speed.max() == pytest.approx(expected.max(), rel=1e-3)  # half of the strain
+    # depths in the lands, and teeth that enter, round the cusps
+    assert np.ptp(speed) == pytest.approx(np.ptp(expected), rel=0.05)
+    assert wave(passed, speed) == pytest.approx(wave(np.arange(1000) / 1000, expected), rel=0.08)
+
+
+@pytest.mark.slow
+def test_a_belt_on_a_circle_has_no_ripple_of_a_polygon() -> None:
+    assert wave(*in_a_run(20, 1e10, None)) < 0.03 * wave(np.arange(1000) / 1000, on_a_polygon(20))

@@ -13,7 +13,7 @@ from beltdyn.arrays import FloatArray
 from beltdyn.contact.bezier import Curve, combine, fill_bernstein, fill_bernstein_rates, fill_shape_functions
 from beltdyn.contact.contact_zone import touching_intervals, zone_record
 from beltdyn.contact.law import ContactLaw, PulleyState
-from beltdyn.contact.penetration import Approach, approach
+from beltdyn.contact.penetration import Approach, approach, tooth_approach
 from beltdyn.contact.point_force import (
     NO_FORCE,
     NO_TANGENT,
@@ -25,7 +25,7 @@ from beltdyn.contact.point_force import (
     point_tangent,
     point_turn,
 )
-from beltdyn.contact.surface import Round, Shaped, Toothed
+from beltdyn.contact.surface import Polygon, Round, Shaped, Toothed
 from beltdyn.contact.teeth import (
     NoTeeth,
     Tooth,
@@ -214,7 +214,7 @@ def _at_tooth(surface: Toothed, curve: Curve, pulley: PulleyState, number: int, 
     fill_bernstein((number * surface.spacing - curve.start) / curve.length, work.weights)
     x, y = combine(curve.control, work.weights)
     vx, vy = combine(curve.velocity, work.weights)
-    return approach(x, y, vx, vy, pulley)
+    return tooth_approach(x, y, vx, vy, pulley)
 
 
 @kernel
@@ -253,7 +253,9 @@ def _single_teeth(
     return totals
 
 
-_add_single = by_type({Round: _no_single, Shaped: _no_single, Toothed: _single_teeth}, "add_single")
+_add_single = by_type(
+    {Round: _no_single, Shaped: _no_single, Toothed: _single_teeth, Polygon: _single_teeth}, "add_single"
+)
 
 
 @kernel(inline=True)

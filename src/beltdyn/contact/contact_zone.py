@@ -16,7 +16,7 @@ import numpy as np
 from beltdyn.arrays import FloatArray
 from beltdyn.contact.bezier import BINOMIALS, combine, fill_bernstein, fill_bernstein_rates
 from beltdyn.contact.law import PulleyState
-from beltdyn.contact.surface import Round, Shaped, Toothed, outer_radius, shaped_gap
+from beltdyn.contact.surface import Polygon, Round, Shaped, Toothed, outer_radius, shaped_gap
 from beltdyn.kernel import by_type, kernel
 from beltdyn.records import blank, record
 
@@ -197,7 +197,7 @@ def _root(control: FloatArray, circle: Circle, left: float, right: float, fallin
 
 
 @kernel
-def _on_shape(surface: Shaped, control: FloatArray, center_x: float, center_y: float, zone: np.record) -> int:
+def _on_shape(surface: Any, control: FloatArray, center_x: float, center_y: float, zone: np.record) -> int:
     """Intervals on a surface of any kind, between samples at which the penetration changes its sign."""
     intervals = zone.intervals
     count, start = 0, 0.0
@@ -223,11 +223,13 @@ def _on_shape(surface: Shaped, control: FloatArray, center_x: float, center_y: f
 
 
 @kernel
-def _depth(surface: Shaped, control: FloatArray, center_x: float, center_y: float, xi: float, zone: np.record) -> float:
+def _depth(surface: Any, control: FloatArray, center_x: float, center_y: float, xi: float, zone: np.record) -> float:
     """Penetration of a point of the curve, m."""
     fill_bernstein(xi, zone.weights)
     x, y = combine(control, zone.weights)
     return shaped_gap(surface, x - center_x, y - center_y).penetration
 
 
-_intervals = by_type({Round: _on_circle, Shaped: _on_shape, Toothed: _on_circle}, "touching_intervals")
+_intervals = by_type(
+    {Round: _on_circle, Shaped: _on_shape, Toothed: _on_circle, Polygon: _on_shape}, "touching_intervals"
+)

@@ -4,7 +4,7 @@ from typing import NamedTuple
 
 from beltdyn.contact.friction import FrictionParameters
 from beltdyn.contact.normal import NormalParameters
-from beltdyn.contact.surface import Round, Shaped, Toothed
+from beltdyn.contact.surface import Polygon, Round, Shaped, Toothed
 
 
 class ContactLaw(NamedTuple):
@@ -26,7 +26,7 @@ class PulleyState(NamedTuple):
     center_x: float
     """Place of its shaft, m."""
     center_y: float
-    surface: Round | Shaped | Toothed
+    surface: Round | Shaped | Toothed | Polygon
     """Its surface, at the angle that it has."""
     speed: float
     """Angular speed omega, rad/s, counter-clockwise positive."""

@@ -9,7 +9,7 @@ from math import sqrt
 from typing import Any, NamedTuple
 
 from beltdyn.contact.law import PulleyState
-from beltdyn.contact.surface import Round, Shaped, Toothed, shaped_gap
+from beltdyn.contact.surface import Polygon, Round, Shaped, Toothed, polygon_seat, shaped_gap
 from beltdyn.kernel import by_type, kernel
 
 
@@ -75,7 +75,7 @@ def _to_circle(surface: Any, dx: float, dy: float, vx: float, vy: float, speed: 
 
 
 @kernel
-def _to_shape(surface: Shaped, dx: float, dy: float, vx: float, vy: float, speed: float, rim_ratio: float) -> Approach:
+def _to_shape(surface: Any, dx: float, dy: float, vx: float, vy: float, speed: float, rim_ratio: float) -> Approach:
     """A surface that turns with its pulley."""
     gap = shaped_gap(surface, dx, dy)
     nx, ny = gap.normal_x, gap.normal_y
@@ -94,7 +94,25 @@ def _to_shape(surface: Shaped, dx: float, dy: float, vx: float, vy: float, speed
     )
 
 
-_approach: Callable[..., Approach] = by_type({Round: _to_circle, Shaped: _to_shape, Toothed: _to_circle}, "approach")
+_approach: Callable[..., Approach] = by_type(
+    {Round: _to_circle, Shaped: _to_shape, Toothed: _to_circle, Polygon: _to_shape}, "approach"
+)
+
+
+@kernel(inline=True)
+def _rim_seat(surface: Any) -> float:
+    return float(surface.radius)
+
+
+_seat: Callable[[Any], float] = by_type({Round: _rim_seat, Toothed: _rim_seat, Polygon: polygon_seat}, "seat")
+
+
+@kernel
+def tooth_approach(x: float, y: float, velocity_x: float, velocity_y: float, pulley: PulleyState) -> Approach:
+    """Position and motion of the middle of a tooth against its seat, about the shaft; see `approach`."""
+    dx, dy = x - pulley.center_x, y - pulley.center_y
+    vx, vy = velocity_x - pulley.velocity_x, velocity_y - pulley.velocity_y
+    return _to_circle(Round(_seat(pulley.surface)), dx, dy, vx, vy, pulley.speed, pulley.rim_ratio)
 
 
 @kernel

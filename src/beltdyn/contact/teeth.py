@@ -26,7 +26,7 @@ from typing import Any, Final, NamedTuple
 
 from beltdyn.contact.penetration import Approach
 from beltdyn.contact.point_force import PointForce, PointTangent, PointTurn
-from beltdyn.contact.surface import Round, Shaped
+from beltdyn.contact.surface import Polygon, Round, Shaped
 from beltdyn.contact.surface.toothed import Toothed
 from beltdyn.kernel import by_type, kernel
 
@@ -167,7 +167,7 @@ def _tooth(surface: Toothed, here: Approach, speed: float, along: float) -> Toot
 
 
 tooth_at: Callable[[Any, Approach, float, float], Any] = by_type(
-    {Round: _no_tooth, Shaped: _no_tooth, Toothed: _tooth}, "tooth_at"
+    {Round: _no_tooth, Shaped: _no_tooth, Toothed: _tooth, Polygon: _tooth}, "tooth_at"
 )
 """Spread teeth at a point: of a surface, how the point stands, speed of the pulley (rad/s), material coordinate (m)."""
 
@@ -303,7 +303,8 @@ def _own_speed_unknown(surface: Toothed) -> float:
 
 
 speed_unknown: Callable[[Any], float] = by_type(
-    {Round: _speed_unknown, Shaped: _speed_unknown, Toothed: _own_speed_unknown}, "speed_unknown"
+    {Round: _speed_unknown, Shaped: _speed_unknown, Toothed: _own_speed_unknown, Polygon: _own_speed_unknown},
+    "speed_unknown",
 )
 """1, or 0 of a pulley whose phase is unknown in place of its speed."""
 

@@ -3,7 +3,7 @@
 from math import pi
 from typing import Final, Literal, Self
 
-from pydantic import Field
+from pydantic import Field, model_validator
 
 from beltdyn.parts.part import Part
 from beltdyn.parts.quantity import Angle, Damping, Force, Length, Ratio, Stiffness, Words
@@ -56,10 +56,25 @@ class Toothing(Part):
         description="the law of teeth in runs over time: spread over the arc, or discrete, tooth by tooth on a "
         "travelling mesh; other analyses spread them",
     )
+    land_radius: Length | None = Field(
+        None,
+        gt=0,
+        description="the radius of the lands of pulleys at the tension line, between which a belt with discrete teeth "
+        "runs straight, in m; without it the belt runs on a circle",
+    )
     largest_tooth_load: Force | None = Field(
         None, gt=0, description="the allowed force on a tooth of the whole width, in N"
     )
     source: Words | None = Field(None, description="the source of the values, as text")
+
+    @model_validator(mode="after")
+    def _has_lands_of_single_teeth(self) -> Self:
+        if self.land_radius is not None and self.law != DISCRETE:
+            raise ValueError(
+                f"land_radius = {1e3 * self.land_radius:.5g} mm needs discrete teeth: spread ones hold the belt on "
+                f'circles. Set law = "{DISCRETE}", or omit land_radius'
+            )
+        return self
 
     @property
     def reach(self) -> float:

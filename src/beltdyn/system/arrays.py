@@ -13,7 +13,7 @@ import numpy as np
 
 from beltdyn.arrays import BoolArray, FloatArray, IntArray
 from beltdyn.contact.law import ContactLaw
-from beltdyn.contact.surface import MeshingRims, RoundRims, ShapedRims, ToothedRims
+from beltdyn.contact.surface import MeshingRims, PolygonRims, RoundRims, ShapedRims, ToothedRims
 from beltdyn.elements import Element
 from beltdyn.machines.loads.shaft import ShaftLoads
 from beltdyn.machines.profiles.functions import Profiles
@@ -122,7 +122,7 @@ class System(NamedTuple):
     contact: Quadrature
     pulleys: Records
     """Rows of `PULLEY`, shape (P,)."""
-    rims: RoundRims | ShapedRims | ToothedRims | MeshingRims
+    rims: RoundRims | ShapedRims | ToothedRims | PolygonRims | MeshingRims
     """Surfaces of the pulleys; the type says whether all of them are round, and whether some have teeth."""
     bodies: Records
     """Rows of `BODY`, shape (D,)."""

@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 
 from beltdyn.arrays import FloatArray, IntArray
-from beltdyn.contact.surface import TEETH, MeshingRims, RoundRims, ShapedRims, ToothedRims
+from beltdyn.contact.surface import TEETH, MeshingRims, PolygonRims, RoundRims, ShapedRims, ToothedRims
 from beltdyn.contact.surface.toothed import FOLLOWS, PHASE, SPEED
 from beltdyn.kernel import by_type, kernel
 from beltdyn.model import Prepared
@@ -50,6 +50,7 @@ def tooth_rows(prepared: Prepared, single: bool = False) -> Records:
         flank=np.full(teeth.size, np.tan(toothing.flank_angle)),
         spacing=np.full(teeth.size, pitch if single else 0.0),
         height=np.full(teeth.size, toothing.reach),
+        land=np.full(teeth.size, toothing.land_radius or 0.0),
     )
 
 
@@ -209,7 +210,8 @@ def turned_by(prepared: Prepared, system: System, phase: FloatArray | None) -> S
         return system
     toothing, travels = prepared.belt.toothing, isinstance(system.frame, Travelling)
     rows = tooth_rows(prepared, travels and toothing is not None and toothing.law == DISCRETE)
-    rims = ToothedRims(system.rims.radius, rows, starts_of(system.length))
+    kind = PolygonRims if toothing is not None and toothing.land_radius and rows.spacing.any() else ToothedRims
+    rims = kind(system.rims.radius, rows, starts_of(system.length))
     return at_phases(system._replace(rims=rims), phase)
 
 

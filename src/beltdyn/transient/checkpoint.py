@@ -22,7 +22,7 @@ import numpy as np
 from beltdyn.contact.friction import LAWS as FRICTION_LAWS
 from beltdyn.contact.law import ContactLaw
 from beltdyn.contact.normal import LAWS as NORMAL_LAWS
-from beltdyn.contact.surface import RoundRims, ShapedRims, ToothedRims
+from beltdyn.contact.surface import PolygonRims, RoundRims, ShapedRims, ToothedRims
 from beltdyn.elements import ELEMENTS, Section
 from beltdyn.errors import ModelError
 from beltdyn.kernel.cache import PACKAGE, source_hash
@@ -243,7 +243,8 @@ STATE = (IntegratorState, Trial, Profiles)
 """What an integration changes as it goes."""
 
 _SYSTEM = (
-    *(System, Supports, Section, Quadrature, ContactLaw, RoundRims, ShapedRims, ToothedRims, ShaftLoads),
+    *(System, Supports, Section, Quadrature, ContactLaw, RoundRims, ShapedRims, ToothedRims, PolygonRims),
+    *(ShaftLoads,),
     *(Travelling, Staying, Flowing, StayingByArcs, FlowingByArcs, ArcMesh, Bare, Carrying, State),
     *(NoCarriage, Guided, RunningWeb),
 )

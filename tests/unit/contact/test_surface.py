@@ -12,7 +12,9 @@ from beltdyn.contact.surface import (
     KINDS,
     SHAPE,
     SHAPES,
+    TEETH,
     Gap,
+    PolygonRims,
     Round,
     Shaped,
     ShapedRims,
@@ -129,3 +131,26 @@ def test_an_eccentric_rim_touches_where_a_circle_about_its_centre_does(
     circle = intervals(control, PulleyState(middle[0], middle[1], Round(RADIUS), 0.0, 0.5))
     assert len(circle) == (4 if belt in WAVES else 0 if belt == "away" else 1)
     np.testing.assert_allclose(shaped, circle, atol=1e-11)  # both to 1e-13, with cancellation in the squares
+
+
+@pytest.mark.parametrize("teeth", [12, 20])
+def test_the_ripple_of_a_belt_on_a_polygon(teeth: int) -> None:
+    """A straight belt unwinds at the distance of its line from the shaft, times the speed of the pulley."""
+    groove, phase = 2.0 * np.pi / teeth, 0.3
+    row = records(TEETH, stiffness=[1.0], groove=[groove], land=[1e-7 * RADIUS])
+    surface = surface_at(PolygonRims(np.array([RADIUS]), row, np.zeros(1)), 0, phase)
+
+    def arm(turned: float) -> float:
+        """Distance of the line that touches the surface, with the normal at an angle to the middle of a groove."""
+        normal, near = np.array([np.cos(phase + turned), np.sin(phase + turned)]), []
+        for angle in phase + turned + np.linspace(-0.6, 0.6, 13) * groove:
+            place = 2.0 * RADIUS * np.array([np.cos(angle), np.sin(angle)])
+            gap = shaped_gap(surface, *place)
+            near.append(float(normal @ (place + gap.penetration * np.array([gap.normal_x, gap.normal_y]))))
+        return max(near)
+
+    speeds = [arm(part * groove) for part in (0.0, 0.25, 0.5)]
+    assert 1.0 - speeds[0] / speeds[2] == pytest.approx(1.0 - np.cos(np.pi / teeth), rel=1e-6)
+    assert speeds[1] / speeds[2] == pytest.approx(np.cos(0.5 * np.pi / teeth), rel=1e-9)
+    edge = 2.0 * speeds[2] * np.sin(np.pi / teeth)
+    assert teeth * edge == pytest.approx(2.0 * np.pi * RADIUS, rel=1e-6)  # a turn is as long as that of the circle

@@ -12,13 +12,16 @@ from beltdyn.contact.friction import LAWS
 from beltdyn.contact.law import ContactLaw, PulleyState
 from beltdyn.contact.normal import NoPull
 from beltdyn.contact.penetration import approach
-from beltdyn.contact.surface import Toothed
+from beltdyn.contact.surface import Polygon, Toothed
 from beltdyn.contact.teeth import CREST, LOOSE, Tooth, tooth_at, tooth_of, tooth_traction
 from beltdyn.quadrature import gauss_points
 
 LENGTH, RULE = 0.06, gauss_points(6)
 GROOVE = 2.0 * np.pi / 40
 SPACINGS = pytest.mark.parametrize("spacing", [0.0, 0.0157], ids=["spread", "single"])
+LAID = pytest.mark.parametrize(
+    ("spacing", "land"), [(0.0, 0.0), (0.0157, 0.0), (0.0157, 5e-3)], ids=["spread", "single", "polygon"]
+)
 RIM = 0.1 - 1e-6
 """Distance from the shaft of a belt that touches the rim, m."""
 
@@ -31,10 +34,13 @@ def pulley(
     *,
     flank: float = 0.3,
     spacing: float = 0.0,
+    land: float = 0.0,
 ) -> PulleyState:
-    """A pulley of 40 teeth and 0.1 m, spread or at their middles alone."""
+    """A pulley of 40 teeth and 0.1 m, spread or at their middles alone, on a circle or on lands of a radius."""
     teeth = (0.1, 2e6, damping, half_gap, 0.1005, GROOVE / 0.0157, GROOVE, flank, spacing, 5e-3)
-    return PulleyState(0.3, -0.2, Toothed(*teeth, phase, 1.0, 1.0), speed=speed, friction=0.2)
+    corner = 0.5 * GROOVE * (0.1 - land) / np.sin(0.5 * GROOVE)
+    surface = Polygon(*teeth, phase, 1.0, 1.0, land, corner) if land else Toothed(*teeth, phase, 1.0, 1.0)
+    return PulleyState(0.3, -0.2, surface, speed=speed, friction=0.2)
 
 
 def law() -> ContactLaw:
@@ -73,10 +79,10 @@ def answer(*arguments: Any, **more: Any) -> FloatArray:
 @pytest.mark.parametrize("damping", [0.0, 300.0])
 @pytest.mark.parametrize("factors", [(1.0, 0.0), (0.0, 1.0), (1.0, 300.0)])
 @pytest.mark.parametrize("phase", [0.01, 0.46 * GROOVE], ids=["seated", "on the crests"])
-@SPACINGS
-def test_tangent(factors: tuple[float, float], damping: float, spacing: float, phase: float) -> None:
+@LAID
+def test_tangent(factors: tuple[float, float], damping: float, spacing: float, land: float, phase: float) -> None:
     control, rates = sunk()
-    one, step = pulley(phase, damping, spacing=spacing), 1e-8 if factors[0] else 1e-5
+    one, step = pulley(phase, damping, spacing=spacing, land=land), 1e-8 if factors[0] else 1e-5
     work, _ = act(control, rates, one, factors)
     tangent = np.block([[work.xx, work.xy], [work.yx, work.yy]])
     columns = []
@@ -95,12 +101,13 @@ def test_tangent(factors: tuple[float, float], damping: float, spacing: float, p
 
 
 @pytest.mark.parametrize("factors", [(1.0, 0.0), (0.0, 1.0), (1.0, 300.0)])
-@SPACINGS
-def test_derivative_by_the_turning_of_the_pulley(factors: tuple[float, float], spacing: float) -> None:
+@LAID
+def test_derivative_by_the_turning_of_the_pulley(factors: tuple[float, float], spacing: float, land: float) -> None:
     control, rates = sunk()
-    work, _ = act(control, rates, pulley(damping=300.0, spacing=spacing), factors)
+    kind = {"spacing": spacing, "land": land}
+    work, _ = act(control, rates, pulley(damping=300.0, **kind), factors)
     there, back = (
-        answer(control, rates, pulley(0.01 + s * factors[0], 300.0, speed=7.0 + s * factors[1], spacing=spacing))
+        answer(control, rates, pulley(0.01 + s * factors[0], 300.0, speed=7.0 + s * factors[1], **kind))
         for s in (1e-7, -1e-7)
     )
     expected = (there - back) / 2e-7

@@ -109,6 +109,8 @@ def test_pulleys_with_teeth_need_a_belt_with_teeth() -> None:
 def test_sizes_of_teeth_are_checked() -> None:
     with pytest.raises(ModelError, match="tooth_stiffness"):
         Toothing(pitch=8e-3)  # type: ignore[call-arg]
+    with pytest.raises(ModelError, match="land_radius = 1 mm needs discrete teeth"):
+        Toothing(pitch=8e-3, tooth_stiffness=1e6, land_radius=1e-3)
     assert Toothing(pitch=8e-3, tooth_stiffness=1e6).times(2.0).tooth_stiffness == 2e6
 
 

@@ -14,6 +14,10 @@ from beltdyn.contact.surface import eccentric as eccentric
 from beltdyn.contact.surface.kind import KINDS as KINDS
 from beltdyn.contact.surface.kind import Gap as Gap
 from beltdyn.contact.surface.kind import SurfaceKind as SurfaceKind
+from beltdyn.contact.surface.polygon import Polygon as Polygon
+from beltdyn.contact.surface.polygon import PolygonRims as PolygonRims
+from beltdyn.contact.surface.polygon import polygon_at, polygon_gap, polygon_reach
+from beltdyn.contact.surface.polygon import polygon_seat as polygon_seat
 from beltdyn.contact.surface.toothed import TEETH as TEETH
 from beltdyn.contact.surface.toothed import MeshingRims as MeshingRims
 from beltdyn.contact.surface.toothed import Toothed as Toothed
@@ -76,7 +80,14 @@ def _shaped_at(rims: ShapedRims, pulley: int, angle: float, passed: float = 0.0)
 
 
 surface_at: Callable[..., Any] = by_type(
-    {RoundRims: _round_at, ShapedRims: _shaped_at, ToothedRims: toothed_at, MeshingRims: meshing_at}, "surface_at"
+    {
+        RoundRims: _round_at,
+        ShapedRims: _shaped_at,
+        ToothedRims: toothed_at,
+        PolygonRims: polygon_at,
+        MeshingRims: meshing_at,
+    },
+    "surface_at",
 )
 """Surface of a pulley at an angle, rad, when a length of belt (m) has passed the mesh."""
 
@@ -92,7 +103,8 @@ def _start(rims: Any, element: int) -> float:
 
 
 element_start: Callable[[Any, int], float] = by_type(
-    {RoundRims: _no_start, ShapedRims: _no_start, ToothedRims: _start, MeshingRims: _start}, "element_start"
+    {RoundRims: _no_start, ShapedRims: _no_start, ToothedRims: _start, PolygonRims: _start, MeshingRims: _start},
+    "element_start",
 )
 """Material coordinate at which an element begins, m; zero where there are no teeth that ask for it."""
 
@@ -108,7 +120,13 @@ def _unknown_of_leader(rims: MeshingRims, pulley: int, unknown: int) -> int:
 
 
 rim_unknown: Callable[[Any, int, int], int] = by_type(
-    {RoundRims: _own_unknown, ShapedRims: _own_unknown, ToothedRims: _own_unknown, MeshingRims: _unknown_of_leader},
+    {
+        RoundRims: _own_unknown,
+        ShapedRims: _own_unknown,
+        ToothedRims: _own_unknown,
+        PolygonRims: _own_unknown,
+        MeshingRims: _unknown_of_leader,
+    },
     "rim_unknown",
 )
 """Place of a rim's unknown in the border, from that of its body: the last one of the pulley that leads a mesh."""
@@ -130,7 +148,7 @@ def _toothed_reach(surface: Toothed) -> float:
 
 
 outer_radius: Callable[[Any], float] = by_type(
-    {Round: _circle_reach, Shaped: _shaped_reach, Toothed: _toothed_reach}, "outer_radius"
+    {Round: _circle_reach, Shaped: _shaped_reach, Toothed: _toothed_reach, Polygon: polygon_reach}, "outer_radius"
 )
 """Radius of the circle around a surface, about the shaft, m; teeth that act alone reach out of it."""
 
@@ -139,17 +157,13 @@ gap_of_kind = choice("gap_of_kind", KINDS.functions("gap"), ["x", "y", "radius"]
 
 
 @kernel
-def shaped_gap(surface: Shaped, x: float, y: float) -> Gap:
-    """Gap of a point against a surface that has turned with its pulley.
-
-    Parameters
-    ----------
-    surface
-        The surface at an angle.
-    x, y
-        Place against the shaft, m.
-    """
+def _turned_gap(surface: Shaped, x: float, y: float) -> Gap:
+    """Gap of a point against a surface of any kind."""
     c, s = surface.cosine, surface.sine
     own = gap_of_kind(surface.table[surface.row], c * x + s * y, c * y - s * x, surface.radius)
     nx, ny = own.normal_x, own.normal_y
     return Gap(own.penetration, c * nx - s * ny, s * nx + c * ny, own.curvature)
+
+
+shaped_gap: Callable[[Any, float, float], Gap] = by_type({Shaped: _turned_gap, Polygon: polygon_gap}, "shaped_gap")
+"""Gap of a point against a surface that has turned with its pulley, from its place against the shaft, m."""

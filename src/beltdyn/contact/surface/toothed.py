@@ -25,6 +25,7 @@ TEETH = record(
     groove="f8",  # angle of a groove, 2 pi / z, rad
     flank="f8",  # tangent of the angle of the flanks to the normal
     spacing="f8",  # pitch of teeth that act at their middles alone, m; zero of spread teeth
+    land="f8",  # radius of the lands between which single teeth leave the belt straight, m; zero of circles
     height="f8",  # lift of the belt off the rim at which teeth are out of their grooves, m
     phase="f8",  # angle of the grooves where the pulley has the angle zero, rad
 )
