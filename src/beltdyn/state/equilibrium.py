@@ -9,7 +9,7 @@ from beltdyn.observation.recording import Recording
 from beltdyn.results import StaticResult, mesh_error_attribute, static_result
 from beltdyn.solvers.progress import Report
 from beltdyn.solvers.trajectory import Chunk
-from beltdyn.state.installation import bring_to_rest, on_equal_elements, rest_of
+from beltdyn.state.installation import bring_to_rest, holding_force, on_equal_elements, rest_of
 from beltdyn.state.refinement import refine_at_rest
 from beltdyn.state.static import standing
 from beltdyn.state.staying import bring_to_stand, stand
@@ -93,5 +93,7 @@ def _seen(
     with Recording(prepared, system, None, title, progress, mesh_frame_reason=reason) as recording:
         recording.start(found, system, unstable)
         recording.note(**said)
-        recording.take(Chunk.start(system, state), "equilibrium")
+        there = Chunk.start(system, state)
+        there.forces.hub[0, found.reference] -= holding_force(system, state)
+        recording.take(there, "equilibrium")
     return static_result(recording.run())

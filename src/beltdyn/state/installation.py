@@ -17,14 +17,17 @@ from beltdyn.model.prepared import Prepared, prepare
 from beltdyn.observation.compilation import compile_for_rest, rest_is_compiled
 from beltdyn.parts.messages import listing
 from beltdyn.solvers.progress import Phase, Progress, Report
+from beltdyn.state.newton import steady_work
 from beltdyn.state.static import find_equilibrium, standing, tensioner_compliance
 from beltdyn.state.tightening import Tightening, begin
-from beltdyn.system.arrays import System
+from beltdyn.system.arrays import Motion, System
 from beltdyn.system.build import drive_system
+from beltdyn.system.frame import StayingByArcs
 from beltdyn.system.meshing import at_phases, fit_phases, has_teeth, without_teeth
 from beltdyn.system.observations import Observations
 from beltdyn.system.observe import observe
 from beltdyn.system.state import State, laid
+from beltdyn.system.steady_assembly import anchor_at, assemble_steady
 
 _DEEPEST_START = 0.1
 """Depth of a belt from which equilibrium is sought, at most, over the smallest radius."""
@@ -224,6 +227,7 @@ def drawn_in(prepared: Prepared, factor: float) -> BeltPath:
 def looked_at(prepared: Prepared, system: System, state: State) -> Rest:
     """An equilibrium in which the belt touches every pulley."""
     seen = observe(standing(system), np.zeros(1), state.position[None], state.velocity[None])
+    seen.hub_force[0, prepared.reference] -= holding_force(system, state)
     depths = _depths(prepared, seen)
     for pulley, radius, wrap, depth, beside in zip(
         prepared.pulleys, prepared.radii, seen.wrap_angle[0], map(np.max, depths), system.pulleys.beside, strict=True
@@ -247,6 +251,16 @@ def looked_at(prepared: Prepared, system: System, state: State) -> Rest:
             "belt.elements, or move the pulleys apart."
         )
     return Rest(prepared, system, state, seen)
+
+
+def holding_force(system: System, state: State) -> FloatArray:
+    """Force on a belt at rest, at the arc of the driver, that holds goods on slopes, N, shape (2,)."""
+    if not isinstance(system.frame, StayingByArcs):
+        return np.zeros(2)
+    equations = steady_work(system).equations
+    still = Motion(0.0, state.position, np.zeros_like(state.position), np.zeros_like(state.position))
+    assemble_steady(standing(system), still, anchor_at(state, True), False, equations)
+    return np.asarray(equations.matrix.node_side[:, :2].sum(axis=0))
 
 
 def _depths(prepared: Prepared, seen: Observations) -> list[FloatArray]:

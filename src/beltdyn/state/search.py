@@ -14,7 +14,7 @@ from beltdyn.model import Drive, Prepared
 from beltdyn.parts.messages import listing
 from beltdyn.state.newton import FOUND, SteadyWork, find_steady, make_step, steady_work
 from beltdyn.state.slip_limit import GROSS, Passed, Setting, gross_slip, slip_limit
-from beltdyn.state.staying import TOLERANCE, Standing, anchor_at, transfer
+from beltdyn.state.staying import TOLERANCE, Standing, transfer
 from beltdyn.system.arc_mesh import fitted, shifts_of
 from beltdyn.system.arrays import System
 from beltdyn.system.build_carrying import with_resistance
@@ -34,6 +34,7 @@ from beltdyn.system.nip_loads import nip_loads, pressed_on, with_own_rollers
 from beltdyn.system.observe import observe
 from beltdyn.system.ring_matrix import clear, substitute
 from beltdyn.system.state import State
+from beltdyn.system.steady_assembly import anchor_at
 from beltdyn.system.web import content, rebased, set_content
 
 # Continuation: from a solution to that of another problem in steps, each from a guess by those before

@@ -21,7 +21,7 @@ from beltdyn.solvers.progress import Progress, Report
 from beltdyn.solvers.trajectory import Chunk, Integrator, Statistics, Task, drive_task
 from beltdyn.state.refinement import MeshRule, errors_at_rest, refine_at_rest, steady_from_rest
 from beltdyn.state.search import SteadySearch
-from beltdyn.state.staying import FINER, Standing, anchor_at, bring_to_stand, stand
+from beltdyn.state.staying import FINER, Standing, bring_to_stand, stand
 from beltdyn.system.arc_mesh import base_lengths, mesh_attributes, shifts_of
 from beltdyn.system.arrays import System
 from beltdyn.system.build_machines import profile_arrays
@@ -29,6 +29,7 @@ from beltdyn.system.build_staying import flowing_system, on_other_mesh, open_end
 from beltdyn.system.meshing import tooth_phases, turning
 from beltdyn.system.observe import observe_motion
 from beltdyn.system.state import State
+from beltdyn.system.steady_assembly import anchor_at
 
 _WINDOWS = 20
 """Windows in the longest time, at most."""

@@ -25,7 +25,7 @@ from beltdyn.system.meshing import fit_phases, has_teeth, unloaded, with_softer_
 from beltdyn.system.moving_center import pulley_center
 from beltdyn.system.observations import Observations
 from beltdyn.system.state import State, at_rest
-from beltdyn.system.steady_assembly import Anchor
+from beltdyn.system.steady_assembly import Anchor, anchor_at
 
 TOLERANCE = 1e-9
 """Of the last step of a search, over the smallest radius."""
@@ -41,8 +41,8 @@ _SETTLED = 1e-3
 _MOST = 60
 _SOFTER_TEETH = 1e-3, 1e-2, 0.1, 1.0
 """Stiffness of teeth over their own on the way to equilibrium, where the way from the laid belt is too long."""
-_SLOPE, _CURVATURE = slice(2, 4), slice(4, 6)
-"""First and second derivatives among the coordinates of a node."""
+_CURVATURE = slice(4, 6)
+"""Second derivatives among the coordinates of a node."""
 _SAMPLES = 16
 """Points of an element at which the ends of arcs are looked for."""
 
@@ -80,12 +80,6 @@ def laid_state(laid: Laid, system: System, tensioners: FloatArray) -> State:
     state = at_rest(system, nodal_coordinates(system, laid.path.position(along), slope, bend))
     state.position[state.position.size - tensioners.size :] = tensioners
     return state
-
-
-def anchor_at(state: State, at_rest: bool) -> Anchor:
-    """Hold node 0 where it is along the belt."""
-    slope = state.position[_SLOPE]
-    return Anchor(state.position[:2].copy(), slope / np.hypot(*slope), at_rest)
 
 
 def bring_to_stand(prepared: Prepared, elements: int | None = None) -> Standing:

@@ -25,6 +25,7 @@ from beltdyn.system.element_state import gather_motion
 from beltdyn.system.flow_tangent import NO_FLOW_TANGENT, FlowFactors, add_flow_forces, find_rate, scatter_column
 from beltdyn.system.meshing import add_steady_machines, clear_last_row, flow_unknown
 from beltdyn.system.ring_matrix import clear
+from beltdyn.system.state import State
 from beltdyn.system.supports import add_nodal_loads, hold_fixed, scatter
 from beltdyn.system.web import WebLine, hold_web
 
@@ -38,6 +39,12 @@ class Anchor(NamedTuple):
     """t, unit vector along the belt there, shape (2,)."""
     at_rest: bool
     """Whether the belt stands still."""
+
+
+def anchor_at(state: State, at_rest: bool) -> Anchor:
+    """Hold node 0 where it is along the belt."""
+    slope = state.position[2:4]
+    return Anchor(state.position[:2].copy(), slope / np.hypot(*slope), at_rest)
 
 
 @kernel

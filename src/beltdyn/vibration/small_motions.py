@@ -16,7 +16,7 @@ from beltdyn.results import Run
 from beltdyn.solvers.flutter import Vibrations
 from beltdyn.state.settling import DIRECTION, with_passage
 from beltdyn.state.static import standing
-from beltdyn.state.staying import Standing, anchor_at, bring_to_stand
+from beltdyn.state.staying import Standing, bring_to_stand
 from beltdyn.state.steady import search_from
 from beltdyn.system.arrays import System
 from beltdyn.system.build import drive_system
@@ -26,6 +26,7 @@ from beltdyn.system.constant_drive import constant_drive, dry_friction_of, rim_o
 from beltdyn.system.meshing import stopped, turning
 from beltdyn.system.state import State
 from beltdyn.system.state_forces import body_forces_at
+from beltdyn.system.steady_assembly import anchor_at
 from beltdyn.transient.earlier_run import recorded_state, staying_mesh
 
 if TYPE_CHECKING:

@@ -78,14 +78,18 @@ def test_the_pull_is_the_sum_of_resistances_of_din_22101(lift: float, goods: flo
 
 @pytest.mark.parametrize("lift", [LIFT, -LIFT])
 def test_the_closed_form_at_rest_holds_goods_on_the_slope_by_the_driver(lift: float) -> None:
-    """Not the hub load of the head: in static equilibrium the force that holds goods acts on the belt alone."""
+    """Supports bear what is across the slope: hub loads together bear the weight along it."""
     drive = conveyor(lift=lift)
     hand, found = bd.model.estimate_at_rest(bd.model.prepare(drive))[1], bd.equilibrium(drive).dataset
     upper, lower = hand.span_tensions[1], hand.span_tensions[0]
     expected = 0.5 * GRAVITY * lift * 104.0 + 2.0 * RADIUS * GRAVITY * BELT
     assert upper - lower == pytest.approx(expected, rel=1e-3)
     np.testing.assert_allclose(hand.span_tensions, found.span_tension.values, rtol=1e-3)
-    assert float(np.linalg.norm(hand.hub_loads[1])) == pytest.approx(float(found.hub_load[1]), rel=1e-3)
+    np.testing.assert_allclose(np.linalg.norm(hand.hub_loads, axis=1), found.hub_load.values, rtol=1e-3)
+    slope = math.hypot(LENGTH, lift)
+    mass = BELT * float(found.belt_length) + 104.0 * slope
+    along = found.hub_force.values.sum(axis=0) @ np.array([-LENGTH, lift]) / slope
+    assert along == pytest.approx(-mass * GRAVITY * lift / slope, rel=1e-6)
 
 
 def drum_tensions(run: bd.Run) -> tuple[float, float]:
