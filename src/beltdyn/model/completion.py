@@ -105,7 +105,7 @@ def _choices(given: Given, estimate: StaticEstimate) -> tuple[Choice, ...]:
         chosen.append(choose_creep_ratio(given.pulleys, grip * path.wrap_angles, strain))
     if "standstill_creep" in contact.open_keys:
         ratio = chosen[-1].value if contact.creep_ratio is None else contact.creep_ratio
-        chosen.append(choose_standstill_creep(ratio, _largest_speed(given, path, strain)))
+        chosen.append(choose_standstill_creep(ratio, _largest_speed(given, path, strain), given.pulleys))
     if belt.elements is None:
         on_path = OnPath(belt, estimate.length, np.abs(path.radii), estimate.stiffness)
         chosen.append(

@@ -24,6 +24,7 @@ from beltdyn.model.resolution import (
     layer_length,
     layer_lengths,
 )
+from beltdyn.parts.messages import listing
 
 TENSION_LOST = 0.005
 """Share of the tension lost by penetration."""
@@ -33,6 +34,8 @@ DAMPING_RATIO = 0.5
 """Contact damping over the critical damping, which stabilizes a sliding belt."""
 STANDSTILL = 0.05
 """Share of the largest speed below which the creep velocity is constant: steeper friction spoils the start."""
+GUIDING = 0.5
+"""The same share where pulleys are guides that stand still, over which the whole belt breaks away at once."""
 CREEP_LENGTHS = 16.0
 """Length of the smallest adhesion arc at the tension at rest, over the length of e-fold growth of slip velocity."""
 RESOLVED = {"tension": 0.005, "slip": 0.015}
@@ -120,10 +123,13 @@ def choose_creep_ratio(pulleys: Sequence[Pulley], grips: FloatArray, strain: flo
     return Choice("contact.creep_ratio", grip * strain / CREEP_LENGTHS, "", "adds less than 3% to elastic creep")
 
 
-def choose_standstill_creep(creep_ratio: float, speed: float) -> Choice:
+def choose_standstill_creep(creep_ratio: float, speed: float, pulleys: Sequence[Pulley]) -> Choice:
     """Choose the creep velocity on pulleys at a standstill."""
-    reason = f"as at {STANDSTILL:.0%} of the largest speed, {speed:.3g} m/s"
-    return Choice("contact.standstill_creep", STANDSTILL * creep_ratio * speed, "m/s", reason)
+    guides = [one.name for one in pulleys if one.stands_still]
+    share = GUIDING if guides else STANDSTILL
+    reason = f"as at {share:.0%} of the largest speed, {speed:.3g} m/s"
+    reason += f"; {listing(guides)} stand{'s' * (len(guides) == 1)} still" if guides else ""
+    return Choice("contact.standstill_creep", share * creep_ratio * speed, "m/s", reason)
 
 
 def choose_elements(belt: OnPath, tension: float) -> Choice:

@@ -9,7 +9,7 @@ import numpy as np
 import tomli_w
 from pydantic import Field, PrivateAttr, ValidationInfo, model_validator
 
-from beltdyn.arrays import FloatArray
+from beltdyn.arrays import BoolArray, FloatArray
 from beltdyn.contact.friction import FrictionParameters
 from beltdyn.elements import ELEMENTS, ElementKind
 from beltdyn.errors import ModelError
@@ -329,8 +329,13 @@ class Drive(Part):
 
     @property
     def driver(self) -> int | None:
-        """Number of the driver: the first pulley with prescribed speed, or else the first with a motor."""
-        for drives in (lambda one: one.prescribed, lambda one: any(load.driven_speed for load in one.load)):
+        """Number of the driver: the first pulley with prescribed speed, or else with a motor, or else that is held."""
+        kinds: tuple[Callable[[Pulley], bool], ...] = (
+            lambda one: one.prescribed and not one.stands_still,
+            lambda one: any(load.driven_speed for load in one.load),
+            lambda one: one.prescribed,
+        )
+        for drives in kinds:
             found = [number for number, one in enumerate(self.pulleys) if drives(one)]
             if found:
                 return found[0]
@@ -367,6 +372,12 @@ class Drive(Part):
     def reference(self) -> int:
         """Number of the reference pulley of slip: the driver, or the first pulley without a driver."""
         return self.driver or 0
+
+    @property
+    def guides(self) -> BoolArray:
+        """Whether each pulley stands still and the belt slides over it, shape (n,)."""
+        driver = self.driver
+        return np.array([one.stands_still and number != driver for number, one in enumerate(self.pulleys)])
 
     @property
     def own_kinds(self) -> list[Chosen]:

@@ -240,6 +240,11 @@ class Prepared:
             )
         return layer_length(*layer_lengths(self, tension))
 
+    @property
+    def gripping(self) -> BoolArray:
+        """Whether friction is to carry the load of each pulley: not by teeth, and no guide, shape (n,)."""
+        return ~(self.toothed | self.drive.guides)
+
     @cached_property
     def toothed(self) -> BoolArray:
         """Which pulleys hold the belt by its teeth, shape (pulleys,)."""

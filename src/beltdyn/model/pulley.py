@@ -311,6 +311,11 @@ class Pulley(Part):
         return self.speed is not None
 
     @property
+    def stands_still(self) -> bool:
+        """Whether the shaft is prescribed to stand still at all times."""
+        return self.speed is not None and self.speed.largest(math.inf) == 0.0
+
+    @property
     def profiles(self) -> tuple[Profile, ...]:
         """All functions of time prescribed at the pulley."""
         given = (self.speed, self.torque, *self.switching)

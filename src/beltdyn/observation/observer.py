@@ -203,7 +203,7 @@ class SlipThrough:
             sliding = np.abs(outputs["sliding_speed"][row])
             speed = float(outputs["pulley_speed"][row, self._swept])
             rim = abs(speed) * self._radius
-            fast = sliding > _FAST * rim
+            fast = (sliding > _FAST * rim) & ~self._prepared.drive.guides
             begins = fast & np.isinf(self._since)
             self._since = np.where(fast, np.where(begins, time, self._since), np.inf)
             self._load = np.where(begins, np.abs(outputs["pulley_torque"][row]), self._load)

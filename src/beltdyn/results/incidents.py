@@ -143,6 +143,7 @@ def slides_through(recorded: Recorded, prepared: Prepared) -> BoolArray:
     slid = np.abs(sliding) > SLIDING_LIMIT * np.nanmax(np.abs(rim_speeds(speed, prepared)[:, prepared.reference]))
     if prepared.ends:
         return np.zeros_like(slid)
+    slid &= prepared.gripping
     beside = np.pad(slid, ((1, 1), (0, 0)))
     return np.asarray(slid & (beside[:-2] | beside[2:])) if len(slid) > 1 else slid
 

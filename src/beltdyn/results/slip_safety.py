@@ -151,9 +151,10 @@ def slip_safety_of_states(
 ) -> FloatArray:
     """Slip safety of each pulley: the factor on all loads at its gross slip, if the others hold.
 
-    1 on the edge of gross slip. NaN where teeth hold the belt, without a load, where the difference of tensions at a
-    pulley, over their sum, is below `UNLOADED`, and where the belt does not touch. Arguments have shapes (..., spans),
-    N and m/s, and (..., pulleys, 2), m; frictions replace the coefficients of the drive, with the wedge effect.
+    1 on the edge of gross slip. NaN where teeth hold the belt, on guides that stand still, without a load, where the
+    difference of tensions at a pulley, over their sum, is below `UNLOADED`, and where the belt does not touch.
+    Arguments have shapes (..., spans), N and m/s, and (..., pulleys, 2), m; frictions replace the coefficients of the
+    drive, with the wedge effect.
     """
     pulleys = len(prepared.pulleys)
     shape = tension.shape[:-1]
@@ -161,7 +162,7 @@ def slip_safety_of_states(
     with np.errstate(invalid="ignore", divide="ignore", over="ignore"):
         rough = None if frictions is None else frictions.reshape(-1, pulleys)
         balance = TensionBalance(prepared, *flat, centers.reshape(-1, pulleys, 2), rough)
-        safeties = np.where(prepared.toothed, np.nan, _safeties(balance))
+        safeties = np.where(prepared.gripping, _safeties(balance), np.nan)
         return safeties.reshape(*shape, pulleys)
 
 
@@ -186,7 +187,7 @@ def slip_safety_at_arcs(pressing: tuple[FloatArray, FloatArray], centers: FloatA
     before, after = pressing
     wrap = wrap_angles(span_directions(centers, *prepared.path.shape), prepared.path.radii)
     held, apart = (before + after) * np.tanh(0.5 * prepared.frictions * wrap), np.abs(before - after)
-    loaded = (apart > UNLOADED * np.abs(before + after)) & ~prepared.toothed
+    loaded = (apart > UNLOADED * np.abs(before + after)) & prepared.gripping
     return np.divide(np.maximum(held, 0.0), apart, out=np.full_like(held, np.nan), where=loaded)
 
 
@@ -207,7 +208,7 @@ def friction_used(
     before, after = across(tension - lifted, prepared) if pressing is None else pressing
     with np.errstate(invalid="ignore", divide="ignore"):
         ratio = np.log(np.maximum(before, after) / np.maximum(np.minimum(before, after), 0.0))
-        return np.where(prepared.toothed, 0.0, ratio / (prepared.frictions * wrap))
+        return np.where(prepared.gripping, ratio / (prepared.frictions * wrap), 0.0)
 
 
 def _safeties(balance: TensionBalance) -> FloatArray:

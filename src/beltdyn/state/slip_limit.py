@@ -64,6 +64,7 @@ def slip_limit(prepared: Prepared, system: System, asked: System, passed: Sequen
     here = passed[at] if slip > GROSS else last
     torques, used = _transmitted(system, here)
     used[[_idles(asked, here, p) for p in range(used.size)]] = 0.0
+    used[prepared.drive.guides] = 0.0
     taken = torques * here.state.velocity[system.first_body :][: used.size]
     most = np.where(used > _ALIKE * used.max(), taken, -np.inf)
     worst = int(np.argmax(most if slip <= GROSS else np.where(slips[0] > GROSS, -1.0, slips[at])))

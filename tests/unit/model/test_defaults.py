@@ -185,3 +185,13 @@ def test_friction_is_as_steep_as_at_a_twentieth_of_the_speed_where_nothing_turns
     contact, strain = still.completed.contact, install(still).strain
     wave = (2e5 / 0.1) ** 0.5
     assert contact.standstill_creep == pytest.approx(0.05 * contact.creep_ratio * strain * wave, rel=1e-2)
+
+
+def test_friction_is_less_steep_where_the_belt_slides_over_a_guide() -> None:
+    """A belt that breaks away on a whole arc at once needs it; the guide drives nothing, wherever it is listed."""
+    guide = {"name": "guide", "center": (0.5, 0.0), "radius": 0.1, "speed": 0.0}
+    given = drive(pulley=[guide, MOTOR])
+    contact = given.completed.contact
+    assert (given.driver, given.guides.tolist()) == (1, [True, False])
+    assert contact.standstill_creep == pytest.approx(0.5 * contact.creep_ratio * 100.0 * given.radii[1])
+    assert not drive(pulley=[guide, FAN]).guides.any()

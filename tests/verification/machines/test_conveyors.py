@@ -2,13 +2,16 @@
 
 import math
 from collections.abc import Callable
+from pathlib import Path
 from typing import Any
 
 import numpy as np
 import pytest
 
 import beltdyn as bd
+from beltdyn.arrays import FloatArray
 from beltdyn.errors import ConvergenceError
+from beltdyn.model import Prepared
 
 LENGTH, LIFT, GRAVITY = 1000.0, 20.0, 9.81
 EA, BELT = 72e6, 25.0
@@ -111,6 +114,75 @@ def test_the_drum_slips_beyond_eulers_limit() -> None:
     bd.steady_state(conveyor(grip=1.02 * needed))
     with pytest.raises(ConvergenceError, match="head"):
         bd.steady_state(conveyor(grip=0.98 * needed))
+
+
+HANDRAIL = Path(__file__).parents[3] / "docs" / "tasks" / "handrail.toml"
+LIMBER = 0.02
+"""Bending stiffness (N m^2) of a handrail that closed forms without it are compared with."""
+
+
+def rubbing(drive: bd.Drive, span: int) -> float:
+    """Friction of a guide along a span, N, without what hangs before and behind it: 1 of 460 N in a handrail."""
+    weight = -drive.belt.mass_per_length * drive.gravity[1]
+    whole, level = drive.path.span_lengths[span], abs(float(drive.path.span_directions[span, 0]))
+    for one in drive.supports:
+        if isinstance(one, bd.model.Guide) and one.span == drive.spans[span]:
+            length = (one.end or whole) - one.start
+            return one.friction * (one.pressing + weight * level) * length
+    return 0.0
+
+
+def tensions_by_hand(prepared: Prepared, slack: float) -> FloatArray:
+    """Tensions in the middle of the spans from that behind the driver, N.
+
+    Weight and guides along spans; on arcs dT = mu (T / R + weight outwards) ds, Euler's formula without weight.
+    """
+    drive, path, found, parts = prepared.drive, prepared.path, [slack], 2000
+    weight = -drive.belt.mass_per_length * drive.gravity[1]
+
+    def of_half(span: int) -> float:
+        return 0.5 * float(weight * path.span_directions[span, 1] * path.span_lengths[span] + rubbing(drive, span))
+
+    tension = slack + of_half(0)
+    for p in range(1, path.count):
+        radius, step = path.radii[p], path.wrap_angles[p] / parts
+        friction = drive.frictions[p] if drive.guides[p] else 0.0
+        level, up = path.span_directions[p - 1]
+        for angle in math.atan2(up, level) + np.sign(radius) * step * (np.arange(parts) + 0.5):
+            pressing = tension - weight * radius * math.cos(angle)
+            tension += step * (abs(radius) * weight * math.sin(angle) + friction * pressing)
+        found.append(tension + of_half(p))
+        tension += 2.0 * of_half(p)
+    return np.array(found)
+
+
+@pytest.mark.parametrize("gravity", [0.0, GRAVITY])
+def test_a_handrail_is_pulled_through_its_guides(gravity: float) -> None:
+    """Straight guides by friction on weight and pressing, newels by Euler's formula, and power by their sum."""
+    given = bd.load(HANDRAIL)
+    drive = given.replace(gravity=[0.0, -gravity], belt=given.belt.replace(bending_stiffness=LIMBER))
+    run = bd.steady_state(drive)
+    found, slipping = run.dataset.span_tension[-1].values, run.dataset.friction_power[-1].values
+    expected = tensions_by_hand(run.prepared, float(found[0]))
+    np.testing.assert_allclose(found, expected, rtol=2e-3)
+    speed = float(run.dataset.belt_speed[-1].mean())
+    power = float(run.dataset.shaft_torque[-1, 0] * run.dataset.shaft_speed[-1, 0])
+    straight = sum(rubbing(drive, span) for span in range(4))
+    assert power / speed == pytest.approx(slipping.sum() / speed + straight, rel=3e-3)
+    safeties = [one.slip_safety for one in bd.summarize(run).pulleys]
+    assert np.isnan(safeties[2:]).all()
+    assert safeties[0] > 1.5
+
+
+@pytest.mark.slow
+def test_a_handrail_breaks_away_and_runs_steadily() -> None:
+    drive = bd.load(HANDRAIL)
+    run = bd.simulate(drive)
+    time, tension = run.dataset.time.values, run.dataset.span_tension.values
+    steady = bd.steady_state(drive).dataset.span_tension[-1].values
+    np.testing.assert_allclose(tension[time > 3.5].mean(axis=0), steady, rtol=5e-3)
+    assert float(np.abs(run.dataset.energy_closure).max()) < 2e-4
+    assert not any("gross slip" in warning for warning in bd.summarize(run).warnings)
 
 
 @pytest.mark.slow

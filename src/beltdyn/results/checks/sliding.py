@@ -103,7 +103,8 @@ def _sliding(evidence: Evidence) -> list[int]:
     """Numbers of the pulleys in gross slip at the end of the run."""
     limit = SLIDING_LIMIT * _driving_rim(evidence)
     sliding = (abs(pulley.sliding_speed) > limit for pulley in evidence.pulleys)
-    return [] if evidence.prepared.ends else [number for number, slides in enumerate(sliding) if slides]
+    found = np.flatnonzero(np.array(list(sliding)) & ~evidence.prepared.drive.guides).tolist()
+    return [] if evidence.prepared.ends else found
 
 
 def _driving_rim(evidence: Evidence) -> float:
