@@ -43,3 +43,5 @@ class PulleyState(NamedTuple):
     """Damping over stiffness of contact against that of the law."""
     rim_ratio: float = 1.0
     """Radius at which the tension line rolls off over that of the surface."""
+    hertz: float = 0.0
+    """Penetration of a solid roller over the square of its line force, 2 R / (b E*)^2, m^3/N^2."""

@@ -169,6 +169,7 @@ def point_force(here: Approach, pulley: PulleyState, law: ContactLaw, secant: bo
     """
     normal = normal_force(law.normal, here.penetration, -here.radial * pulley.damping)
     normal = _on_cover(normal, pulley.foundation, pulley.damping)
+    normal = _on_solid(normal, pulley.foundation * law.normal.stiffness, pulley.hertz)
     slip = slip_velocity(here, pulley)
     radius = pulley.surface.radius
     friction, by_slip, by_normal, by_rim = friction_force(
@@ -205,6 +206,23 @@ def _on_cover(normal: NormalForce, factor: float, damping: float) -> NormalForce
         factor * damping * normal.by_rate,
         factor * normal.elastic,
         factor * normal.energy,
+    )
+
+
+@kernel(inline=True)
+def _on_solid(normal: NormalForce, stiffness: float, hertz: float) -> NormalForce:
+    """A normal force in series with solid rollers, which give way by hertz f^2 (see `theory.nip`)."""
+    if hertz == 0.0 or normal.elastic <= 0.0:
+        return normal
+    rise = 4.0 * hertz * stiffness
+    root = sqrt(1.0 + rise * max(normal.force, 0.0))
+    elastic = 2.0 * normal.elastic / (1.0 + sqrt(1.0 + rise * normal.elastic))
+    return NormalForce(
+        2.0 * normal.force / (1.0 + root),
+        normal.by_penetration / root,
+        normal.by_rate / root,
+        elastic,
+        elastic * elastic * (0.5 / stiffness + 2.0 / 3.0 * hertz * elastic),
     )
 
 

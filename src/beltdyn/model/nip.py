@@ -1,8 +1,8 @@
 """A nip: two rollers that press the belt between them."""
 
 from collections.abc import Sequence
-from math import hypot, pi
-from typing import Self
+from math import hypot, inf, pi
+from typing import NamedTuple, Self
 
 import numpy as np
 from pydantic import Field, model_validator
@@ -15,7 +15,16 @@ from beltdyn.model.path import Path
 from beltdyn.model.pulley import Pulley, fastest_rim
 from beltdyn.parts.part import Part
 from beltdyn.parts.quantity import Coordinate, Force, Name
-from beltdyn.theory.nip import equivalent_radius, half_width, indentation_of, nip_damping, series
+from beltdyn.theory.nip import (
+    equivalent_radius,
+    force,
+    half_width,
+    hertz_compliance,
+    indentation_of,
+    line_force,
+    nip_damping,
+    series,
+)
 
 _DEEPEST = 0.5
 """Largest compression of a cover or of the belt between two rollers, over its thickness."""
@@ -134,8 +143,7 @@ def placed(nips: Sequence[Nip], pulleys: tuple[Pulley, ...], belt: Belt, stiffne
         elif nip.force is not None:
             depth = 0.0
             if np.isfinite(stiffness):
-                pair = series(*(side_stiffness(each, belt, stiffness) for each in (roller, pulley)))
-                depth = indentation_of(nip.force, pair, equivalent_radius(*_sizes(roller, pulley, belt)))
+                depth = Pair.of(roller, pulley, belt, stiffness).indentation_of(nip.force)
         else:
             continue
         apart = touching_distance(roller, pulley, belt) - depth
@@ -156,6 +164,42 @@ def _sizes(roller: Pulley, pulley: Pulley, belt: Belt) -> tuple[float, float]:
     return tuple(one.radius + belt.offset(one.side, one.teeth is not None) for one in (roller, pulley))  # type: ignore
 
 
+class Pair(NamedTuple):
+    """The rollers of a nip with the belt between them, as `theory.nip` sees them."""
+
+    stiffness: float
+    """K of the foundations on both sides in series, N/m^2."""
+    radius: float
+    """R, m."""
+    hertz: float
+    """A of solid rollers, m^3/N^2."""
+
+    @classmethod
+    def of(cls, roller: Pulley, pulley: Pulley, belt: Belt, stiffness: float) -> Self:
+        """The pair of a nip, with the stiffness of contact, N/m^2."""
+        sides = [side_stiffness(one, belt, stiffness) for one in (roller, pulley)]
+        radius = equivalent_radius(*_sizes(roller, pulley, belt))
+        modulus = series(*(inf if one.cover is None else one.cover.solid_modulus for one in (roller, pulley)))
+        return cls(series(*sides), radius, hertz_compliance(modulus, radius, belt.width))
+
+    def indentation_of(self, load: float) -> float:
+        """Indentation under a force (N), m."""
+        return indentation_of(load, self.stiffness, self.radius, self.hertz)
+
+    def half_width(self, indentation: float) -> float:
+        """Half of the width of the nip, m."""
+        return half_width(max(indentation, 0.0), self.radius)
+
+    def peak(self, indentation: float) -> float:
+        """Line force on the line of centers, N/m."""
+        return float(line_force(np.array(max(indentation, 0.0)), self.stiffness, self.hertz))
+
+    def slope(self, indentation: float) -> float:
+        """Growth of the force with the indentation, N/m."""
+        step, pair = 1e-4 * indentation, (self.stiffness, self.radius, self.hertz)
+        return (force(indentation + step, *pair) - force(indentation - step, *pair)) / (2.0 * step)
+
+
 def side_stiffness(pulley: Pulley, belt: Belt, stiffness: float) -> float:
     """Stiffness of a pulley's cover and the belt on it in series, N/m^2, with that of contact without a cover."""
     return stiffness if pulley.cover is None else series(pulley.cover.stiffness(belt.width), stiffness)
@@ -173,7 +217,8 @@ def damping_ratios(path: Path, pulleys: Sequence[Pulley], belt: Belt, contact: C
     with v, in place of the loss pi / 4 eta k d^2 of hysteresis with d = a^2 / 2 R.
     """
     found = np.ones(len(pulleys))
-    if contact is None or not any(_loss_factor(one, belt, contact.given("stiffness")) for one in pulleys):
+    covers = [one.cover.loss_factor for one in pulleys if one.cover is not None]
+    if contact is None or not any([belt.compression_loss_factor, *covers]):
         return found
     stiffness, damping = contact.given("stiffness"), contact.given("damping")
     if damping == 0.0:
@@ -183,11 +228,23 @@ def damping_ratios(path: Path, pulleys: Sequence[Pulley], belt: Belt, contact: C
         )
     speed = fastest_rim(pulleys, np.abs(path.radii))
     for pair, depth in zip(path.nips, path.indentations.tolist(), strict=True):
-        half = half_width(max(depth, 0.0), equivalent_radius(*np.abs(path.radii[list(pair)]).tolist()))
-        for one in pair:
-            own = nip_damping(_loss_factor(pulleys[one], belt, stiffness), half, speed)
-            found[one] = own * stiffness / damping
+        rollers = [pulleys[one] for one in pair]
+        both = Pair.of(rollers[0], rollers[1], belt, stiffness)
+        for one, solid in zip(pair, (both.hertz, 0.0), strict=True):
+            linear = 1.0 / side_stiffness(pulleys[one], belt, stiffness)
+            curved = 4.0 / 3.0 * solid * both.peak(depth)
+            share = curved / (linear + curved)
+            lost = (1.0 - share) * _loss_factor(pulleys[one], belt, stiffness) + share * _solid_loss_factor(rollers)
+            found[one] = nip_damping(lost, both.half_width(depth), speed, share) * stiffness / damping
     return found
+
+
+def _solid_loss_factor(pair: Sequence[Pulley]) -> float:
+    """Loss factor of the solid rollers of a nip, by their shares of the energy."""
+    solid = [one.cover for one in pair if one.cover is not None and one.cover.thickness is None]
+    compliances = [1.0 / one.solid_modulus for one in solid]
+    lost = sum(one.loss_factor * own for one, own in zip(solid, compliances, strict=True))
+    return lost / sum(compliances) if solid else 0.0
 
 
 def _loss_factor(pulley: Pulley, belt: Belt, stiffness: float) -> float:
@@ -195,6 +252,14 @@ def _loss_factor(pulley: Pulley, belt: Belt, stiffness: float) -> float:
     side = side_stiffness(pulley, belt, stiffness)
     of_cover = 0.0 if pulley.cover is None else pulley.cover.loss_factor * side / pulley.cover.stiffness(belt.width)
     return of_cover + belt.compression_loss_factor * side / stiffness
+
+
+def hertz_compliances(path: Path, pulleys: Sequence[Pulley], belt: Belt, stiffness: float) -> FloatArray:
+    """Compliance A of the solid rollers of each nip at its roller beside the path, m^3/N^2, shape (n,)."""
+    found = np.zeros(len(pulleys))
+    for roller, pulley in path.nips:
+        found[roller] = Pair.of(pulleys[roller], pulleys[pulley], belt, stiffness).hertz
+    return found
 
 
 def rim_ratios(pairs: Sequence[tuple[int, int]], pulleys: Sequence[Pulley], radii: FloatArray) -> FloatArray:
@@ -227,7 +292,8 @@ def check_places(nips: Sequence[Nip], path: Path, pulleys: Sequence[Pulley], bel
                 f'nip[{number}]: "{roller.name}" does not reach the belt on "{pulley.name}": it is {-depth:.4g} m '
                 "away. Move its center, or give force or gap"
             )
-        room = belt.thickness + sum(0.0 if each.cover is None else each.cover.thickness for each in (roller, pulley))
+        covers = [each.cover for each in (roller, pulley) if each.cover is not None]
+        room = belt.thickness + sum(roller.radius if one.thickness is None else one.thickness for one in covers)
         if depth > _DEEPEST * room:
             asked = "" if nip.force is None else f" by a force of {nip.force:.4g} N"
             raise ValueError(
@@ -235,7 +301,7 @@ def check_places(nips: Sequence[Nip], path: Path, pulleys: Sequence[Pulley], bel
                 f"{depth:.4g} m{asked}, beyond {_DEEPEST:.0%} of the {room:.4g} m of belt and covers between them. "
                 "Reduce force, open the gap, or give a thicker or harder cover"
             )
-        half = float(np.sqrt(2.0 * equivalent_radius(*np.abs(path.radii[[one, other]]).tolist()) * max(depth, 0.0)))
+        half = half_width(max(depth, 0.0), equivalent_radius(*np.abs(path.radii[[one, other]]).tolist()))
         if half > min(angle, wrap - angle) * abs(float(path.radii[other])):
             raise ValueError(
                 f'nip[{number}]: the nip of "{roller.name}" is {2.0 * half:.4g} m wide and reaches beyond the arc on '

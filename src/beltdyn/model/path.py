@@ -71,6 +71,11 @@ class Path:
         """Numbers of the rollers beside the path."""
         return tuple(roller for roller, _ in self.nips)
 
+    @property
+    def nips_by_roller(self) -> list[tuple[int, int]]:
+        """Pairs of the nips in the order of their rollers, which is that of results."""
+        return sorted(self.nips)
+
     @cached_property
     def indentations(self) -> FloatArray:
         """By how much each roller of a nip and its pulley overlap with the belt between them, m, shape (nips,)."""

@@ -86,7 +86,7 @@ def result_layout(prepared: Prepared, system: System) -> Layout:
         tensioners=tuple(names[pulley] for pulley in system.tensioners.pulley),
         carriages=_carriages(prepared),
         bodies=_bodies(prepared, system),
-        nips=tuple(prepared.drive.pulleys[roller].name for roller in sorted(prepared.path.beside)),
+        nips=tuple(prepared.drive.pulleys[roller].name for roller, _ in prepared.path.nips_by_roller),
         tooth_coordinate=tuple(tooth_coordinates(system).tolist()),
     )
 

@@ -61,6 +61,7 @@ def pulley_state(system: System, pulley: int, position: FloatArray, velocity: Fl
             item.foundation,
             item.damping,
             item.rim_ratio,
+            item.hertz,
         )
     at = tensioner_coordinate(system, carrier)
     center = tensioner_center(system.tensioners[carrier], position[at])
@@ -77,6 +78,7 @@ def pulley_state(system: System, pulley: int, position: FloatArray, velocity: Fl
         item.foundation,
         item.damping,
         item.rim_ratio,
+        item.hertz,
     )
 
 

@@ -6,9 +6,8 @@ import numpy as np
 
 from beltdyn.arrays import FloatArray
 from beltdyn.model import Prepared
-from beltdyn.model.nip import side_stiffness
+from beltdyn.model.nip import Pair
 from beltdyn.system.arrays import System
-from beltdyn.theory.nip import equivalent_radius, half_width, series
 
 _ACCURACY = 1e-9
 """Of a move that ends the search, over the smallest radius."""
@@ -30,9 +29,8 @@ def nip_loads(prepared: Prepared) -> list[NipLoad]:
     found, path, contact = list[NipLoad](), prepared.path, prepared.contact_stiffness
     for nip, (roller, pulley), depth in zip(prepared.drive.nips, path.nips, path.indentations.tolist(), strict=True):
         if nip.force is not None:
-            pair = series(*(side_stiffness(prepared.pulleys[one], prepared.belt, contact) for one in (roller, pulley)))
-            radius = equivalent_radius(*np.abs(path.radii[[roller, pulley]]).tolist())
-            found.append(NipLoad(roller, pulley, nip.force, 2.0 * pair * half_width(depth, radius)))
+            pair = Pair.of(prepared.pulleys[roller], prepared.pulleys[pulley], prepared.belt, contact)
+            found.append(NipLoad(roller, pulley, nip.force, pair.slope(depth)))
     return found
 
 

@@ -1,6 +1,19 @@
-"""The nip of two rollers on elastic foundations: a parabola of pressure (Johnson 1985, Contact Mechanics, 4.3)."""
+"""The nip of two rollers (Johnson 1985, Contact Mechanics, 4.2 and 4.3).
 
-from math import inf, pi, sqrt
+On elastic foundations K the pressure is the parabola K (d - x^2 / 2 R), of solid rollers it is Hertz's half ellipse.
+With the overlap y = d - x^2 / 2 R of the undeformed rollers, that is E* sqrt(y / 2 R) at each place: a local law, by
+which the line force f compresses by A f^2, A = 2 R / (b E*)^2. Width, pressure and force are those of Hertz; the
+approach of the centers is d = a^2 / 2 R, while that of half spaces grows with the logarithm of their size.
+"""
+
+from math import asin, inf, pi, sqrt
+
+import numpy as np
+
+from beltdyn.arrays import FloatArray
+
+_POINTS = 24
+"""Of quadrature over a nip."""
 
 
 def cover_modulus(youngs_modulus: float, poissons_ratio: float) -> float:
@@ -56,20 +69,82 @@ def half_width(indentation: float, radius: float) -> float:
     return sqrt(2.0 * radius * indentation)
 
 
-def force(indentation: float, stiffness: float, radius: float) -> float:
+def plane_modulus(youngs_modulus: float, poissons_ratio: float) -> float:
+    """Modulus of a solid roller in plane strain, E / (1 - nu^2), Pa.
+
+    Examples
+    --------
+    >>> round(bd.theory.nip.plane_modulus(206e9, 0.3) / 1e9, 1)
+    226.4
+    """
+    return youngs_modulus / (1.0 - poissons_ratio**2)
+
+
+def hertz_compliance(modulus: float, radius: float, width: float) -> float:
+    """Compression of solid rollers over the square of the line force, A = 2 R / (b E*)^2, m^3/N^2.
+
+    Parameters
+    ----------
+    modulus
+        E*, of both rollers in series, Pa; infinite of rigid ones.
+    radius
+        R, of `equivalent_radius`, m.
+    width
+        b, m.
+
+    Examples
+    --------
+    >>> bd.theory.nip.hertz_compliance(1e8, 0.05, 0.2)
+    2.5e-16
+    """
+    return 2.0 * radius / (width * modulus) ** 2
+
+
+def hertz_half_width(load: float, modulus: float, radius: float) -> float:
+    """Half of the width of Hertz's line contact under a force per width (N/m), a = sqrt(4 F R / pi E*), m.
+
+    The pressure is a half ellipse with the peak 2 F / pi a; `modulus` and `radius` are those of `hertz_compliance`.
+
+    Examples
+    --------
+    >>> round(bd.theory.nip.hertz_half_width(10e3, 1e8, 0.05) * 1e3, 3)  # mm
+    2.523
+    """
+    return sqrt(4.0 * load * radius / (pi * modulus))
+
+
+def line_force(overlap: FloatArray, stiffness: float, hertz: float = 0.0) -> FloatArray:
+    """Line force f that compresses a foundation and solid rollers in series by f / K + A f^2, N/m.
+
+    Examples
+    --------
+    >>> bd.theory.nip.line_force(np.array([2e-3]), 1e9, 1e-15).tolist()
+    [1000000.0]
+    """
+    return np.asarray(2.0 * stiffness * overlap / (1.0 + np.sqrt(1.0 + 4.0 * hertz * stiffness**2 * overlap)))
+
+
+def force(indentation: float, stiffness: float, radius: float, hertz: float = 0.0) -> float:
     """Force of a foundation of stiffness K (N/m^2 over the length of the belt), F = 4 K a d / 3, N.
 
-    The line force is the parabola K (d - x^2 / 2 R); `indentation` and `radius` are those of `half_width`.
+    The line force is the parabola K (d - x^2 / 2 R); `indentation` and `radius` are those of `half_width`. With the
+    compliance A of solid rollers (`hertz_compliance`) in series, `line_force` is integrated over x = a sin u.
 
     Examples
     --------
     >>> round(bd.theory.nip.force(5e-4, 3e8, 0.1), 6)
     2000.0
     """
-    return 4.0 / 3.0 * stiffness * half_width(indentation, radius) * indentation
+    half = half_width(indentation, radius)
+    if hertz == 0.0:
+        return 4.0 / 3.0 * stiffness * half * indentation
+    place, weight = np.polynomial.legendre.leggauss(_POINTS)
+    opening = np.cos(0.25 * pi * (place + 1.0))
+    loads = line_force(indentation * opening**2, stiffness, hertz)
+    return float(0.5 * pi * half * np.sum(weight * opening * loads))
 
 
-def indentation_of(load: float, stiffness: float, radius: float) -> float:
+def indentation_of(load: float, stiffness: float, radius: float, hertz: float = 0.0) -> float:
     """Indentation d under a force (N), m; the inverse of `force`.
 
     Examples
@@ -77,13 +152,21 @@ def indentation_of(load: float, stiffness: float, radius: float) -> float:
     >>> round(bd.theory.nip.indentation_of(2000.0, 3e8, 0.1), 9)
     0.0005
     """
-    return float((3.0 * load / (4.0 * stiffness * sqrt(2.0 * radius))) ** (2.0 / 3.0))
+    soft = float((3.0 * load / (4.0 * stiffness * sqrt(2.0 * radius))) ** (2.0 / 3.0))
+    if hertz == 0.0:
+        return soft
+    from scipy.optimize import brentq
+
+    beyond = soft + 4.0 * load * sqrt(0.5 * hertz / radius) / pi
+    return float(brentq(lambda depth: force(depth, stiffness, radius, hertz) - load, soft, beyond, xtol=1e-15))
 
 
-def nip_damping(loss_factor: float, half_width: float, speed: float) -> float:
+def nip_damping(loss_factor: float, half_width: float, speed: float, solid: float = 0.0) -> float:
     """Damping over stiffness of a foundation that loses in a nip what hysteresis does, s.
 
-    A strip is pressed to d = a^2 / 2 R at the rate v x / R and loses 2 c v a^3 / 3 R^2; hysteresis, pi / 4 eta K d^2.
+    A strip is pressed to d = a^2 / 2 R at the rate v x / R. Hysteresis loses pi / 2 eta of the energy K d^2 / 2 of a
+    foundation, and of 2 A f^3 / 3 of solid rollers, by which they lose eta F a / 3 R (Johnson 1985, 9.1). A damper
+    does so with about 3 pi eta a / 32 v and eta a / 3 v; it lets go before the rollers do, which is taken into account.
 
     Parameters
     ----------
@@ -93,13 +176,33 @@ def nip_damping(loss_factor: float, half_width: float, speed: float) -> float:
         a, m.
     speed
         v, m/s; at a standstill there is none.
+    solid
+        Part of the energy that solid rollers store.
 
     Examples
     --------
     >>> round(bd.theory.nip.nip_damping(0.1, 0.01, 2.0) * 1e3, 4)  # ms
-    0.1473
+    0.1506
     """
-    return 0.0 if speed == 0.0 else 3.0 * pi * loss_factor * half_width / (32.0 * speed)
+    if speed == 0.0 or loss_factor == 0.0:
+        return 0.0
+    from scipy.optimize import brentq
+
+    def excess(delay: float) -> float:
+        linear, curved = (_damper_loss(delay, power) for power in (1.0, 0.5))
+        return (1.0 - solid) * (linear - 0.25 * pi * loss_factor) + solid * (curved - pi / 3.0 * loss_factor)
+
+    return float(brentq(excess, 0.0, 2.0 * loss_factor)) * half_width / speed
+
+
+def _damper_loss(delay: float, power: float) -> float:
+    """What a damper loses of the peak line force times d, with the line force as a power of d + delay d' a / v."""
+    reach = sqrt(1.0 + delay**2)
+    first = asin((delay - 1.0) / reach)
+    place, weight = np.polynomial.legendre.leggauss(_POINTS)
+    angle = first + 0.5 * (0.5 * pi - first) * (place + 1.0)
+    load, along = (reach * np.cos(angle)) ** (2.0 * power), reach * np.sin(angle) - delay
+    return float(-(0.5 * pi - first) * np.sum(weight * load * along * reach * np.cos(angle)))
 
 
 def rolling_loss(loss_factor: float, stiffness: float, indentation: float) -> float:

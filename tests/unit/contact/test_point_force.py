@@ -105,3 +105,22 @@ def test_tangent_with_respect_to_the_speed_of_the_pulley(
     np.testing.assert_allclose(
         (faster - slower) / 2e-5, expected, atol=1e-6 * (300.0 if isinstance(every_law.friction, ForceSlope) else 0.4)
     )  # rounding over the step
+
+
+def test_a_solid_roller_gives_way_in_series(state: FloatArray, pulley: PulleyState, every_law: ContactLaw) -> None:
+    """The foundation bears K d + c dd/dt with d less A f^2; energy and tangent go along."""
+    soft = pulley._replace(foundation=0.5, damping=2.0, hertz=1e-9)
+    plain = soft._replace(hertz=0.0)
+    here = point(state, soft)
+    force, without = point_force(here, soft, every_law).normal, point_force(here, plain, every_law).normal
+    if without.force <= 0.0:
+        assert force.force == without.force
+        return
+    stiffness = 0.5 * every_law.normal.stiffness
+    assert force.force / stiffness + 1e-9 * force.force**2 == pytest.approx(without.force / stiffness, rel=1e-12)
+    deeper = point_force(here._replace(penetration=here.penetration * (1.0 + 1e-6)), soft, every_law).normal
+    step = 1e-6 * here.penetration
+    assert (deeper.force - force.force) / step == pytest.approx(force.by_penetration, rel=1e-5)
+    assert (deeper.energy - force.energy) / step == pytest.approx(force.elastic, rel=1e-5)
+    faster = point_force(here._replace(radial=here.radial - 1e-6), soft, every_law).normal
+    assert (faster.force - force.force) / 1e-6 == pytest.approx(force.by_rate, rel=1e-4)

@@ -9,7 +9,15 @@ import pytest
 import beltdyn as bd
 from beltdyn.errors import ConvergenceError
 from beltdyn.model.nip import side_stiffness
-from beltdyn.theory.nip import equivalent_radius, force, half_width, rolling_loss, series
+from beltdyn.theory.nip import (
+    equivalent_radius,
+    force,
+    half_width,
+    hertz_half_width,
+    plane_modulus,
+    rolling_loss,
+    series,
+)
 
 WIDTH, TENSION = 0.2, 1000.0
 FRICTION = 0.4
@@ -81,6 +89,35 @@ def test_pressure_is_a_parabola_on_the_covered_face(idle: bd.Run) -> None:
     assert np.abs(misfit).max() < 2.0 * PARABOLA * parabola.max()
 
 
+SOLID = {"youngs_modulus": 50e6, "poissons_ratio": 0.45}
+HARD = {"pulley[press].cover": SOLID, "belt.contact_stiffness": 4e12}
+"""A solid roller on a belt that gives way by 1 % of what the roller does."""
+
+
+def test_a_solid_roller_presses_as_hertz_says() -> None:
+    """2 a and 2 F / pi a of the line contact of a roller with a rigid drum of the effective radii, and its ellipse."""
+    run = bd.steady_state(drive(**HARD))
+    nip, (_, radius) = bd.derived.nips(run).isel(nip=0), _foundation(run)
+    half = hertz_half_width(500.0 / WIDTH, plane_modulus(50e6, 0.45), radius)
+    peak = 2.0 * 500.0 / (np.pi * half * WIDTH)
+    assert float(nip.force) == pytest.approx(500.0, rel=1e-6)
+    assert float(nip.width) == pytest.approx(2.0 * half, rel=PARABOLA)
+    assert float(nip.peak_pressure) == pytest.approx(peak, rel=PARABOLA)
+    profile = bd.derived.nip_profile(run, "press")
+    inner = np.abs(profile.distance.values) < 0.9 * half
+    ellipse = peak * np.sqrt(1.0 - (profile.distance.values[inner] / half) ** 2)
+    assert profile.pressure.sel(face="press").values[inner] == pytest.approx(ellipse, rel=2.0 * PARABOLA)
+
+
+@pytest.mark.slow
+def test_a_solid_roller_loses_as_johnson_says() -> None:
+    """The force eta F a / 3 R."""
+    run = bd.steady_state(drive(**{**HARD, "pulley[press].cover": {**SOLID, "loss_factor": 0.02}}))
+    nip, (_, radius) = bd.derived.nips(run).isel(nip=0), _foundation(run)
+    rolls = 0.02 * 500.0 * 0.5 * float(nip.width) / (3.0 * radius)
+    assert float(nip.compression_loss) == pytest.approx(rolls * SPEED * (DRUM + 1.5e-3), rel=PARABOLA)
+
+
 def test_an_idle_roller_takes_nothing_and_rolls_on_the_outer_face(idle: bd.Run) -> None:
     nip, last = bd.derived.nips(idle).isel(nip=0), idle.dataset.isel(time=-1)
     assert abs(float(nip.pull.sel(side="roller"))) < 1e-2 * FRICTION * 500.0
@@ -100,14 +137,14 @@ def test_the_energy_account_closes(idle: bd.Run) -> None:
 @pytest.mark.slow
 @pytest.mark.parametrize("speed", [3.0, 12.0])
 def test_a_cover_loses_as_hysteresis_does_at_any_speed(speed: float) -> None:
-    """pi / 4 eta K d^2 of the cover's share K / k of the energy rolls it; the damper lets go at the end, by 0.4 %."""
+    """pi / 4 eta K d^2 of the cover's share K / k of the energy rolls it."""
     run = bd.steady_state(drive(**{"pulley[press].cover.loss_factor": 0.02, "pulley[drum].speed": speed}))
     nip, (stiffness, _) = bd.derived.nips(run).isel(nip=0), _foundation(run)
     cover = run.prepared.pulleys[2].cover
     assert cover is not None
     eta = 0.02 * stiffness / cover.stiffness(WIDTH)
     rolls = rolling_loss(eta, stiffness, float(nip.indentation)) * speed * (DRUM + 1.5e-3)
-    assert float(nip.compression_loss) == pytest.approx(rolls, rel=1.5 * PARABOLA)
+    assert float(nip.compression_loss) == pytest.approx(rolls, rel=PARABOLA)
     assert float(nip.force) == pytest.approx(500.0, rel=1e-6)
 
 

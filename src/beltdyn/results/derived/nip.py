@@ -13,7 +13,7 @@ from beltdyn.results.run import Run
 
 def _number(run: Run, roller: str | int) -> tuple[int, int, int]:
     """Row of a nip in the results, its roller and its pulley."""
-    number, beside = pulley_number(run, roller), sorted(run.prepared.path.nips)
+    number, beside = pulley_number(run, roller), run.prepared.path.nips_by_roller
     names = [run.drive.pulleys[one].name for one, _ in beside]
     if number not in [one for one, _ in beside]:
         raise ModelError(
@@ -118,7 +118,7 @@ def nips(run: Run, time: float | None = None) -> xr.Dataset:
     ...
     beltdyn.errors.ModelError: the drive has no nip. Give a group [[nip]].
     """
-    pairs, prepared = sorted(run.prepared.path.nips), run.prepared
+    pairs, prepared = run.prepared.path.nips_by_roller, run.prepared
     if not pairs:
         raise ModelError("the drive has no nip. Give a group [[nip]].")
     instant = run.fields_at(time)
