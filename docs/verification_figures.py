@@ -113,6 +113,7 @@ FIGURES: dict[str, list[Panel]] = {
     ],
     "toothed": [Panel("", "Place on the arc [mm]", "Load of a tooth [N]", "linear")],
     "web_draw": [Panel("", "Time [s]", "Tension [N]", "linear")],
+    "web_control": [Panel("", "Time [s]", "Tension [N]", "linear")],
     "published_drive": [
         Panel("speed", "Time [s]", "Driven pulley [rad/s]", "linear"),
         Panel("arc", "Angle on the driven pulley [°]", "Tension [N]", "linear"),

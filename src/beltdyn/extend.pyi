@@ -7,7 +7,7 @@ from beltdyn.kernel import kernel
 from beltdyn.kinds import Parameter, register
 from beltdyn.machines.carrying.support import LineForce, Support
 from beltdyn.machines.links.link import HubLink, LinkTorque
-from beltdyn.machines.loads.load import Load, LoadTorque, ShaftState, StateRate, nearer_kink
+from beltdyn.machines.loads.load import Load, LoadTorque, SensorSlope, ShaftState, StateRate, nearer_kink
 from beltdyn.machines.profiles.profile import SEGMENT, Profile, Value
 from beltdyn.machines.tensioners.tensioner import SPRING, Center, MovingTensioner, TensionerForce
 from beltdyn.model.simulation import IntegratorKind
@@ -45,6 +45,7 @@ __all__ = [
     "Parameter",
     "Profile",
     "Progress",
+    "SensorSlope",
     "ShaftState",
     "StandardIntegrator",
     "StateRate",

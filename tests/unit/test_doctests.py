@@ -59,6 +59,7 @@ WITHOUT = {
     "extend.Parameter",
     "extend.Profile",
     "extend.Progress",
+    "extend.SensorSlope",
     "extend.ShaftState",
     "extend.StateRate",
     "extend.StepError",

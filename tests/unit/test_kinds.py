@@ -28,7 +28,17 @@ from beltdyn.results import Result, Variable, build_result
 OF_THE_PACKAGE = {
     "load": {
         *("angle_speed_table", "angle_table", "band_brake", "brake", "fan", "function", "generator"),
-        *("holdback", "induction_motor", "motor", "pump", "resistance", "servo_motor", "table"),
+        *(
+            "holdback",
+            "induction_motor",
+            "motor",
+            "pump",
+            "resistance",
+            "servo_motor",
+            "speed_trim",
+            "table",
+            "torque_trim",
+        ),
     },
     "hub coupling": {"friction_clutch", "isolator", "one_way_clutch"},
     "tensioner": {"fixed", "rotary", "sliding"},

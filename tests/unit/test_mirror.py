@@ -44,6 +44,7 @@ ELSEWHERE = {
     "designs/goals.py": "unit/designs/test_optimize.py",
     "designs/proposal.py": "unit/designs/test_selection.py",
     "designs/named_results.py": "unit/designs/test_sensitivity.py",
+    "state/linearized.py": "unit/vibration/test_small_motions.py",
     "state/newton.py": "unit/state/test_steady.py",
     "state/refinement.py": "unit/state/test_steady.py",
     # Seen by a user through something else, and tested there.

@@ -13,12 +13,13 @@ from beltdyn.model import Drive, prepare
 from beltdyn.points.operating_points import labels_of
 from beltdyn.results import Run
 from beltdyn.state.installation import looked_at
+from beltdyn.state.linearized import SmallMotions
 from beltdyn.state.newton import SteadyWork
 from beltdyn.state.staying import Standing, stand_like
 from beltdyn.state.steady import Beside, require_found, steady_beside, tangent_of
 from beltdyn.vibration.mode_shapes import belt_points, shares_of
 from beltdyn.vibration.modes import FIRST_STUCK, eigenmodes
-from beltdyn.vibration.small_motions import SmallMotions, about_standing, about_steady, dry_tensioners
+from beltdyn.vibration.small_motions import about_standing, about_steady, dry_tensioners
 
 if TYPE_CHECKING:
     from scipy.sparse import csc_array

@@ -25,6 +25,8 @@ from beltdyn.machines.loads import (
     Pump,
     Resistance,
     ServoMotor,
+    SpeedTrim,
+    TorqueTrim,
 )
 from beltdyn.machines.loads.load import Load
 from beltdyn.machines.profiles import (
@@ -79,9 +81,11 @@ __all__ = [
     "SCurve",
     "ServoMotor",
     "SlidingTensioner",
+    "SpeedTrim",
     "Step",
     "Support",
     "Table",
     "Tensioner",
+    "TorqueTrim",
     "Trapezoid",
 ]

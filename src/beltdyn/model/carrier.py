@@ -83,3 +83,21 @@ def check_tensioners(tensioners: Sequence[Tensioner], pulleys: Sequence[Pulley],
                     f'the tensioner of "{name}" has no moving mass. Give the mass of the pulley, or that of '
                     "the tensioner"
                 )
+
+
+def check_sensors(tensioners: Sequence[Tensioner], pulleys: Sequence[Pulley]) -> None:
+    """Check that controllers see moving tensioners, and forces of load cells by springs."""
+    moving = {one.pulley: one for one in tensioners if isinstance(one, MovingTensioner)}
+    for pulley in pulleys:
+        for number, load in enumerate(pulley.load, 1):
+            if load.sensed is None:
+                continue
+            where = f'load[{number}].sensor = "{load.sensed}" of pulley "{pulley.name}"'
+            if load.sensed not in moving:
+                choice = f"Choose one of {', '.join(moving)}" if moving else 'Add a [[tensioner]] of kind = "sliding"'
+                raise ValueError(f"{where} must be a pulley that a moving tensioner carries. {choice}")
+            if load.senses_force and not getattr(moving[load.sensed], "rate", 0.0):
+                raise ValueError(
+                    f"{where} measures a force by its spring, but its tensioner has rate = 0. Give the stiffness of "
+                    "the load cell as rate, or control by set_position"
+                )

@@ -295,6 +295,11 @@ class Drive(Part):
         return self
 
     @property
+    def is_controlled(self) -> bool:
+        """Whether controllers of motors see tensioners."""
+        return any(load.sensed is not None for pulley in self.pulleys for load in pulley.load)
+
+    @property
     def carries(self) -> bool:
         """Whether spans have supports or goods."""
         return bool(self.supports or self.goods)

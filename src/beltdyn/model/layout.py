@@ -9,7 +9,7 @@ from beltdyn.errors import ModelError
 from beltdyn.machines import FixedTensioner, MovingTensioner, Tensioner
 from beltdyn.machines.tensioners.tensioner import LEAST_LEVERAGE
 from beltdyn.model.belt import Belt
-from beltdyn.model.carrier import carriers_of, check_tensioners
+from beltdyn.model.carrier import carriers_of, check_sensors, check_tensioners
 from beltdyn.model.contact import Contact
 from beltdyn.model.defaults import Choice, choose_stiffness, stiffness_for_tension
 from beltdyn.model.end import PathEnd, pulling
@@ -109,6 +109,7 @@ def lay_out(given: Given) -> Layout:
     pulleys = given.pulleys_in_place
     path = given.path_around(pulleys)
     check_tensioners(given.tensioners, pulleys, path)
+    check_sensors(given.tensioners, pulleys)
     if nominal is not None:
         tension = _nominal_tension(given, path)
         belt = given.belt.replace(installed_tension=tension)

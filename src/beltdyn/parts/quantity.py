@@ -20,7 +20,7 @@ if TYPE_CHECKING:
 
 # A number, then a unit made of names with one-digit exponents, so that no text makes the unit parser compute.
 _NUMBER = re.compile(r"\s*(?P<number>[+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?)\s*(?P<unit>.*?)\s*", re.DOTALL)
-_UNIT = re.compile(r"(?:[^\W\d]+(?:(?:\*\*|\^)-?\d(?!\d))?|[*/·() ])+")
+_UNIT = re.compile(r"(?:1 ?/)?(?:[^\W\d]+(?:(?:\*\*|\^)-?\d(?!\d))?|[*/·() ])+")
 _TOLERANCE = re.compile(r"\s*(?:±|\+/?-)\s*(?P<size>(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?)\s*(?P<percent>%?)\s*")
 _MARKS = re.compile(r"±|\+/?-")
 _MORE_UNITS = "newton_meter = newton * meter = Nm", "newton_millimeter = newton * millimeter = Nmm"

@@ -11,6 +11,7 @@ from beltdyn.arrays import FloatArray
 from beltdyn.kernel import by_type, kernel
 from beltdyn.system.arc_mesh import arc_count, change_shifts, largest_shift
 from beltdyn.system.arrays import Equations, Motion, NoCarriage, System
+from beltdyn.system.body_forces import controls
 from beltdyn.system.meshing import change_body, change_flow, reach_of
 from beltdyn.system.motion import new_equations
 from beltdyn.system.ring_matrix import factorise_ring, ring_matrix, substitute
@@ -205,7 +206,7 @@ def make_step(
     for body in range(system.bodies.size):
         unknown = system.bodies[body].unknown
         if unknown >= 0:
-            if body < tensioners:
+            if body < tensioners and not controls(system.bodies[body]):
                 change_body(system.rims, motion.velocity, first, body, factor * border_part[unknown])
             else:
                 motion.position[first + body] += factor * border_part[unknown]
@@ -230,6 +231,7 @@ def _size(system: System, node_part: FloatArray, border_part: FloatArray) -> flo
     for body in range(system.bodies.size):
         unknown, reach = system.bodies[body].unknown, system.bodies[body].reach
         if unknown >= 0:
-            scale = reach_of(system.rims, body, reach, speed) if body < tensioners else reach
+            turns = body < tensioners and not controls(system.bodies[body])
+            scale = reach_of(system.rims, body, reach, speed) if turns else reach
             size = max(size, scale * abs(border_part[unknown]))
     return float(max(size, way_of_content(system.carriage, border_part)))

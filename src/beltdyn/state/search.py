@@ -142,7 +142,7 @@ class SteadySearch:
         """The state that was found last, with the twists of hub chains."""
         place = self.state.position.copy()
         rims = slice(self.constant.first_body, place.size - self.constant.tensioners.size)
-        place[rims] = twists(self.constant, self._moments)
+        place[rims] = twists(self.constant, self._moments, self.state)
         return State(place, self.state.velocity, np.zeros_like(place))
 
     @property

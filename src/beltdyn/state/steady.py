@@ -8,23 +8,26 @@ import numpy as np
 
 from beltdyn.arrays import FloatArray
 from beltdyn.errors import ConvergenceError, ModelError
+from beltdyn.machines.loads.trim import Trim
 from beltdyn.model import Drive, Prepared, prepare
 from beltdyn.observation.recording import Recording
 from beltdyn.parts.messages import listing
 from beltdyn.parts.quantity import number_in
 from beltdyn.results import Run, mesh_error_attribute
 from beltdyn.results.balance import WEB_LINE
+from beltdyn.results.checks.tensioners import GROWTH
 from beltdyn.results.provenance import STAYING, mesh_used
 from beltdyn.results.schema import runs_steadily
 from beltdyn.solvers.progress import Progress, Report
 from beltdyn.solvers.trajectory import Chunk
+from beltdyn.state.linearized import growing, in_motion
 from beltdyn.state.newton import SteadyWork
 from beltdyn.state.refinement import MeshRule, against_coarser, is_fine, refine, steady_from_rest
 from beltdyn.state.search import SteadySearch
 from beltdyn.state.staying import FINER, Standing, bring_to_stand, carried
 from beltdyn.system.arc_mesh import MESH_SHIFTS, lengths_of, mesh_attributes, shifts_of
 from beltdyn.system.arrays import System
-from beltdyn.system.constant_drive import rigid_links
+from beltdyn.system.constant_drive import controllers, rigid_links
 from beltdyn.system.meshing import TOOTH_PHASES, has_teeth, phases
 from beltdyn.system.state import State
 from beltdyn.system.state_forces import body_forces_at
@@ -72,6 +75,9 @@ def search_from(prepared: Prepared, start: Run, time: float) -> SteadySearch:
     system, state = carried(prepared, start.prepared, lengths, found.nodal_coordinates.values[-1].ravel())
     if system.tensioners.size:
         state.position[-system.tensioners.size :] += found.tensioner_position.values[-1]
+    held = system.first_body + controllers(system)
+    if held.size:
+        state.position[held] = found.body_position.values[-1][held - system.first_body]
     bodies, speeds = state.velocity[system.first_body :], found.pulley_speed.values[-1]
     bodies[: speeds.size] = speeds
     take_along(system, bodies, found.shaft_speed.values[-1])
@@ -302,6 +308,7 @@ def _rule_of(start: Run) -> MeshRule:
 def _as_run(prepared: Prepared, instant: float, found: _Found) -> Run:
     """What was found, as the results of a run of two turns of the belt."""
     search, drive = found.search, prepared.drive
+    _require_trims(search)
     duration = _TURNS * search.prepared.belt_length / abs(search.belt_parameter)
     turns = drive.simulation.replace(
         duration=duration, output_interval=duration, field_interval=None, start="equilibrium", start_at=None
@@ -319,12 +326,35 @@ def _as_run(prepared: Prepared, instant: float, found: _Found) -> Run:
             belt_parameter=search.belt_parameter,
             **({TOOTH_PHASES: phases(search.constant)} if has_teeth(search.constant) else {}),
             **({WEB_LINE: 1} if drive.is_web else {}),
+            **(_growth(search) if drive.is_controlled else {}),
             **mesh_attributes(search.constant),
             newton_iterations_of_search=search.iterations,
             mesh_rule=np.array(found.rule),
             **{mesh_error_attribute(name): error for name, error in found.errors.items()},
         )
     return recording.run()
+
+
+def _require_trims(search: SteadySearch) -> None:
+    """Make sure that controllers trim within their limits."""
+    states, rows = search.state.position[search.constant.first_body :], iter(search.constant.shaft_loads.table)
+    for pulley in search.prepared.pulleys:
+        for load, row in zip(pulley.load, rows, strict=False):
+            if not isinstance(load, Trim):
+                continue
+            state = states[row.state] if row.state >= 0 else 0.0
+            trim = load.trim_at(row.sensor_rate * states[-row.sensor] + row.sensor_zero, state)
+            if abs(trim) > load.largest_trim:
+                raise ConvergenceError(
+                    f'the controller of "{pulley.name}" holds its set value with a trim of {trim:.3g}, but has '
+                    f"largest_trim = {load.largest_trim:g}. Increase it, or change what is trimmed or the set value."
+                )
+
+
+def _growth(search: SteadySearch) -> dict[str, FloatArray]:
+    """The fastest growing motion of a controlled drive about steady running, as an attribute; none if all decay."""
+    found = growing(in_motion(search.prepared, search.constant, search.running(), search.belt_parameter))
+    return {GROWTH: np.array([found[0].real, found[0].imag])} if found.size else {}
 
 
 def require_steady(drive: Drive) -> None:

@@ -6,7 +6,7 @@ from beltdyn.arrays import FloatArray
 from beltdyn.contact.contact_force import ContactTotals
 from beltdyn.kernel import kernel
 from beltdyn.machines.links.registry import link_torque
-from beltdyn.machines.loads.shaft import shaft_torque, state_rate
+from beltdyn.machines.loads.shaft import sensor_slope, shaft_torque, state_rate
 from beltdyn.machines.tensioners.registry import tensioner_center, tensioner_force
 from beltdyn.system.arrays import (
     COMPRESSION_LOSS,
@@ -85,6 +85,12 @@ def add_contact(forces: BodyForces, pulley: int, totals: ContactTotals) -> None:
     forces.damping[pulley] += totals.damping_power
     forces.power[COMPRESSION_LOSS] += totals.compression_power
     forces.stored[PENALTY_ENERGY] += totals.penalty_energy
+
+
+@kernel(inline=True)
+def controls(body: np.record) -> bool:
+    """Whether a body is the state of a controller, which has a lag and no kinetic energy."""
+    return bool(body.inertia > 0.0 and body.kinetic == 0.0)
 
 
 @kernel(inline=True)
@@ -195,6 +201,8 @@ def _take_shafts(
         for number in range(system.shaft_loads.first[p], system.shaft_loads.first[p + 1]):
             if system.shaft_loads.table[number].state >= 0:
                 _move_state(system, motion, factors, number, body, corner, forces)
+            if system.shaft_loads.table[number].sensor > 0 and differentiates_forces(factors):
+                _couple_sensor(system, motion, factors, number, body, corner)
 
 
 @kernel
@@ -218,3 +226,19 @@ def _move_state(
         corner[i, i] += factors.by_velocity - factors.by_position * found.by_state
         corner[i, j] -= factors.by_velocity * found.by_speed
         corner[j, i] -= factors.by_position * found.torque_by_state
+
+
+@kernel
+def _couple_sensor(
+    system: System, motion: Motion, factors: TangentFactors, number: int, shaft: int, corner: FloatArray
+) -> None:
+    """Couple a load and the state of its controller to the tensioner that is its sensor."""
+    loads, first = system.shaft_loads, system.first_body
+    angle, speed, states = motion.position[first + shaft], motion.velocity[first + shaft], motion.position[first:]
+    found = sensor_slope(system.profiles, loads, number, motion.time, angle, speed, states)
+    own, place = system.bodies[shaft].unknown, loads.table[number].state
+    seen = system.bodies[system.bodies.size - loads.table[number].sensor].unknown
+    if seen >= 0:
+        corner[own, seen] -= factors.by_position * found.torque
+        if place >= 0 and system.bodies[place].unknown >= 0:
+            corner[system.bodies[place].unknown, seen] -= factors.by_position * found.rate

@@ -9,7 +9,7 @@ from beltdyn.arrays import FloatArray, IntArray
 from beltdyn.errors import ModelError
 from beltdyn.machines import Goods, MovingTensioner, Tensioner
 from beltdyn.machines.links.registry import PlacedLink, link_rows
-from beltdyn.machines.loads.shaft import ShaftLoads, shaft_loads
+from beltdyn.machines.loads.shaft import Sensor, ShaftLoads, shaft_loads
 from beltdyn.machines.profiles.functions import NO_SCHEDULE, Profiles, profile_rows
 from beltdyn.machines.tensioners.registry import TENSIONER_ROWS
 from beltdyn.model import Path, Pulley
@@ -38,7 +38,12 @@ def machine_arrays(
     of_loads, of_links = _switching_numbers(pulleys)
     return Machines(
         profile_arrays(pulleys, goods),
-        shaft_loads([pulley.load for pulley in pulleys], of_loads, body_inertias(pulleys).size),
+        shaft_loads(
+            [pulley.load for pulley in pulleys],
+            of_loads,
+            body_inertias(pulleys).size,
+            _sensors(pulleys, tensioners),
+        ),
         link_rows(_placed(pulleys, of_links)),
         _tensioners(pulleys, tensioners, path, gravity),
     )
@@ -133,6 +138,15 @@ def _moving(pulleys: Sequence[Pulley], tensioners: Sequence[Tensioner]) -> list[
     """Tensioners that move, each with its pulley."""
     named = {pulley.name: pulley for pulley in pulleys}
     return [(item, named[item.pulley]) for item in tensioners if isinstance(item, MovingTensioner)]
+
+
+def _sensors(pulleys: Sequence[Pulley], tensioners: Sequence[Tensioner]) -> dict[str, Sensor]:
+    """Moving tensioners as loads see them, by the names of their pulleys."""
+    moving = _moving(pulleys, tensioners)
+    return {
+        pulley.name: Sensor(len(moving) - number, item, item.reach(np.array(pulley.center)))
+        for number, (item, pulley) in enumerate(moving)
+    }
 
 
 def _placed(pulleys: Sequence[Pulley], schedules: Sequence[int]) -> list[PlacedLink]:

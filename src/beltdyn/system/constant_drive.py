@@ -78,13 +78,16 @@ _OF_MOTION = ("damping", "tensioning_friction", "yielding_friction", "stop_dampi
 def constant_drive(system: System, time: float) -> System:
     """Hold everything that changes over time or with the angle of a shaft.
 
-    Loads are taken by their means over the angle, and what acts on a tensioner only while it moves is left out. Each
-    load has a schedule of its own.
+    Loads are taken by their means over the angle, and what acts on a tensioner only while it moves is left out. Trims
+    of controllers have no limit. Each load has a schedule of its own.
     """
     loads, profiles = mean_loads(system.shaft_loads), system.profiles
     values = [interpreted(profile_value)(profiles, number, time)[0] for number in range(len(profiles.table) - 1)]
     factors = [values[number] if number >= 0 else 1.0 for number in loads.table.schedule[:-1]]
     table = loads.table.copy()
+    for kind in table.dtype.names or ():
+        if "largest_trim" in (table.dtype[kind].names or ()):
+            table[kind]["largest_trim"] = np.inf
     table["schedule"][:-1] = len(values) + np.arange(len(factors))
     held = np.array([*values, *factors])
     return system._replace(
@@ -184,13 +187,19 @@ def own_torque(system: System, state: State, pulley: int, speed: float) -> float
     return float(torque(system.profiles, system.shaft_loads, pulley, 0.0, 0.0, speed, states).torque)
 
 
-def twists(system: System, moments: FloatArray) -> FloatArray:
+def controllers(system: System) -> IntArray:
+    """Numbers of the bodies that are states of controllers."""
+    return np.flatnonzero((system.bodies.inertia > 0.0) & (system.bodies.kinetic == 0.0))
+
+
+def twists(system: System, moments: FloatArray, state: State) -> FloatArray:
     """Angles of rims and hub bodies against their shafts, shape (D - K,), from the moments of the belt, N m.
 
-    In steady running each link of a hub chain transmits the moment of the belt.
+    In steady running each link of a hub chain transmits the moment of the belt. States of controllers are as given.
     """
     pulley, torque = rim_of_bodies(system), interpreted(link_torque)
-    angles = np.zeros(pulley.size)
+    angles, held = np.zeros(pulley.size), controllers(system)
+    angles[held] = state.position[system.first_body + held]
     for link in system.links[::-1]:
         stiffness = torque(system.profiles, link, 0.0, 0.0, 0.0).by_twist
         turned = moments[pulley[link.front]] / stiffness if stiffness != 0.0 else 0.0

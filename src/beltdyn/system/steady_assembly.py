@@ -4,7 +4,8 @@ dU/de + dR/dv - c^2 C e - Q_c(e, v, omega) - F = 0,   v = c D e     belt
 moment + T_a = 0                                             free bodies
 t . (r_0 - p) = 0                                            node 0 keeps its place along the belt
 
-Unknowns are e, the speeds of free pulleys, places of tensioners, and c.  What depends on velocities has the tangent
+Unknowns are e, the speeds of free pulleys, states of controllers, places of tensioners, and c.  What depends on
+velocities has the tangent
 d/de + c (d/dv) D, and the column (d/dv) D e of c.  At rest a force along t on node 0 is unknown
 in the place of c.  A belt with teeth has other unknowns (`beltdyn.system.meshing`).
 """
@@ -19,7 +20,7 @@ from beltdyn.kernel import by_type, kernel
 from beltdyn.system.arc_mesh import add_holding_force, fit_mesh, hold_arcs
 from beltdyn.system.arc_tangent import add_steady_shifts
 from beltdyn.system.arrays import NO_TANGENT, Equations, Motion, NoCarriage, System, TangentFactors
-from beltdyn.system.body_forces import clear_body_forces
+from beltdyn.system.body_forces import clear_body_forces, controls
 from beltdyn.system.carrying import CarryingFactors, add_carrying
 from beltdyn.system.element_state import gather_motion
 from beltdyn.system.flow_tangent import NO_FLOW_TANGENT, FlowFactors, add_flow_forces, find_rate, scatter_column
@@ -54,8 +55,8 @@ def assemble_steady(system: System, motion: Motion, anchor: Anchor, wanted: bool
     Parameters
     ----------
     system
-        A closed belt in a staying mesh, or a web line; unknowns of its bodies are the speeds of pulleys and the places
-        of tensioners.
+        A closed belt in a staying mesh, or a web line; unknowns of its bodies are the speeds of pulleys, the
+        states of controllers, and the places of tensioners.
     motion
         The state; its nodes and tensioners have no velocity.
     anchor
@@ -90,6 +91,8 @@ def assemble_steady(system: System, motion: Motion, anchor: Anchor, wanted: bool
         unknown = system.bodies[body].unknown
         if unknown >= 0:
             matrix.border_side[unknown] -= forces.force[body]
+            if wanted and controls(system.bodies[body]):
+                matrix.corner[unknown, unknown] -= 1.0  # its value is unknown, not its rate, which is zero
     add_nodal_loads(system, motion.position, factors.by_position, matrix)
     if wanted:
         clear_last_row(system.rims, matrix)

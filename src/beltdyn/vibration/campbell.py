@@ -22,11 +22,12 @@ from beltdyn.points.operating_points import Axes, OperatingPoints
 from beltdyn.results import Result, Run, Variable
 from beltdyn.solvers.flutter import Vibrations, flutter_shift
 from beltdyn.solvers.progress import Report
+from beltdyn.state.linearized import SmallMotions
 from beltdyn.theory.creep import SlidingBelt, fastest_flutter
 from beltdyn.vibration.excitation import Excitation, averaged, given_excitations, one_line_each, own_excitations
 from beltdyn.vibration.mode_shapes import Shares, even_points, part_names, shares_of, speeds_of
 from beltdyn.vibration.modes import SLIDING, STUCK, eigenmodes
-from beltdyn.vibration.small_motions import SmallMotions, about_steady, dry_tensioners, require_closed
+from beltdyn.vibration.small_motions import about_steady, dry_tensioners, require_closed
 
 # Critical speeds: where the frequency of an excitation meets that of a mode
 

@@ -8,11 +8,11 @@ import numpy as np
 from beltdyn.arrays import ComplexArray, FloatArray, IntArray
 from beltdyn.model import Drive
 from beltdyn.quadrature import gauss_points
+from beltdyn.state.linearized import SmallMotions
 from beltdyn.state.staying import depths
 from beltdyn.system.arc_mesh import passed_at
 from beltdyn.system.constant_drive import rim_of_bodies
 from beltdyn.system.frame import centreline_points
-from beltdyn.vibration.small_motions import SmallMotions
 
 _POINTS = 6
 """Gauss points of an element."""

@@ -1,6 +1,6 @@
 """Modes of a drive about rest, steady running or a state of a run: frequency, damping and shape."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from typing import NamedTuple
 
 import numpy as np
@@ -15,12 +15,12 @@ from beltdyn.results import Result, Run, Variable, build_result
 from beltdyn.results.schema import AXIS_NAMES, COORDINATES, runs_steadily
 from beltdyn.solvers.eigenvalues import LIGHT, MOST_SWINGING, lightly_damped, pencil, swinging, swings
 from beltdyn.solvers.progress import Report
+from beltdyn.state.linearized import SmallMotions, growing
 from beltdyn.state.steady import steady_state
 from beltdyn.transient.beginning import compile_solving_ahead
 from beltdyn.transient.earlier_run import instant_of
 from beltdyn.vibration.mode_shapes import Points, Shapes, Shares, belt_points, part_names, shapes_of, shares_of
 from beltdyn.vibration.small_motions import (
-    SmallMotions,
     about_instant,
     about_rest,
     about_steady,
@@ -156,7 +156,7 @@ def _result(motions: SmallMotions, points: Points, found: list[_Found]) -> Resul
         drive,
         {name: (one, arrays[name]) for name, one in VARIABLES.items() if absent.isdisjoint((name, *one.dims))},
         {name: (one, labels[name]) for name, one in _COORDINATES.items() if name not in absent},
-        list(_warnings(numbers, values)),
+        [*_warnings(numbers, values), *_monotonic(motions)],
     )
     ordered = made.dataset.isel(mode=np.argsort(~light, kind="stable")).assign_attrs(
         tables_by="damping", mesh_elements=motions.system.nodes
@@ -179,6 +179,16 @@ def _warnings(numbers: IntArray, values: ComplexArray) -> list[str]:
         f"unstable modes: {named}. The drive does not remain in this state. Add damping, or simulate it over "
         "time with `beltdyn simulate`."
     ]
+
+
+def _monotonic(motions: SmallMotions) -> Iterator[str]:
+    """Motions of a controlled drive that grow without swinging."""
+    found = growing(motions) if motions.drive.is_controlled else np.zeros(0, complex)
+    for one in found[~swings(found)]:
+        yield (
+            f"a motion grows by {one.real:.3g} 1/s without swinging. The drive does not remain in this state. Check "
+            "the sign of the gain of its controller."
+        )
 
 
 REST: str = "rest"

@@ -32,12 +32,13 @@ from beltdyn.results import Run, Variable
 from beltdyn.results.mechanics import across
 from beltdyn.results.mid_span import mid_span_displacements
 from beltdyn.results.slip_safety import friction_used
+from beltdyn.state.linearized import SmallMotions
 from beltdyn.system.build import drive_system
 from beltdyn.system.constant_drive import dry_friction_of
 from beltdyn.system.observations import Observations
 from beltdyn.system.observe import observe
 from beltdyn.vibration.excitation import LOAD, SPEED, Excitation, own_excitations, speed_waves, torque_waves
-from beltdyn.vibration.small_motions import SmallMotions, about_steady, dry_tensioners
+from beltdyn.vibration.small_motions import about_steady, dry_tensioners
 
 if TYPE_CHECKING:
     from scipy.sparse import csc_array

@@ -1,36 +1,29 @@
-"""A drive about a state, linearized: (K + s C + s^2 M) x = 0 for small motions x exp(s t).
+"""A drive linearized at rest, in steady running, or at an instant of a run."""
 
-The belt flows through a staying mesh, so that steady running is a point at rest of the equations: the forces of
-Coriolis and the centrifugal forces of the moving belt are in C and K.  Speeds, torques and schedules are held.
-"""
-
-from collections.abc import Iterator, Sequence
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING
 
 import numpy as np
 
-from beltdyn.arrays import FloatArray, IntArray
+from beltdyn.arrays import IntArray
 from beltdyn.errors import ModelError
 from beltdyn.model import Drive, Prepared, prepare
 from beltdyn.results import Run
-from beltdyn.solvers.flutter import Vibrations
-from beltdyn.state.settling import DIRECTION, with_passage
+from beltdyn.state.linearized import DRY_FRICTION, SmallMotions, in_motion, linearised
+from beltdyn.state.settling import DIRECTION
 from beltdyn.state.static import standing
 from beltdyn.state.staying import Standing, bring_to_stand
 from beltdyn.state.steady import search_from
 from beltdyn.system.arrays import System
 from beltdyn.system.build import drive_system
 from beltdyn.system.build_carrying import with_resistance
-from beltdyn.system.build_staying import flowing_system, open_ended, staying_system, without_hysteresis
-from beltdyn.system.constant_drive import constant_drive, dry_friction_of, rim_of_bodies, twists, without_actions
-from beltdyn.system.meshing import stopped, turning
+from beltdyn.system.build_staying import flowing_system, staying_system, without_hysteresis
+from beltdyn.system.constant_drive import constant_drive, dry_friction_of, without_actions
+from beltdyn.system.meshing import stopped
 from beltdyn.system.state import State
-from beltdyn.system.state_forces import body_forces_at
-from beltdyn.system.steady_assembly import anchor_at
 from beltdyn.transient.earlier_run import recorded_state, staying_mesh
 
 if TYPE_CHECKING:
-    from scipy.sparse import csc_array
+    pass
 
 
 # The state of a run over time, at an instant at which its belt was recorded, on the staying mesh
@@ -59,81 +52,14 @@ def state_of(run: Run, time: float) -> tuple[System, State, float]:
     return stopped(held, angles, float(moving.position[place])), state, speed
 
 
-_DRY = ("tensioning_friction", "yielding_friction")
 _STICKS = 100.0
 """Stiffness along the rim of a belt that sticks, over that of the normal force, on the pulley with least friction."""
-_NO_FORCE, _LITTLE_FORCE = 1e-9, 2e-2
-"""Force that a free motion meets at most, over the sum of its parts: of a body that turns, and of the belt that turns
-all pulleys, which roll on radii a little smaller than those of its centerline."""
-
-
-class SmallMotions(NamedTuple):
-    """A drive about a state, linearized."""
-
-    prepared: Prepared
-    system: System
-    """Its belt flows through a staying mesh."""
-    state: State
-    stiffness: "csc_array"
-    """K, shape (n, n): nodal coordinates, free bodies, the last of which is the length of belt that has passed."""
-    damping: "csc_array"
-    mass: "csc_array"
-
-    @property
-    def drive(self) -> Drive:
-        """The drive."""
-        return self.prepared.drive
-
-    @property
-    def bodies(self) -> IntArray:
-        """Places of the bodies among the unknowns, -1 of those that are prescribed; shape (D,)."""
-        unknown = np.asarray(self.system.bodies.unknown)
-        return np.where(unknown >= 0, self.system.first_body + unknown, -1)
-
-    @property
-    def free(self) -> FloatArray:
-        """Motions that meet no force, shape (n, k): the belt flows, pulleys turn, or all of them together."""
-        found = np.zeros((self.stiffness.shape[0], 0))
-        parts = abs(self.stiffness)
-        for motion, limit in self._turning():
-            met, all_parts = np.abs(self.stiffness @ motion).sum(), (parts @ np.abs(motion)).sum()
-            more = np.column_stack([found, motion])
-            if met <= limit * all_parts and np.linalg.matrix_rank(more) == more.shape[1]:
-                found = more
-        return found
-
-    def _turning(self) -> Iterator[tuple[FloatArray, float]]:
-        """Motions that may meet no force, and how much of their parts what they meet may be then."""
-        bodies, unit = self.bodies, np.eye(self.stiffness.shape[0])
-        last = self.system.bodies.size - self.system.tensioners.size
-        yield from ((unit[place], _NO_FORCE) for place in bodies[:last] if place >= 0)
-        pulley, together = rim_of_bodies(self.system), unit[bodies[last - 1]].copy()
-        for number, radius in enumerate(self.prepared.path.radii):
-            chain = bodies[:last][pulley == number]
-            if np.any(chain < 0):
-                return
-            yield unit[chain].sum(axis=0), _NO_FORCE
-            together += unit[chain].sum(axis=0) * self.prepared.path.length / self.prepared.belt_length / radius
-        yield together, _LITTLE_FORCE
-
-    def with_stuck(self, tensioners: Sequence[int] | IntArray) -> "SmallMotions":
-        """The same drive with tensioners that dry friction holds."""
-        places = self.system.bodies.size - self.system.tensioners.size + np.asarray(tensioners, dtype=int)
-        stuck = self.bodies[places]
-        order = np.arange(self.stiffness.shape[0])
-        kept = np.setdiff1d(order, stuck)
-        bodies = self.system.bodies.copy()
-        later = np.searchsorted(np.sort(stuck), self.bodies, side="right")
-        bodies["unknown"] = np.where(self.bodies < 0, -1, self.bodies - later - self.system.first_body)
-        bodies["unknown"][places] = -1
-        own = (matrix[kept][:, kept] for matrix in (self.stiffness, self.damping, self.mass))
-        return SmallMotions(self.prepared, self.system._replace(bodies=bodies), self.state, *own)
 
 
 def dry_tensioners(prepared: Prepared) -> IntArray:
     """Numbers of the moving tensioners of a drive that have dry friction."""
     tensioners = drive_system(prepared).tensioners
-    return np.flatnonzero(sum(dry_friction_of(tensioners, name) for name in _DRY))
+    return np.flatnonzero(sum(dry_friction_of(tensioners, name) for name in DRY_FRICTION))
 
 
 def about_rest(drive: Drive) -> SmallMotions:
@@ -164,8 +90,8 @@ def about_standing(rest: Standing) -> SmallMotions:
     without_actions(held)
     smooth = held.pulleys.copy()
     smooth["friction"] = 0.0
-    sliding = _linearised(rest.prepared, held._replace(pulleys=smooth), rest.state, 0.0)
-    creeping = _linearised(rest.prepared, held, rest.state, 0.0).damping - sliding.damping
+    sliding = linearised(rest.prepared, held._replace(pulleys=smooth), rest.state, 0.0)
+    creeping = linearised(rest.prepared, held, rest.state, 0.0).damping - sliding.damping
     return sliding._replace(stiffness=sliding.stiffness + sticking_rate(rest.tension, held) * creeping)
 
 
@@ -183,38 +109,9 @@ def about_steady(run: Run, *, all_shafts: bool = False) -> SmallMotions:
     require_closed(run.drive, web=True)
     search = search_from(run.prepared, run, float(run.dataset.attrs["steady_at"]))
     search.resume()
-    return _in_motion(search.prepared, search.constant, search.state, search.belt_parameter, all_shafts=all_shafts)
+    return in_motion(search.prepared, search.constant, search.state, search.belt_parameter, all_shafts=all_shafts)
 
 
 def about_instant(run: Run, time: float) -> SmallMotions:
     """A drive at an instant of a run over time, as if it stayed in that state."""
-    return _in_motion(run.prepared, *state_of(run, time))
-
-
-def _in_motion(
-    prepared: Prepared, system: System, state: State, speed: float, *, all_shafts: bool = False
-) -> SmallMotions:
-    """A drive whose belt passes at a speed, m/s, with hub chains that transmit the moments of the belt."""
-    rims = slice(system.first_body, state.position.size - system.tensioners.size)
-    seen = body_forces_at(system, np.zeros(1), state.position[None].copy(), state.velocity[None].copy())
-    state.position[rims] = twists(system, seen.moment[0])
-    if all_shafts:
-        bodies = system.bodies.copy()
-        bodies["unknown"] = np.arange(bodies.size)
-        system = system._replace(bodies=bodies)
-    return _linearised(prepared, system, state, speed)
-
-
-def _linearised(prepared: Prepared, held: System, state: State, speed: float) -> SmallMotions:
-    """Linearize a drive with constant torques, on a staying mesh, with the damping of its tensioners."""
-    tensioners = drive_system(prepared).tensioners.copy()
-    for kind in tensioners.dtype.names or ():
-        for name in _DRY if "spring" in (tensioners.dtype[kind].names or ()) else ():
-            tensioners[kind]["spring"][name] = 0.0
-    held = open_ended(prepared, held)
-    turned = turning(held._replace(tensioners=tensioners), state)
-    system = flowing_system(turned, anchor_at(state, True).direction)
-    flowing = with_passage(held, state, speed)
-    vibrations = Vibrations(system)
-    tangents = vibrations.tangents(0.0, flowing.position, flowing.velocity)
-    return SmallMotions(prepared, system, flowing, *map(vibrations.matrix, tangents))
+    return in_motion(run.prepared, *state_of(run, time))

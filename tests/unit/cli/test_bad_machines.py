@@ -60,7 +60,7 @@ PULLEYS: dict[str, tuple[str, str, tuple[str, ...]]] = {
     "load without kind": (
         "driven",
         "load = [{ linear = 1 }]",
-        ("load[1]", "has no kind", "motor, power, pump, resistance, servo_motor, table"),
+        ("load[1]", "has no kind", "motor, power, pump, resistance, servo_motor, speed_trim, table, torque_trim"),
     ),
     "load without list": ("driven", 'load = { kind = "resistance" }', ("must be a list", "[[pulley.load]]")),
     "misspelled load": ("driven", 'load = [{ kind = "resistence" }]', ("load[1].kind", 'Did you mean "resistance"?')),

@@ -11,6 +11,7 @@ from beltdyn.model import Drive, prepare
 from beltdyn.system.arrays import System
 from beltdyn.system.build import drive_system
 from beltdyn.system.constant_drive import constant_drive, drive_shafts, rim_of_bodies, twists, with_speeds_unknown
+from beltdyn.system.state import at_rest
 
 DRIVEN, FIRST_HUB, SECOND_HUB = 2, 3, 4
 """Numbers of bodies of the drive with machines."""
@@ -56,7 +57,7 @@ def test_springs_couple_speeds(system: System) -> None:
 def test_a_spring_twists_by_the_torque_through_it(system: System) -> None:
     moments = np.zeros(system.pulleys.size)
     moments[DRIVEN] = 5.0
-    angles = twists(system, moments)
+    angles = twists(system, moments, at_rest(system, np.zeros((system.nodes, len(system.scale)))))
     assert rim_of_bodies(system)[[FIRST_HUB, SECOND_HUB]].tolist() == [DRIVEN, DRIVEN]
     assert angles[FIRST_HUB] - angles[SECOND_HUB] == pytest.approx(5.0 / 50.0)
     assert angles[DRIVEN] == angles[FIRST_HUB]

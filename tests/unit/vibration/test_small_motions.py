@@ -5,7 +5,8 @@ import pytest
 
 from beltdyn.errors import ModelError
 from beltdyn.model import Drive, prepare
-from beltdyn.vibration.small_motions import SmallMotions, about_rest, dry_tensioners
+from beltdyn.state.linearized import SmallMotions
+from beltdyn.vibration.small_motions import about_rest, dry_tensioners
 
 RADIUS = 0.06
 CONTACT = {

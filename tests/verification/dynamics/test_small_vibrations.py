@@ -14,11 +14,12 @@ from beltdyn.points.changed_drive import at_speed, held_at
 from beltdyn.results import Run
 from beltdyn.solvers.eigenvalues import Pencil, all_eigenvalues, nearest, pencil
 from beltdyn.solvers.flutter import Vibrations, flutter_shift
+from beltdyn.state.linearized import SmallMotions
 from beltdyn.state.steady import steady_state
 from beltdyn.vibration.modes import modes
 from beltdyn.vibration.response import response
 from beltdyn.vibration.response_answers import Excited, ForcedMotion
-from beltdyn.vibration.small_motions import SmallMotions, about_steady
+from beltdyn.vibration.small_motions import about_steady
 from validation.published.cases import better, loaded_two_pulley
 
 SPEED, TORQUE = 120.0, -45.0

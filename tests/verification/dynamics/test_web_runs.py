@@ -1,4 +1,4 @@
-"""Verified: web lines over time and their vibrations, against transport of strain, stretch waves, and a dancer.
+"""Verified: web lines over time and their vibrations: transport of strain, waves, a dancer, and control of tension.
 
 The web between two rollers that grip it has the content L/g.  What enters has the stretch g_0 of the span before, so
 that d(L/g)/dt = v_1/g_0 - v_2/g: 1/g goes to its steady value with the rate v_2/L.
@@ -10,9 +10,11 @@ from typing import Any
 import numpy as np
 import pytest
 from scipy.integrate import cumulative_trapezoid, solve_ivp
+from scipy.optimize import brentq, least_squares, root
 
 import beltdyn as bd
 from beltdyn.arrays import FloatArray
+from beltdyn.errors import ConvergenceError
 from beltdyn.model import Drive
 from beltdyn.results import Run
 from beltdyn.results.balance import largest_closure
@@ -139,3 +141,129 @@ def test_a_dancer() -> None:
     assert found.kind.values[0] == "tensioner"
     assert 2.0 * np.pi * found.frequency.values[0] == pytest.approx(slow.imag, rel=5e-3)
     assert found.growth_rate.values[0] == pytest.approx(slow.real, rel=5e-3)
+
+
+# Control of tension: a load cell before a roller, whose speed or torque a PI controller trims
+
+DRIVE, RISES = 0.5, {"speed": 0.02, "torque": 0.1}
+"""Inertia of the last roller, kg m^2; integral times, s."""
+SPEED_GAIN, TORQUE, CELL, SET_FORCE = 5.0, 2.0, 1e6, 180.0
+
+
+def controlled(trimmed: str, gain: float, first: Any = SPEED / RADIUS, **more: Any) -> Drive:
+    """A load cell between two rollers, of which it trims the last by its speed or its torque."""
+    own = {"speed": {"speed": SPEED / RADIUS, "speed_gain": SPEED_GAIN}, "torque": {"torque": TORQUE}}[trimmed]
+    sensor = {"sensor": "cell", "set_force": SET_FORCE, "force_gain": gain, "integral_time": RISES[trimmed]}
+    rollers = [
+        {"name": "first", "center": [0.5, 0.0], "speed": first},
+        {"name": "cell", "center": [1.0, 0.3], "side": "outside", "inertia": 1e-4, "mass": 0.2},
+        {
+            "name": "last",
+            "center": [1.5, 0.0],
+            "inertia": DRIVE,
+            "load": [{"kind": f"{trimmed}_trim"} | own | sensor],
+        },
+    ]
+    cell = {"kind": "sliding", "pulley": "cell", "direction": [0, 1], "rate": CELL, "preload": SET_FORCE}
+    return line(
+        rollers,
+        2.0,
+        mass=0.01,
+        tensioner=[cell | {"damping": 20.0}],
+        simulation={"duration": 2.5, "start": "steady", "output_interval": 5e-3, "rtol": 1e-4} | more,
+    )
+
+
+def swings(trimmed: str, gain: float) -> complex:
+    """The slow eigenvalue by the equations of transport.
+
+    The web that sticks to the cell leaves it with the stretch that it had a time R phi / v before.  The content of the
+    web includes what slides on the first roller, and the yielding of the cell.  With G the gain of the loop, the
+    characteristic equation of a trimmed speed is
+    s (L s + v (2 - exp(-s R phi / v))) (J s + K) + EA R (G (s + 1/T) + R s) = 0, that of a torque the same without K.
+    """
+    path = controlled(trimmed, 1e-5).path
+    rise = np.sin(np.arctan2(0.3, 0.5) + np.arcsin(2.0 * RADIUS / np.hypot(0.5, 0.3)))
+    seen, held = 2.0 * rise, SET_FORCE / (2.0 * rise)
+    length = float(sum(path.span_lengths[:2])) + RADIUS / FRICTION * (1.0 - TENSION / held)
+    length, delay = length + STIFFNESS * seen**2 / CELL, RADIUS * path.wrap_angles[1] / SPEED
+    own, arm = (SPEED_GAIN, SPEED_GAIN * SPEED / RADIUS) if trimmed == "speed" else (0.0, TORQUE)
+    pull, loop = STIFFNESS * RADIUS, STIFFNESS * RADIUS * arm * seen * gain
+
+    def missing(parts: FloatArray) -> FloatArray:
+        s = complex(*parts)
+        web = s * (length * s + SPEED * (2.0 - np.exp(-s * delay))) * (DRIVE * s + own)
+        left = web + pull * RADIUS * s + loop * (s + 1.0 / RISES[trimmed])
+        return np.array([left.real, left.imag])
+
+    first = np.roots(
+        [DRIVE * length, own * length + DRIVE * SPEED, own * SPEED + pull * RADIUS + loop, loop / RISES[trimmed]]
+    )
+    begin = max(first, key=lambda one: (round(one.real, 9), one.imag))
+    return complex(*root(missing, [begin.real, begin.imag], tol=1e-12).x)
+
+
+def limit(trimmed: str) -> float:
+    """The largest stable gain, 1/N."""
+    low, high = {"speed": (2e-5, 2e-4), "torque": (2e-3, 2e-2)}[trimmed]
+    return float(brentq(lambda gain: swings(trimmed, gain).real, low, high))
+
+
+@pytest.mark.parametrize("trimmed", ["speed", "torque"])
+@pytest.mark.parametrize("part", [0.8, 1.25])
+def test_gains_below_and_above_the_limit(trimmed: str, part: float) -> None:
+    """To 0.5 % of the eigenvalue; steady running says whether it is stable."""
+    gain = part * limit(trimmed)
+    drive = controlled(trimmed, gain)
+    run = bd.steady_state(drive)
+    cell = run.dataset.hub_force.isel(time=-1, pulley=1).values
+    assert np.hypot(*cell) == pytest.approx(SET_FORCE, rel=1e-3)
+    found = bd.modes(drive, about=run, count=1).dataset
+    expected = swings(trimmed, gain)
+    slow = complex(found.growth_rate.values[0], 2.0 * np.pi * found.frequency.values[0])
+    assert abs(slow - expected) < 0.005 * abs(expected)
+    told = [one for one in run.warnings if "steady running is unstable" in one]
+    assert bool(told) == (part > 1.0) == (expected.real > 0.0)
+    if told:
+        assert f"grows by {slow.real:.3g} 1/s with {slow.imag / 2.0 / np.pi:.3g} Hz" in told[0]
+
+
+@pytest.mark.parametrize("part", [0.8, 1.25])
+def test_a_disturbance_grows_or_decays_by_the_eigenvalue(part: float, curve: Callable[..., None]) -> None:
+    """After a bump of the first roller's speed; to 2 % of the eigenvalue, with the mesh of a run."""
+    gain = part * limit("speed")
+    bump = SPEED / RADIUS * np.array([1.0, 1.0, 1.0002, 1.0, 1.0])
+    first = {"kind": "table", "times": [0.0, 0.05, 0.1, 0.15, 10.0], "values": bump.tolist()}
+    run = bd.simulate(controlled("speed", gain, first))
+    time, tension = run.dataset.time.values, run.dataset.span_tension.values[:, 1]
+    curve("web_control", time, tension, f"{part:g} of the limit", "-")
+    later = time > 0.6
+
+    def rest(guess: FloatArray) -> FloatArray:
+        swings = np.exp(complex(*guess) * time[later])
+        basis = np.column_stack([swings.real, swings.imag, np.ones(swings.size)])
+        return np.asarray(basis @ np.linalg.lstsq(basis, tension[later], rcond=None)[0] - tension[later])
+
+    expected = swings("speed", gain)
+    found = complex(*least_squares(rest, [0.0, 11.0]).x)
+    assert abs(found - expected) < 0.02 * abs(expected)
+    assert found.real * expected.real > 0.0
+
+
+def test_a_gain_of_the_wrong_sign_runs_away() -> None:
+    """It grows without swinging, with the real eigenvalue to 1 %."""
+    drive, expected = controlled("speed", -7e-5), swings("speed", -7e-5).real
+    run = bd.steady_state(drive)
+    (told,) = [one for one in run.warnings if "unstable" in one]
+    assert "without swinging" in told
+    assert "Reverse the sign" in told
+    assert run.dataset.attrs["growth"] == pytest.approx([expected, 0.0], rel=1e-2, abs=1e-6)
+    assert any("without swinging" in one for one in bd.modes(drive, about=run, count=1).warnings)
+
+
+def test_a_trim_beyond_its_limit_is_refused() -> None:
+    drive = controlled("speed", 1e-5)
+    last = drive.pulleys[2]
+    less = last.replace(load=[last.load[0].replace(largest_trim=1e-3)])
+    with pytest.raises(ConvergenceError, match=r'controller of "last" holds its set value with a trim of 0\.0113'):
+        bd.steady_state(drive.replace(pulley=[*drive.pulleys[:2], less]))

@@ -23,3 +23,5 @@ from beltdyn.machines.loads.table import (
 from beltdyn.machines.loads.table import (
     PowerTable as PowerTable,
 )
+from beltdyn.machines.loads.trim import SpeedTrim as SpeedTrim
+from beltdyn.machines.loads.trim import TorqueTrim as TorqueTrim

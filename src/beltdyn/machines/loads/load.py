@@ -11,6 +11,7 @@ from beltdyn.kernel import KernelKinds, interpreted, kernel
 from beltdyn.machines.profiles.harmonic import Harmonic
 from beltdyn.machines.profiles.profile import Profile
 from beltdyn.machines.profiles.registry import Schedule
+from beltdyn.machines.tensioners.tensioner import MovingTensioner
 from beltdyn.parts.part import Part
 from beltdyn.records import blank, fill
 
@@ -27,7 +28,9 @@ class ShaftState(NamedTuple):
     command: float
     """Value of the load's profile `command`, in its unit; zero without."""
     state: float
-    """State of the load's controller, rad; zero without."""
+    """State of the load's controller, rad or s; zero without."""
+    error: float = 0.0
+    """By which the load's sensor differs from its set value, m or N; zero without."""
 
 
 class LoadTorque(NamedTuple):
@@ -54,6 +57,21 @@ class StateRate(NamedTuple):
     """Of the rate with respect to the state, 1/s."""
     torque_by_state: float
     """Of the torque with respect to the state, N m/rad."""
+
+
+class SensorSlope(NamedTuple):
+    """Derivatives with respect to the error of a load's sensor."""
+
+    torque: float
+    """Of the torque, N m/m or N m/N."""
+    rate: float
+    """Of the rate of its state, in the unit of the rate over m or N."""
+
+
+@kernel
+def no_sensor(_constants: np.record, _numbers: FloatArray, _shaft: ShaftState) -> SensorSlope:
+    """Derivatives of a load without a sensor."""
+    return SensorSlope(0.0, 0.0)
 
 
 @kernel
@@ -104,6 +122,9 @@ class Load(Part):
     rate_at: ClassVar[Callable[[np.record, FloatArray, ShaftState], StateRate]] = no_state
     """Kernel: the rate of the state of its controller, from constants, numbers and the state of the shaft."""
 
+    slope_at: ClassVar[Callable[[np.record, FloatArray, ShaftState], SensorSlope]] = no_sensor
+    """Kernel: derivatives with respect to the error of its sensor, from the same."""
+
     signed: ClassVar[tuple[str, ...]] = ()
     """Fields whose sign is that of the sense of rotation: a number or a profile each."""
 
@@ -146,6 +167,28 @@ class Load(Part):
     def state_lag(self) -> float | None:
         """Time constant of the state of its controller, s; None without a state."""
         return None
+
+    @property
+    def sensed(self) -> str | None:
+        """Name of the pulley whose tensioner is its sensor; None without one."""
+        return None
+
+    @property
+    def senses_force(self) -> bool:
+        """Whether its sensor measures a force, by the spring of the tensioner."""
+        return False
+
+    def error_of(self, tensioner: MovingTensioner, arm: float) -> tuple[float, float]:
+        """The error of its sensor over the coordinate of a tensioner, and at its zero.
+
+        Parameters
+        ----------
+        tensioner
+            The sensor.
+        arm
+            Way of the carried pulley's center over the coordinate, 1 or m/rad.
+        """
+        raise NotImplementedError
 
     @property
     def orders(self) -> Sequence[float]:

@@ -20,6 +20,9 @@ SHAFT_LOADS = KindRows(
     state="i8",  # place of its controller's state among the bodies, or `NO_STATE`
     number="i8",  # place of its first number; the last is that before the first of the next row
     harmonic="i8",  # its first harmonic over the shaft angle, alike
+    sensor="i8",  # coordinate of its sensor, counted from the last one on, from 1; 0 without
+    sensor_rate="f8",  # error of the sensor over that coordinate
+    sensor_zero="f8",  # error at its zero
     order="f8",  # the highest order over the shaft angle
 )
 """Rows of loads on shafts, with the constants of their kinds; those of others are zero."""
@@ -28,4 +31,5 @@ SHAFT_LOAD = SHAFT_LOADS.row_type()
 
 torque_of_kind = choice("torque_of_kind", LOADS.functions("torque_at"), ["numbers", "shaft"])
 rate_of_kind = choice("rate_of_kind", LOADS.functions("rate_at"), ["numbers", "shaft"])
+slope_of_kind = choice("slope_of_kind", LOADS.functions("slope_at"), ["numbers", "shaft"])
 kink_of_kind = choice("kink_of_kind", LOADS.functions("next_kink"), ["numbers", "shaft", "rising"])

@@ -1,18 +1,29 @@
 """Torques of loads and motors on a shaft, over time, speed and angle."""
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from itertools import pairwise
+from types import MappingProxyType
 from typing import NamedTuple
 
 import numpy as np
 
 from beltdyn.arrays import FloatArray, IntArray
 from beltdyn.kernel import kernel, labels
-from beltdyn.machines.loads.load import LOADS, Load, LoadTorque, ShaftState, StateRate
-from beltdyn.machines.loads.registry import NO_STATE, SHAFT_LOADS, kink_of_kind, rate_of_kind, torque_of_kind
+from beltdyn.machines.loads.load import LOADS, Load, LoadTorque, SensorSlope, ShaftState, StateRate
+from beltdyn.machines.loads.registry import (
+    NO_STATE,
+    SHAFT_LOADS,
+    kink_of_kind,
+    rate_of_kind,
+    slope_of_kind,
+    torque_of_kind,
+)
 from beltdyn.machines.profiles.functions import Profiles, command_value, profile_bend, profile_value, schedule_value
 from beltdyn.machines.profiles.harmonic import harmonic_factor, harmonic_rows
+from beltdyn.machines.tensioners.tensioner import MovingTensioner
 from beltdyn.records import Records, offsets, records
+
+NO_SENSORS: Mapping[str, "Sensor"] = MappingProxyType({})
 
 
 class ShaftLoads(NamedTuple):
@@ -28,8 +39,23 @@ class ShaftLoads(NamedTuple):
     """Rows of `HARMONIC`."""
 
 
-def shaft_loads(loads: Sequence[Sequence[Load]], profiles: Sequence[tuple[int, int]], first_state: int) -> ShaftLoads:
-    """Loads of all pulleys, concatenated."""
+class Sensor(NamedTuple):
+    """A tensioner that a load sees."""
+
+    place: int
+    """Of its coordinate, counted from the last one on, from 1."""
+    tensioner: MovingTensioner
+    arm: float
+    """Way of the carried pulley's center over the coordinate."""
+
+
+def shaft_loads(
+    loads: Sequence[Sequence[Load]],
+    profiles: Sequence[tuple[int, int]],
+    first_state: int,
+    sensors: Mapping[str, Sensor] = NO_SENSORS,
+) -> ShaftLoads:
+    """Loads of all pulleys, concatenated; sensors by the names of their pulleys."""
     found = [load for group in loads for load in group]
     first, harmonic = harmonic_rows([load.harmonics for load in found])
     own = [np.asarray(load.numbers, dtype=float) for load in found]
@@ -39,6 +65,10 @@ def shaft_loads(loads: Sequence[Sequence[Load]], profiles: Sequence[tuple[int, i
         row.order, row.state = max(load.orders, default=0.0), NO_STATE
         if load.state_lag is not None:
             row.state, first_state = first_state, first_state + 1
+        if load.sensed is not None:
+            sensor = sensors[load.sensed]
+            row.sensor = sensor.place
+            row.sensor_rate, row.sensor_zero = load.error_of(sensor.tensioner, sensor.arm)
         SHAFT_LOADS.fill(row, type(load), load.values())
     return ShaftLoads(offsets(map(len, loads)), table, np.concatenate([np.zeros(0), *own]), harmonic)
 
@@ -91,7 +121,7 @@ def load_torque(
 ) -> LoadTorque:
     """Torque of a load without its schedule; arguments as for `shaft_torque`."""
     item, following = loads.table[number], loads.table[number + 1]
-    shaft = ShaftState(time, angle, speed, command_value(profiles, item.command, time), _state(item, states))
+    shaft = _shaft(profiles, item, time, angle, speed, states)
     plain = torque_of_kind(item, loads.numbers[item.number : following.number], shaft)
     factor, change = harmonic_factor(loads.harmonic, item.harmonic, following.harmonic, angle)
     by_angle = plain.by_angle * factor + plain.torque * change
@@ -99,9 +129,15 @@ def load_torque(
 
 
 @kernel(inline=True)
-def _state(item: np.record, states: FloatArray) -> float:
-    """State of the controller of a load."""
-    return float(states[item.state]) if item.state >= 0 else 0.0
+def _shaft(
+    profiles: Profiles, item: np.record, time: float, angle: float, speed: float, states: FloatArray
+) -> ShaftState:
+    """What a load feels."""
+    state = states[item.state] if item.state >= 0 else 0.0
+    error = item.sensor_zero
+    if item.sensor > 0:
+        error += item.sensor_rate * states[states.size - item.sensor]
+    return ShaftState(time, angle, speed, command_value(profiles, item.command, time), state, error)
 
 
 @kernel
@@ -113,11 +149,27 @@ def state_rate(
     Arguments are those of `shaft_torque`; the load has such a state.
     """
     item, following = loads.table[number], loads.table[number + 1]
-    shaft = ShaftState(time, angle, speed, command_value(profiles, item.command, time), _state(item, states))
+    shaft = _shaft(profiles, item, time, angle, speed, states)
     plain = rate_of_kind(item, loads.numbers[item.number : following.number], shaft)
     factor = harmonic_factor(loads.harmonic, item.harmonic, following.harmonic, angle)[0]
     scale = factor * schedule_value(profiles, item.schedule, time)
     return StateRate(plain.rate, plain.by_speed, plain.by_state, scale * plain.torque_by_state)
+
+
+@kernel
+def sensor_slope(
+    profiles: Profiles, loads: ShaftLoads, number: int, time: float, angle: float, speed: float, states: FloatArray
+) -> SensorSlope:
+    """Derivatives of a load with a sensor, and of the rate of its state, with respect to the sensor's coordinate.
+
+    Arguments are those of `shaft_torque`.
+    """
+    item, following = loads.table[number], loads.table[number + 1]
+    shaft = _shaft(profiles, item, time, angle, speed, states)
+    plain = slope_of_kind(item, loads.numbers[item.number : following.number], shaft)
+    factor = harmonic_factor(loads.harmonic, item.harmonic, following.harmonic, angle)[0]
+    scale = factor * schedule_value(profiles, item.schedule, time)
+    return SensorSlope(scale * plain.torque * item.sensor_rate, plain.rate * item.sensor_rate)
 
 
 @kernel
@@ -149,7 +201,7 @@ def load_bend(
             at, wave = profile_bend(profiles, profile, time)
             kink, frequency = min(kink, at), max(frequency, wave)
     if rate != 0.0:
-        shaft = ShaftState(time, 0.0, speed, command_value(profiles, item.command, time), 0.0)
+        shaft = ShaftState(time, 0.0, speed, command_value(profiles, item.command, time), 0.0, 0.0)
         ahead = kink_of_kind(item, loads.numbers[item.number : following.number], shaft, rate > 0.0)
         if ahead < np.inf:
             kink = min(kink, time + (ahead - speed) / rate)

@@ -32,7 +32,7 @@ from beltdyn.results.checks.power import (
 )
 from beltdyn.results.checks.sliding import ended_by_slip, gross_slip, gross_slip_before, near_gross_slip
 from beltdyn.results.checks.teeth import jumped_teeth, lifted_teeth, overloaded_teeth
-from beltdyn.results.checks.tensioners import stopped_tensioners, unstable_tensioners
+from beltdyn.results.checks.tensioners import stopped_tensioners, unstable_control, unstable_tensioners
 from beltdyn.results.provenance import Resolution
 from beltdyn.results.schema import Recorded
 
@@ -68,6 +68,7 @@ CHECKS: tuple[Check, ...] = (
     artificial_losses,
     flutter,
     unstable_tensioners,
+    unstable_control,
     stopped_tensioners,
     unresolved_by_mesh,
 )

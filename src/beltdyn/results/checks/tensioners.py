@@ -10,12 +10,30 @@ from beltdyn.parts.messages import Finding
 from beltdyn.results.checks.evidence import Evidence
 from beltdyn.results.incidents import on_stops
 
+GROWTH = "growth"
+"""Attribute of steady running: the fastest growing motion about it, growth rate and angular frequency, 1/s."""
+
 
 def unstable_tensioners(evidence: Evidence) -> Iterator[Finding]:
     """Tensioners whose static equilibrium is unstable."""
     names = str(evidence.recorded.attrs.get("unstable_tensioners", ""))
     if names:
         yield unstable_balance(names.split(", "))
+
+
+def unstable_control(evidence: Evidence) -> Iterator[Finding]:
+    """Controllers that make steady running unstable."""
+    if GROWTH in evidence.recorded.attrs:
+        rate, swing = np.asarray(evidence.recorded.attrs[GROWTH], dtype=float)
+        how = f"with {swing / (2.0 * np.pi):.3g} Hz" if swing > 0.0 else "without swinging"
+        yield Finding(
+            f"steady running is unstable: a small motion grows by {rate:.3g} 1/s {how}.",
+            f"The controlled drive does not remain in it: after {np.log(10.0) / rate:.2g} s a disturbance is ten times "
+            "as large.",
+            "Reduce the gain of the controller, or increase its integral_time."
+            if swing > 0.0
+            else "Reverse the sign of the gain: rollers before the sensor need a negative one for their speed.",
+        )
 
 
 def stopped_tensioners(evidence: Evidence) -> Iterator[Finding]:
