@@ -38,11 +38,11 @@ from beltdyn.model import (
     Winder,
 )
 from beltdyn.model.belt_form import Nominal, Sold, Stiffnesses
-from beltdyn.model.duty import DutyPoint
 from beltdyn.model.fatigue import CordFatigue, RibFatigue
 from beltdyn.model.pulley import Diameter, surface_part
 from beltdyn.model.stretch_curve import StretchCurve
 from beltdyn.model.study import (
+    DutyPoint,
     FreeNumber,
     Goal,
     Measurement,

@@ -17,9 +17,9 @@ from beltdyn.arrays import FloatArray
 from beltdyn.kinds import Registry
 from beltdyn.model import Drive, prepare
 from beltdyn.results import Layout, MemoryRecorder, Run, provenance
+from beltdyn.results.belt_history import mid_span_displacements
 from beltdyn.results.friction_work import FrictionWork, Touch
 from beltdyn.results.mechanics import cells
-from beltdyn.results.mid_span import mid_span_displacements
 from beltdyn.results.schema import FILTERED
 from beltdyn.results.slip_safety import sliding_of_pulleys
 

@@ -27,7 +27,7 @@ from beltdyn.model.catalogue import Entry, read_catalogue
 from beltdyn.model.pulley import Diameter
 from beltdyn.model.study import CalibrationStudy, OptimizationStudy
 from beltdyn.model.toml import example
-from beltdyn.model.tooth_rating import ToothRating
+from beltdyn.model.toothing import ToothRating
 from beltdyn.parts.part import Part
 from beltdyn.show.plot import FIGURES
 from beltdyn.show.plot.registry import on_request

@@ -10,7 +10,7 @@ SOURCE = UNIT.parents[1] / "src" / "beltdyn"
 
 FAMILIES = {
     "elements/*.py": "unit/elements/test_kind.py",
-    "show/plot/*.py": "unit/show/plot/test_figures.py",
+    "show/plot/*.py": "unit/show/plot/test_registry_figures.py",
 }
 """Where a kind is tested with all of its family, if it has no test of its own."""
 
@@ -31,7 +31,6 @@ ELSEWHERE = {
     # Parts of one calculation, which is tested as a whole: forces by their energies, tangents by differences.
     "system/arc_tangent.py": "unit/system/test_arc_mesh.py",
     "system/body_forces.py": "unit/system/test_bodies.py",
-    "system/build_carrying.py": "unit/system/test_arc_mesh.py",
     "system/carrying.py": "unit/system/test_arc_mesh.py",
     "system/nip_loads.py": "unit/system/test_nips.py",
     "results/derived/nip.py": "unit/system/test_nips.py",

@@ -12,8 +12,8 @@ import pytest
 
 import beltdyn as bd
 from beltdyn.arrays import FloatArray
-from beltdyn.results.balance import Balance
 from beltdyn.results.derived.pulley import balance as power_balance
+from beltdyn.results.tension_balance import Balance
 from beltdyn.theory.hysteresis import bending_loss, stretch_loss
 
 BENDING, STRETCH = 0.15, 0.05

@@ -9,9 +9,8 @@ from nicegui import ui
 from nicegui.elements.mixins.validation_element import ValidationElement
 
 from beltdyn.app import placing
-from beltdyn.app.forms import Field, fields, kinds, schema_of, value_at
+from beltdyn.app.forms import Field, fields, kinds, schema_of, unit_in, value_at
 from beltdyn.app.session import Session
-from beltdyn.app.units import unit_in
 from beltdyn.model import Drive
 from beltdyn.parts.toml_edits import Edit, Location
 

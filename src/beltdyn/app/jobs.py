@@ -204,8 +204,7 @@ def _outcome(found: Any, result: Path) -> Outcome:
 
 def _pictures(found: Any) -> tuple[str, ...]:
     """The first figures of a result as a report has them, but for those that the page draws itself."""
-    from beltdyn.show.plot.figures import chosen_by_default, data_uri
-    from beltdyn.show.plot.registry import FIGURES, Choice
+    from beltdyn.show.plot.registry import FIGURES, Choice, chosen_by_default, data_uri
 
     names = [name for name in chosen_by_default([found]) if name not in _DRAWN][:_MOST_PICTURES]
     return tuple(data_uri(FIGURES[name].arrange(found, Choice())) for name in names)

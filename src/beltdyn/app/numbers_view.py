@@ -12,8 +12,8 @@ from nicegui.events import ValueChangeEventArguments
 
 from beltdyn.app.computing import Answer, Asked, Calculator, in_words
 from beltdyn.app.findings import Around, Column, Figure, Findings, Rows, Shape, at_rest
+from beltdyn.app.forms import System, unit_in
 from beltdyn.app.session import Session
-from beltdyn.app.units import System, unit_in
 from beltdyn.errors import BeltdynError
 from beltdyn.model import estimate_at_rest, prepare
 from beltdyn.parts.text_file import shorten

@@ -10,11 +10,11 @@ from nicegui.element import Element
 from nicegui.events import GenericEventArguments, KeyEventArguments
 
 from beltdyn.app.form_view import FormView
+from beltdyn.app.forms import SYSTEMS, Unit, unit_in
 from beltdyn.app.pulley_table import TableDialog
 from beltdyn.app.results_view import ResultsView
 from beltdyn.app.scene import MILLIMETRES, groups, scene
 from beltdyn.app.session import Session
-from beltdyn.app.units import SYSTEMS, Unit, unit_in
 from beltdyn.app.workspace import EMPTY, STARTS, Example, Workspace, examples, thumbnail
 from beltdyn.errors import BeltdynError
 from beltdyn.parts.toml_edits import Edit

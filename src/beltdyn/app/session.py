@@ -8,9 +8,9 @@ import tomli_w
 
 from beltdyn.app import placing
 from beltdyn.app.draft import Draft, draft
+from beltdyn.app.forms import System
 from beltdyn.app.jobs import Job, Outcome
 from beltdyn.app.scene import groups
-from beltdyn.app.units import System
 from beltdyn.app.workspace import EMPTY, Workspace
 from beltdyn.errors import ModelError
 from beltdyn.parts.text_file import parse_toml

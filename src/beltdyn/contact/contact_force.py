@@ -10,8 +10,15 @@ from typing import Any, Final, NamedTuple
 import numpy as np
 
 from beltdyn.arrays import FloatArray
-from beltdyn.contact.bezier import Curve, combine, fill_bernstein, fill_bernstein_rates, fill_shape_functions
-from beltdyn.contact.contact_zone import touching_intervals, zone_record
+from beltdyn.contact.contact_zone import (
+    Curve,
+    combine,
+    fill_bernstein,
+    fill_bernstein_rates,
+    fill_shape_functions,
+    touching_intervals,
+    zone_record,
+)
 from beltdyn.contact.law import ContactLaw, PulleyState
 from beltdyn.contact.penetration import Approach, approach, tooth_approach
 from beltdyn.contact.point_force import (

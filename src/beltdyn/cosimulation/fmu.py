@@ -11,8 +11,7 @@ from tempfile import TemporaryDirectory
 from types import MappingProxyType
 from typing import Any
 
-from beltdyn.cosimulation.component import DRIVE_FILE, Component
-from beltdyn.cosimulation.interface import Interface, choose_inputs, choose_outputs
+from beltdyn.cosimulation.component import DRIVE_FILE, Component, Interface, choose_inputs, choose_outputs
 from beltdyn.errors import ModelError
 from beltdyn.model import Drive, dumps
 from beltdyn.model.simulation import EarlierRun

@@ -9,8 +9,7 @@ from typing import Any, NamedTuple
 from xml.etree.ElementTree import Element, SubElement
 
 from beltdyn import __version__
-from beltdyn.cosimulation.component import Component, ComponentState
-from beltdyn.cosimulation.interface import TOLERANCE, Input, Interface, Output
+from beltdyn.cosimulation.component import TOLERANCE, Component, ComponentState, Input, Interface, Output
 from beltdyn.errors import BeltdynError, ModelError
 
 # The model description of a unit: what the packages that make units leave out of it

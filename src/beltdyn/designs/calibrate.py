@@ -10,10 +10,10 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from beltdyn.arrays import FloatArray
+from beltdyn.designs.batch import OperatingPoint, named
 from beltdyn.designs.designs import Design, Designs, Free, free_number
 from beltdyn.designs.named_results import names_of, unit_of
 from beltdyn.designs.optimization_history import headed, require_free, write_found
-from beltdyn.designs.watched import OperatingPoint, named
 from beltdyn.errors import ConvergenceError, ModelError
 from beltdyn.model import Drive
 from beltdyn.model.study import CalibrationStudy, Measurement, Points

@@ -7,9 +7,9 @@ from functools import cache
 import numpy as np
 
 from beltdyn.arrays import FloatArray
+from beltdyn.designs.batch import OperatingPoint, Watched, held
 from beltdyn.designs.found_state import FoundState, Resting, Running
 from beltdyn.designs.named_results import need_bands
-from beltdyn.designs.watched import OperatingPoint, Watched, held
 from beltdyn.errors import ConvergenceError, ModelError
 from beltdyn.model import Drive, prepare
 from beltdyn.model.study import FreeNumber, Points

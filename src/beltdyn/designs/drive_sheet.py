@@ -1,7 +1,7 @@
 """The drive sheet: geometry, tensioner positions, tensions, hub loads, slip safety, peaks, modes and belts to order.
 
 All states are those of the balance of tensions about the equilibrium at rest, which the finite elements find once; see
-`beltdyn.points.quasi_steady` and `beltdyn.vibration.lumped`. So a sheet of many operating points takes a second.
+`beltdyn.points.quasi_steady` and `beltdyn.vibration.peaks`. So a sheet of many operating points takes a second.
 """
 
 from collections.abc import Iterator
@@ -15,8 +15,8 @@ from beltdyn.arrays import FloatArray
 from beltdyn.errors import ModelError
 from beltdyn.model import Drive, FixedTensioner, Prepared, alignment, prepare
 from beltdyn.model.alignment import judge_alignment
-from beltdyn.model.duty import PASS
 from beltdyn.model.installation import Installation
+from beltdyn.model.study import PASS
 from beltdyn.model.tensioning import DEFLECTION, tension_checks
 from beltdyn.parts.quantity import Number, Numbers, number_in, numbers_in
 from beltdyn.points.changed_drive import at_instant, require_belt

@@ -6,8 +6,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from beltdyn.arrays import FloatArray
+from beltdyn.designs.batch import OperatingPoint, Watched, clearance, distance_from_order, named
 from beltdyn.designs.named_results import names_in, names_of
-from beltdyn.designs.watched import OperatingPoint, Watched, clearance, distance_from_order, named
 from beltdyn.errors import ModelError
 from beltdyn.model import Drive
 from beltdyn.model.study import Bound, Goal, OptimizationStudy

@@ -10,10 +10,10 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from beltdyn.arrays import FloatArray
+from beltdyn.designs.batch import OperatingPoint
 from beltdyn.designs.designs import Design, Free
 from beltdyn.designs.goals import Aims, Limit
 from beltdyn.designs.named_results import variable_and_label
-from beltdyn.designs.watched import OperatingPoint
 from beltdyn.errors import ModelError
 from beltdyn.model import Drive
 from beltdyn.model.toml import edited, loads

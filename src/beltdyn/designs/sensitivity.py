@@ -16,10 +16,10 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from beltdyn.arrays import FloatArray
+from beltdyn.designs.batch import OperatingPoint, named
 from beltdyn.designs.designs import CHANGE, Designs, Free, SmallChanges
 from beltdyn.designs.found_state import FoundState, Resting, Running
 from beltdyn.designs.named_results import listed, names_in, names_of, need_bands, unit_of
-from beltdyn.designs.watched import OperatingPoint, named
 from beltdyn.errors import ConvergenceError, ModelError
 from beltdyn.model import Drive, prepare
 from beltdyn.model.study import Points

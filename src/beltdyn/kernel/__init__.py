@@ -2,7 +2,8 @@
 
 from beltdyn.kernel.by_kind import choice
 from beltdyn.kernel.by_type import by_type
-from beltdyn.kernel.cache import (
+from beltdyn.kernel.decorator import Kernel, interpreted, kernel, runs_compiled
+from beltdyn.kernel.fingerprint import (
     CACHE_VARIABLE,
     PACKAGE,
     PLAIN_VARIABLE,
@@ -12,7 +13,6 @@ from beltdyn.kernel.cache import (
     kernel_cache,
     source_hash,
 )
-from beltdyn.kernel.decorator import Kernel, interpreted, kernel, runs_compiled
 from beltdyn.kernel.kinds import KernelKinds, KindRows, labels
 from beltdyn.kernel.progress import CompilationReport, observe_compilation, report_compilation, watch_compilation
 

@@ -5,7 +5,7 @@ from collections.abc import Callable, Iterable, Mapping
 from functools import cached_property
 from typing import Any, ClassVar
 
-from beltdyn.kernel.cache import compiles_quickly
+from beltdyn.kernel.fingerprint import compiles_quickly
 
 
 class Dispatch(ABC):

@@ -47,8 +47,9 @@ from numba.core.typed_passes import BaseNativeLowering, NativeLowering
 from numba.core.types.misc import unliteral
 from numba.core.typing import Context
 
-from beltdyn.kernel.cache import ENTRY, PACKAGE
 from beltdyn.kernel.fingerprint import (
+    ENTRY,
+    PACKAGE,
     fingerprint,
     is_own,
     mark_of,

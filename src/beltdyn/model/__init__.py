@@ -53,7 +53,6 @@ from beltdyn.model.catalogue import Entry, read_catalogue
 from beltdyn.model.contact import Contact
 from beltdyn.model.cover import Cover
 from beltdyn.model.drive import Drive
-from beltdyn.model.duty import DutyPoint
 from beltdyn.model.end import FixedEnd, PulledEnd, WeightEnd
 from beltdyn.model.fatigue import CordFatigue, RibFatigue
 from beltdyn.model.installation import Installation
@@ -65,7 +64,7 @@ from beltdyn.model.rating import Rating
 from beltdyn.model.resolution import ERROR_LIMITS, Running, elements_needed, layer_lengths, mesh_errors, unresolved
 from beltdyn.model.rest_estimate import estimate_at_rest
 from beltdyn.model.simulation import Limits, Simulation, Steady
-from beltdyn.model.study import CalibrationStudy, OptimizationStudy, ParameterStudy
+from beltdyn.model.study import CalibrationStudy, DutyPoint, OptimizationStudy, ParameterStudy
 from beltdyn.model.tensioner_balance import TensionerBalance
 from beltdyn.model.toml import dumps, example, json_schema, load, loads
 from beltdyn.model.toothing import Toothing

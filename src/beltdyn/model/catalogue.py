@@ -14,8 +14,7 @@ from pydantic import Field, ValidationError, ValidationInfo, model_validator
 from beltdyn.model.fatigue import CordFatigue, RibFatigue
 from beltdyn.model.rating import Rating
 from beltdyn.model.stretch_curve import StretchCurve, with_initial_slope
-from beltdyn.model.tooth_rating import ToothRating
-from beltdyn.model.toothing import Toothing
+from beltdyn.model.toothing import Toothing, ToothRating
 from beltdyn.parts.messages import explain, reason
 from beltdyn.parts.part import Part
 from beltdyn.parts.quantity import (

@@ -22,7 +22,6 @@ from beltdyn.model.carriage import Carriage, check_carriage
 from beltdyn.model.carrying import check_carrying, check_lift
 from beltdyn.model.completion import Completed, complete
 from beltdyn.model.contact import Contact
-from beltdyn.model.duty import DutyPoint, check_duty
 from beltdyn.model.end import AnyEnd, End, PathEnd, ends_on_path
 from beltdyn.model.layout import Given, Layout, lay_out
 from beltdyn.model.meshing import check_teeth
@@ -32,8 +31,8 @@ from beltdyn.model.pulley import Pulley, friction_on
 from beltdyn.model.rating import RatedBelt
 from beltdyn.model.routing import radii, span_names
 from beltdyn.model.simulation import Frame, Limits, Simulation, Steady, choose_frame, element_of
-from beltdyn.model.tooth_rating import RatedTeeth
-from beltdyn.model.toothing import DISCRETE
+from beltdyn.model.study import DutyPoint, check_duty
+from beltdyn.model.toothing import DISCRETE, RatedTeeth
 from beltdyn.model.web import Unwinder, Winder, check_rollers
 from beltdyn.parts.change import changed_arguments
 from beltdyn.parts.kind_fields import Chosen, chosen_kinds

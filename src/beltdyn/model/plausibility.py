@@ -14,7 +14,7 @@ from beltdyn.model.installation import Installation
 from beltdyn.model.meshing import teeth_in_mesh
 from beltdyn.model.prepared import install, prepare
 from beltdyn.model.pulley import Pulley, fastest_rim
-from beltdyn.model.tooth_rating import RatedTeeth
+from beltdyn.model.toothing import RatedTeeth
 from beltdyn.parts.messages import Finding, listing
 from beltdyn.parts.quantity import RPM
 from beltdyn.theory.rating import REST_SHARE

@@ -26,8 +26,8 @@ from beltdyn.kernel import (
     watch_compilation,
 )
 from beltdyn.observation.band_limit import compile_filter
+from beltdyn.results.belt_history import fill_mid_spans
 from beltdyn.results.friction_work import ARC_PARTS, Touch, WorkSoFar, add_friction_work
-from beltdyn.results.mid_span import fill_mid_spans
 from beltdyn.solvers.engine import accelerate
 from beltdyn.system.arrays import System
 from beltdyn.system.motion import new_equations, no_multipliers

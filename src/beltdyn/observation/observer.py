@@ -10,11 +10,11 @@ from beltdyn.contact.surface import ToothedRims
 from beltdyn.errors import ConvergenceError, SlipError
 from beltdyn.model import Prepared
 from beltdyn.parts.quantity import RPM
+from beltdyn.results.belt_history import mid_span_displacements
 from beltdyn.results.checks.sliding import SWEEP_REMEDY
 from beltdyn.results.friction_work import FrictionWork, MaterialWork, Touch
 from beltdyn.results.incidents import JUMPS
 from beltdyn.results.mechanics import across
-from beltdyn.results.mid_span import mid_span_displacements
 from beltdyn.results.schema import FILTERED
 from beltdyn.results.slip_safety import sliding_of_pulleys
 from beltdyn.solvers.flutter import Flutter, FlutterWatch

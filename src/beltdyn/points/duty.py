@@ -11,7 +11,7 @@ from numpy.typing import ArrayLike, NDArray
 from beltdyn.arrays import FloatArray
 from beltdyn.errors import ModelError
 from beltdyn.model import Drive, Pulley
-from beltdyn.model.duty import PASS, columns_of
+from beltdyn.model.study import PASS, columns_of
 from beltdyn.parts.messages import suggest
 from beltdyn.parts.table_file import HeadedColumn, read_headed
 from beltdyn.points.changed_drive import (

@@ -9,7 +9,7 @@ from beltdyn.arrays import FloatArray
 from beltdyn.errors import ModelError
 from beltdyn.model import Drive, prepare
 from beltdyn.model.rating import PowerRating, RatedBelt
-from beltdyn.model.tooth_rating import MeshRating, RatedTeeth
+from beltdyn.model.toothing import MeshRating, RatedTeeth
 from beltdyn.parts.messages import listing
 from beltdyn.points.changed_drive import held_at
 from beltdyn.results import Result, Variable, build_result

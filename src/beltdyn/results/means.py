@@ -9,7 +9,7 @@ from beltdyn.arrays import FloatArray
 from beltdyn.model import Drive, Prepared
 from beltdyn.model.path import span_directions, wrap_angles
 from beltdyn.model.rating import PowerRating
-from beltdyn.model.tooth_rating import MeshRating
+from beltdyn.model.toothing import MeshRating
 from beltdyn.results.cycles import Window, mean_window
 from beltdyn.results.mechanics import rim_speeds, tensions_at_arcs
 from beltdyn.results.schema import Recorded, names

@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from beltdyn.arrays import BoolArray, FloatArray, IntArray
-from beltdyn.contact.bezier import BINOMIALS
+from beltdyn.contact.contact_zone import BINOMIALS
 from beltdyn.elements import ELEMENTS, ElementKind
 from beltdyn.model import Prepared
 from beltdyn.model.path import span_directions, span_points, wrap_angles

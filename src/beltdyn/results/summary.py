@@ -9,7 +9,6 @@ import numpy as np
 from beltdyn.errors import ModelError
 from beltdyn.model import Drive
 from beltdyn.model.simulation import Simulation
-from beltdyn.results.balance import Balance, causes_of, largest_closure, power_balance
 from beltdyn.results.checks.mesh import STEADY_LOSSES, STEADY_SLIPS
 from beltdyn.results.cycles import Window, mean_window
 from beltdyn.results.means import (
@@ -23,6 +22,7 @@ from beltdyn.results.means import (
 from beltdyn.results.provenance import Resolution
 from beltdyn.results.run import Run
 from beltdyn.results.schema import Recorded, attribute
+from beltdyn.results.tension_balance import Balance, causes_of, largest_closure, power_balance
 
 
 class Means(NamedTuple):

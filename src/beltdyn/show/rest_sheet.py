@@ -27,7 +27,7 @@ from beltdyn.model.meshing import teeth_in_mesh
 from beltdyn.model.plausibility import other_diameters
 from beltdyn.model.simulation import unused_settings
 from beltdyn.model.tensioning import DEFLECTION, TensionCheck, tension_checks
-from beltdyn.model.tooth_rating import RatedTeeth
+from beltdyn.model.toothing import RatedTeeth
 from beltdyn.parts.messages import aligned
 from beltdyn.results.layout import describe_size
 from beltdyn.show.notebook import picture, templates

@@ -44,13 +44,13 @@ from beltdyn.system.arrays import (
     System,
     TangentFactors,
 )
-from beltdyn.system.assembly import assemble
 from beltdyn.system.body_forces import keep_body_forces
 from beltdyn.system.frame import Flowing, FlowingByArcs, Travelling
 from beltdyn.system.missed_action import extrapolated_load, missed_impulses, missed_work, numerical_loss
 from beltdyn.system.motion import subtract_multipliers, subtract_solution
 from beltdyn.system.ring_matrix import factorise_ring, substitute
 from beltdyn.system.state_forces import find_body_forces, prescribe
+from beltdyn.system.steady_assembly import assemble
 
 # Coefficients of generalized-alpha (Chung and Hulbert 1993); the method is described in `alpha_step`
 

@@ -15,8 +15,8 @@ from beltdyn.model.defaults import MOST
 from beltdyn.model.resolution import FINENESS
 from beltdyn.model.simulation import Instants
 from beltdyn.results import mesh_error_attribute
-from beltdyn.results.balance import WEB_LINE
 from beltdyn.results.checks.ending import LEAST_WINDOWS, SETTLED, least_window
+from beltdyn.results.tension_balance import WEB_LINE
 from beltdyn.solvers.progress import Progress, Report
 from beltdyn.solvers.trajectory import Chunk, Integrator, Statistics, Task, drive_task
 from beltdyn.state.refinement import MeshRule, errors_at_rest, refine_at_rest, steady_from_rest

@@ -16,7 +16,7 @@ from beltdyn.state.static import only_tensioners
 from beltdyn.state.tightening import Tightening, begin
 from beltdyn.system.arc_mesh import base_lengths, fitted, shifts_of
 from beltdyn.system.arrays import System
-from beltdyn.system.build_carrying import with_resistance
+from beltdyn.system.build_machines import with_resistance
 from beltdyn.system.build_staying import staying_system
 from beltdyn.system.constant_drive import without_motion
 from beltdyn.system.discretization import nodal_coordinates, point_coordinates

@@ -14,10 +14,10 @@ from beltdyn.observation.recording import Recording
 from beltdyn.parts.messages import listing
 from beltdyn.parts.quantity import number_in
 from beltdyn.results import Run, mesh_error_attribute
-from beltdyn.results.balance import WEB_LINE
-from beltdyn.results.checks.tensioners import GROWTH
+from beltdyn.results.checks.machines import GROWTH
 from beltdyn.results.provenance import STAYING, mesh_used
 from beltdyn.results.schema import runs_steadily
+from beltdyn.results.tension_balance import WEB_LINE
 from beltdyn.solvers.progress import Progress, Report
 from beltdyn.solvers.trajectory import Chunk
 from beltdyn.state.linearized import growing, in_motion

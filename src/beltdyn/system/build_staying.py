@@ -12,7 +12,7 @@ from beltdyn.records import records
 from beltdyn.system.arc_mesh import arc_count, staying_by_arcs, with_own_mesh
 from beltdyn.system.arrays import BODY, System
 from beltdyn.system.build import nodal_supports, system_of, weight_forces
-from beltdyn.system.build_carrying import carrying_arrays, on_other_lengths
+from beltdyn.system.build_machines import carrying_arrays, on_other_lengths
 from beltdyn.system.discretization import discretize
 from beltdyn.system.frame import FlowingByArcs, StayingByArcs, flowing, staying
 from beltdyn.system.hysteresis import hysteresis_rows

@@ -15,7 +15,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from beltdyn.arrays import FloatArray
-from beltdyn.contact.bezier import fill_bernstein, fill_shape_functions
+from beltdyn.contact.contact_zone import fill_bernstein, fill_shape_functions
 from beltdyn.kernel import by_type, kernel
 from beltdyn.machines.carrying.registry import resistance_of_kind
 from beltdyn.machines.profiles.functions import schedule_value

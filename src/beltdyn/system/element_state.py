@@ -3,8 +3,8 @@
 import numpy as np
 
 from beltdyn.arrays import FloatArray
-from beltdyn.contact.bezier import Curve
 from beltdyn.contact.contact_force import contact_record
+from beltdyn.contact.contact_zone import Curve
 from beltdyn.contact.surface import element_start
 from beltdyn.elements.dispatch import damping_force
 from beltdyn.elements.kind import DampingFactors, is_damped

@@ -5,10 +5,10 @@ import numpy as np
 from beltdyn.arrays import FloatArray
 from beltdyn.kernel import kernel
 from beltdyn.system.arrays import Equations, System
-from beltdyn.system.assembly import border_size
 from beltdyn.system.body_forces import new_body_forces
 from beltdyn.system.element_state import element_workspace
 from beltdyn.system.ring_matrix import ring_matrix
+from beltdyn.system.steady_assembly import border_size
 
 
 def new_equations(system: System) -> Equations:

@@ -5,8 +5,7 @@ from typing import NamedTuple
 import numpy as np
 
 from beltdyn.arrays import FloatArray, IntArray
-from beltdyn.contact.bezier import Curve, combine, fill_bernstein
-from beltdyn.contact.contact_zone import out_of_reach, touching_intervals
+from beltdyn.contact.contact_zone import Curve, combine, fill_bernstein, out_of_reach, touching_intervals
 from beltdyn.contact.law import PulleyState
 from beltdyn.contact.penetration import approach, slip_velocity
 from beltdyn.contact.point_force import point_force

@@ -7,7 +7,7 @@ from typing import Annotated, NamedTuple, get_type_hints
 import numpy as np
 
 from beltdyn.arrays import FloatArray, IntArray
-from beltdyn.contact.bezier import combine, fill_bernstein
+from beltdyn.contact.contact_zone import combine, fill_bernstein
 from beltdyn.contact.law import PulleyState
 from beltdyn.kernel import kernel
 from beltdyn.records import blank, record

@@ -5,8 +5,14 @@ from math import sqrt
 import numpy as np
 
 from beltdyn.arrays import BoolArray, FloatArray
-from beltdyn.contact.bezier import Curve, combine, fill_bernstein, fill_bernstein_rates
-from beltdyn.contact.contact_zone import out_of_reach, touching_intervals
+from beltdyn.contact.contact_zone import (
+    Curve,
+    combine,
+    fill_bernstein,
+    fill_bernstein_rates,
+    out_of_reach,
+    touching_intervals,
+)
 from beltdyn.contact.law import PulleyState
 from beltdyn.contact.penetration import approach, slip_velocity
 from beltdyn.contact.point_force import point_force

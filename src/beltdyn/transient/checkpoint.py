@@ -25,7 +25,7 @@ from beltdyn.contact.normal import LAWS as NORMAL_LAWS
 from beltdyn.contact.surface import PolygonRims, RoundRims, ShapedRims, ToothedRims
 from beltdyn.elements import ELEMENTS, Section
 from beltdyn.errors import ModelError
-from beltdyn.kernel.cache import PACKAGE, source_hash
+from beltdyn.kernel.fingerprint import PACKAGE, source_hash
 from beltdyn.kernel.kinds import own_labels
 from beltdyn.machines.loads.shaft import ShaftLoads
 from beltdyn.machines.profiles.functions import Profiles

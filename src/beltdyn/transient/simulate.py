@@ -21,9 +21,8 @@ from beltdyn.solvers.progress import Report
 from beltdyn.solvers.standard import Name, StandardIntegrator
 from beltdyn.solvers.trajectory import Integrator, drive_task
 from beltdyn.state.steady import require_steady, steady_state
-from beltdyn.transient.beginning import Begin, begin_on, mesh_of, settled
+from beltdyn.transient.beginning import Begin, begin_on, mesh_of, settled, with_instant
 from beltdyn.transient.checkpoint import Keeper, checkpoint_file, read_checkpoint
-from beltdyn.transient.earlier_run import with_instant
 
 CHECKPOINT = 60.0
 """Computing time between two checkpoints of a run, s."""

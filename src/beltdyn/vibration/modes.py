@@ -17,8 +17,7 @@ from beltdyn.solvers.eigenvalues import LIGHT, MOST_SWINGING, lightly_damped, pe
 from beltdyn.solvers.progress import Report
 from beltdyn.state.linearized import SmallMotions, growing
 from beltdyn.state.steady import steady_state
-from beltdyn.transient.beginning import compile_solving_ahead
-from beltdyn.transient.earlier_run import instant_of
+from beltdyn.transient.beginning import compile_solving_ahead, instant_of
 from beltdyn.vibration.mode_shapes import Points, Shapes, Shares, belt_points, part_names, shapes_of, shares_of
 from beltdyn.vibration.small_motions import (
     about_instant,

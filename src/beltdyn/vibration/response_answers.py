@@ -29,8 +29,8 @@ from beltdyn.model import Drive, Prepared
 from beltdyn.parts.quantity import RPM
 from beltdyn.points.operating_points import Axes, labels_of
 from beltdyn.results import Run, Variable
+from beltdyn.results.belt_history import mid_span_displacements
 from beltdyn.results.mechanics import across
-from beltdyn.results.mid_span import mid_span_displacements
 from beltdyn.results.slip_safety import friction_used
 from beltdyn.state.linearized import SmallMotions
 from beltdyn.system.build import drive_system

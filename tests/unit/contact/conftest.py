@@ -7,7 +7,7 @@ import pytest
 from hypothesis import strategies as st
 
 from beltdyn.arrays import FloatArray
-from beltdyn.contact.bezier import fill_bernstein
+from beltdyn.contact.contact_zone import fill_bernstein
 from beltdyn.contact.friction import LAWS, FrictionParameters
 from beltdyn.contact.law import ContactLaw, PulleyState
 from beltdyn.contact.normal import NoPull

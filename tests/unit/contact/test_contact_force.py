@@ -7,7 +7,6 @@ import numpy as np
 import pytest
 
 from beltdyn.arrays import FloatArray
-from beltdyn.contact.bezier import Curve
 from beltdyn.contact.contact_force import (
     NO_CONTACT_TANGENT,
     ContactFactors,
@@ -15,6 +14,7 @@ from beltdyn.contact.contact_force import (
     contact_force,
     contact_workspace,
 )
+from beltdyn.contact.contact_zone import Curve
 from beltdyn.contact.friction import AirFilm, friction_force
 from beltdyn.contact.law import ContactLaw, PulleyState
 from beltdyn.contact.surface import Round

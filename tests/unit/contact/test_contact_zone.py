@@ -9,8 +9,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from beltdyn.arrays import FloatArray
-from beltdyn.contact.bezier import MAX_DEGREE, fill_bernstein
-from beltdyn.contact.contact_zone import out_of_reach, touching_intervals, zone_scratch
+from beltdyn.contact.contact_zone import MAX_DEGREE, fill_bernstein, out_of_reach, touching_intervals, zone_scratch
 from beltdyn.contact.law import PulleyState
 from beltdyn.contact.surface import Round
 

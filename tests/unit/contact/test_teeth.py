@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 
 from beltdyn.arrays import FloatArray
-from beltdyn.contact.bezier import Curve
 from beltdyn.contact.contact_force import ContactFactors, ContactTotals, contact_force, contact_workspace
+from beltdyn.contact.contact_zone import Curve
 from beltdyn.contact.friction import LAWS
 from beltdyn.contact.law import ContactLaw, PulleyState
 from beltdyn.contact.normal import NoPull

@@ -5,11 +5,10 @@ from collections.abc import Sequence
 import numpy as np
 import pytest
 
-from beltdyn.cosimulation.component import Component, ComponentState
-from beltdyn.cosimulation.interface import Interface, choose_inputs, choose_outputs
+from beltdyn.cosimulation.component import Component, ComponentState, Interface, choose_inputs, choose_outputs
 from beltdyn.errors import ConvergenceError, ModelError
 from beltdyn.model import Drive
-from beltdyn.results.balance import LOSSES, STORED
+from beltdyn.results.tension_balance import LOSSES, STORED
 from beltdyn.transient.simulator import Simulator
 
 SPEED, TORQUE = "pulley[driver].speed", "pulley[driven].torque"

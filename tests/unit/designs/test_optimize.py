@@ -6,10 +6,10 @@ from typing import Any
 import numpy as np
 import pytest
 
+from beltdyn.designs.batch import held, study_points
 from beltdyn.designs.designs import Designs, free_number
 from beltdyn.designs.goals import aims_of
 from beltdyn.designs.optimize import optimize
-from beltdyn.designs.watched import held, study_points
 from beltdyn.errors import ConvergenceError, ModelError
 from beltdyn.model import Drive, OptimizationStudy, dumps, loads
 from beltdyn.points.traction import traction

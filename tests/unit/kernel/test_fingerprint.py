@@ -20,8 +20,7 @@ from beltdyn.kernel import (
     kernel,
     kernel_cache,
 )
-from beltdyn.kernel.cache import ENTRY, NUMBA_FILES
-from beltdyn.kernel.fingerprint import SealedFolder, read_sealed, write_sealed
+from beltdyn.kernel.fingerprint import ENTRY, NUMBA_FILES, SealedFolder, read_sealed, write_sealed
 
 _KEPT = (kernel_cache, compiles_quickly, compiler._sealed_folder, compiler._say_once)
 _SAID = (fingerprint.warn_of_damage, fingerprint._warn_of_loss)

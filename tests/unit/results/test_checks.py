@@ -8,10 +8,10 @@ import pytest
 
 from beltdyn.model import Drive, loads
 from beltdyn.results import Run, summarize
-from beltdyn.results.balance import LOSSES
 from beltdyn.results.checks import CHECKS
 from beltdyn.results.checks.mesh import COARSE_SETTINGS, STEADY_LOSSES, STEADY_SLIPS, unresolved_by_mesh
 from beltdyn.results.checks.power import unbalanced_powers
+from beltdyn.results.tension_balance import LOSSES
 
 MakeRun = Callable[..., Run]
 TURN = 0.3

@@ -8,8 +8,8 @@ import pytest
 import beltdyn as bd
 from beltdyn.arrays import FloatArray
 from beltdyn.model.path import span_directions
-from beltdyn.results.checks.carrying import sagging_belt
 from beltdyn.results.checks.evidence import Evidence
+from beltdyn.results.checks.machines import sagging_belt
 from beltdyn.results.mechanics import pressing_at_arcs, tensions_at_arcs
 from beltdyn.results.slip_safety import friction_used, slip_safety_at_arcs
 

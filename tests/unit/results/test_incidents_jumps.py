@@ -8,7 +8,7 @@ import pytest
 
 from beltdyn.errors import ModelError
 from beltdyn.results import Jump, jumps
-from beltdyn.results.checks.teeth import jumped_teeth
+from beltdyn.results.checks.machines import jumped_teeth
 from beltdyn.results.incidents import JUMP, JUMPS, _jumps, jumps_in
 
 EVENTS = {

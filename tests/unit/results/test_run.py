@@ -11,10 +11,10 @@ import xarray as xr
 from beltdyn.errors import ModelError
 from beltdyn.model import Drive
 from beltdyn.results import FileRecorder, Layout, Run, open_run, summarize
-from beltdyn.results.balance import energy_put_in
 from beltdyn.results.checks import Evidence
 from beltdyn.results.checks.ending import NOTHING_RECORDED
-from beltdyn.results.checks.tensioners import stopped_tensioners
+from beltdyn.results.checks.machines import stopped_tensioners
+from beltdyn.results.tension_balance import energy_put_in
 
 MakeRun = Callable[..., Run]
 

@@ -16,11 +16,11 @@ from beltdyn.system.arrays import (
     System,
     TangentFactors,
 )
-from beltdyn.system.assembly import assemble, border_size
 from beltdyn.system.build import drive_system
 from beltdyn.system.motion import new_equations, no_multipliers
 from beltdyn.system.observe import observe
 from beltdyn.system.state import State, laid
+from beltdyn.system.steady_assembly import assemble, border_size
 
 Dense = Callable[[RingMatrix, bool], tuple[FloatArray, FloatArray]]
 

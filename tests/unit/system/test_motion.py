@@ -8,10 +8,10 @@ import pytest
 from beltdyn.model import Belt, Constant, Drive, Pulley
 from beltdyn.solvers.engine import accelerate
 from beltdyn.system.arrays import NO_TANGENT, Motion, System
-from beltdyn.system.assembly import assemble
 from beltdyn.system.build import belt_system
 from beltdyn.system.motion import new_equations, subtract_multipliers, subtract_solution
 from beltdyn.system.state import State, straight
+from beltdyn.system.steady_assembly import assemble
 
 TIME = 0.3
 

@@ -10,7 +10,7 @@ from beltdyn.cli.app import main
 from beltdyn.errors import ModelError
 from beltdyn.model import Drive, prepare
 from beltdyn.system.build_staying import staying_system
-from beltdyn.transient.earlier_run import instant_of
+from beltdyn.transient.beginning import instant_of
 from beltdyn.vibration.modes import modes
 from beltdyn.vibration.small_motions import state_of
 from validation.published.cases import better, loaded_two_pulley

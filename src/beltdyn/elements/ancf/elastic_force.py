@@ -11,8 +11,16 @@ from typing import NamedTuple
 import numpy as np
 
 from beltdyn.arrays import FloatArray
-from beltdyn.elements.ancf.cross_section import NodalShear, add_shear_curvature, nodal_shear, shear_gradient
-from beltdyn.elements.ancf.element import Ancf, Four, bends, slopes
+from beltdyn.elements.ancf.element import (
+    Ancf,
+    Four,
+    NodalShear,
+    add_shear_curvature,
+    bends,
+    nodal_shear,
+    shear_gradient,
+    slopes,
+)
 from beltdyn.elements.kind import Section
 from beltdyn.kernel import kernel
 from beltdyn.records import record

@@ -8,7 +8,6 @@ from dataclasses import replace
 
 from beltdyn.model import Prepared
 from beltdyn.parts.messages import Finding
-from beltdyn.results.checks.carrying import sagging_belt
 from beltdyn.results.checks.contact import (
     deep_penetration,
     large_strain,
@@ -20,6 +19,15 @@ from beltdyn.results.checks.contact import (
 from beltdyn.results.checks.creep import impossible_slip, regularized_slip, smoothed_friction
 from beltdyn.results.checks.ending import NOTHING_RECORDED, unfinished, unsettled
 from beltdyn.results.checks.evidence import Check, Evidence
+from beltdyn.results.checks.machines import (
+    jumped_teeth,
+    lifted_teeth,
+    overloaded_teeth,
+    sagging_belt,
+    stopped_tensioners,
+    unstable_control,
+    unstable_tensioners,
+)
 from beltdyn.results.checks.mesh import begun_by_means, mean_torques, off_steady_running, unresolved_by_mesh
 from beltdyn.results.checks.power import (
     artificial_losses,
@@ -31,8 +39,6 @@ from beltdyn.results.checks.power import (
     unbalanced_powers,
 )
 from beltdyn.results.checks.sliding import ended_by_slip, gross_slip, gross_slip_before, near_gross_slip
-from beltdyn.results.checks.teeth import jumped_teeth, lifted_teeth, overloaded_teeth
-from beltdyn.results.checks.tensioners import stopped_tensioners, unstable_control, unstable_tensioners
 from beltdyn.results.provenance import Resolution
 from beltdyn.results.schema import Recorded
 

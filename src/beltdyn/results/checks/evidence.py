@@ -9,11 +9,11 @@ import numpy as np
 from beltdyn.arrays import FloatArray
 from beltdyn.model import Prepared
 from beltdyn.parts.messages import Finding
-from beltdyn.results.balance import Balance, power_balance
 from beltdyn.results.cycles import Window, mean_window
 from beltdyn.results.means import PulleySummary, pulley_means, span_means
 from beltdyn.results.provenance import Resolution
 from beltdyn.results.schema import Recorded
+from beltdyn.results.tension_balance import Balance, power_balance
 
 IDLE = 0.01
 """Power input over tension times belt speed below which a drive idles."""

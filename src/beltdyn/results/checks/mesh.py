@@ -10,11 +10,11 @@ from beltdyn.machines.loads.load import Load
 from beltdyn.model import ERROR_LIMITS, Prepared, unresolved
 from beltdyn.model.resolution import PRESSURES
 from beltdyn.parts.messages import Finding, listing
-from beltdyn.results.balance import OF_TEETH, causes_of
 from beltdyn.results.checks.creep import LOSS_LIMIT
 from beltdyn.results.checks.evidence import Evidence
 from beltdyn.results.provenance import found_errors
 from beltdyn.results.schema import runs_steadily
+from beltdyn.results.tension_balance import OF_TEETH, causes_of
 
 
 def unresolved_by_mesh(evidence: Evidence) -> Iterator[Finding]:

@@ -7,9 +7,9 @@ from beltdyn.model import Prepared
 from beltdyn.model.defaults import DAMPING_RATIO
 from beltdyn.parts.messages import Finding, listing
 from beltdyn.parts.quantity import RPM
-from beltdyn.results.balance import OF_TEETH, Balance, largest_closure, largest_numerical_share
 from beltdyn.results.checks.evidence import Evidence, shorter_steps
 from beltdyn.results.schema import attribute
+from beltdyn.results.tension_balance import OF_TEETH, Balance, largest_closure, largest_numerical_share
 
 DAMPING_LIMIT = 0.01
 """Largest share of the power (`Evidence.power`) that contact damping may dissipate without a warning."""

@@ -21,7 +21,6 @@ from beltdyn.show.plot.designs import tolerances as tolerances
 from beltdyn.show.plot.drive import configuration as configuration
 from beltdyn.show.plot.drive import save_stretch as save_stretch
 from beltdyn.show.plot.drive import stretch as stretch
-from beltdyn.show.plot.figures import save_all as save_all
 from beltdyn.show.plot.history import energy as energy
 from beltdyn.show.plot.history import mid_spans as mid_spans
 from beltdyn.show.plot.history import span_tensions as span_tensions
@@ -45,6 +44,7 @@ from beltdyn.show.plot.registry import FIGURES as FIGURES
 from beltdyn.show.plot.registry import always as always
 from beltdyn.show.plot.registry import figure as figure
 from beltdyn.show.plot.registry import over_time as over_time
+from beltdyn.show.plot.registry import save_all as save_all
 from beltdyn.show.plot.study import parallel_coordinates as parallel_coordinates
 from beltdyn.show.plot.study import sobol_indices as sobol_indices
 from beltdyn.show.plot.study import study_contour as study_contour

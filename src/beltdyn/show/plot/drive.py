@@ -22,9 +22,8 @@ from beltdyn.model import Drive, Entry, Path, Pulley, prepare
 from beltdyn.model.carrier import Carrier
 from beltdyn.results import Result, Run, StaticResult
 from beltdyn.results.mechanics import centerline, element_lengths, recorded_kind
-from beltdyn.show.plot.figures import save
 from beltdyn.show.plot.headline import at_instant
-from beltdyn.show.plot.registry import Choice, always, figure
+from beltdyn.show.plot.registry import Choice, always, figure, save
 from beltdyn.show.plot.style import (
     COLORS,
     INK,

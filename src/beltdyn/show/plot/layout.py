@@ -30,7 +30,7 @@ from beltdyn.show.plot.drive import (
     size_of,
     write_pulley,
 )
-from beltdyn.show.plot.figures import save
+from beltdyn.show.plot.registry import save
 from beltdyn.show.plot.style import COLORS, INK, PALE, axes_or_new, color, new_figure, styled
 
 _BELT = COLORS[0]

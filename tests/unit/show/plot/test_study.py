@@ -13,8 +13,7 @@ from beltdyn.errors import ModelError
 from beltdyn.model import Drive, ParameterStudy
 from beltdyn.results import Result
 from beltdyn.show.plot import parallel_coordinates, sobol_indices, study_contour, study_lines, tornado
-from beltdyn.show.plot.figures import chosen_by_default
-from beltdyn.show.plot.registry import FIGURES, Choice
+from beltdyn.show.plot.registry import FIGURES, Choice, chosen_by_default
 
 WIDTH = {"path": "belt.width", "values": "10..20 mm", "steps": 3}
 RADIUS = {"path": "pulley[driven].radius", "values": "81..81.5 mm", "steps": 2}

@@ -9,7 +9,7 @@ from pathlib import Path
 import pytest
 
 from beltdyn.kernel import CACHE_VARIABLE, PLAIN_VARIABLE, compiles_quickly
-from beltdyn.kernel import cache as version
+from beltdyn.kernel import fingerprint as version
 
 _PROGRAM = """
 import sys, warnings

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from beltdyn.model import Drive, prepare
-from beltdyn.vibration.lumped import LumpedDrive, lumped_drive
+from beltdyn.vibration.peaks import LumpedDrive, lumped_drive
 
 TENSION = 400.0
 CREEP = 6e-4

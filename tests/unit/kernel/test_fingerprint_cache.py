@@ -83,7 +83,7 @@ def test_a_new_cache_begins_with_the_kernels_of_the_package(tmp_path: Path, monk
     (shipped / name).mkdir(parents=True)
     (shipped / name / "one.kernel").write_bytes(b"code")
     (shipped / "of other sources").mkdir()
-    monkeypatch.setattr("beltdyn.kernel.cache._SHIPPED", shipped)
+    monkeypatch.setattr("beltdyn.kernel.fingerprint._SHIPPED", shipped)
     monkeypatch.setenv(CACHE_VARIABLE, str(tmp_path / "cache"))
     assert [path.name for path in (tmp_path / "cache").rglob("*")] == []
     assert (kernel_cache() / "one.kernel").read_bytes() == b"code"

@@ -6,7 +6,7 @@ import pytest
 
 from beltdyn.errors import ModelError
 from beltdyn.model import Drive, DutyPoint, dumps, loads
-from beltdyn.model.duty import PASS, columns_of
+from beltdyn.model.study import PASS, columns_of
 
 IDLE: dict[str, Any] = {"share": "30 %", "speed": "900 rpm", "power": {"driven": "20 W"}}
 FULL: dict[str, Any] = {"share": 0.7, "load": 0.5, "temperature": "90 degC"}

@@ -5,7 +5,7 @@ from typing import Any
 
 import pytest
 
-from beltdyn.app.units import System, shown, unit_in, with_unit
+from beltdyn.app.forms import System, shown, unit_in, with_unit
 from beltdyn.parts.quantity import to_si
 
 

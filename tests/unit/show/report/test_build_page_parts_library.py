@@ -2,7 +2,7 @@
 
 import json
 
-from beltdyn.show.report.page_parts import embedded, library
+from beltdyn.show.report.build import embedded, library
 
 
 def test_the_library_is_one_script() -> None:

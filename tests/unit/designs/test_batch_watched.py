@@ -5,8 +5,8 @@ from typing import Any
 import numpy as np
 import pytest
 
+from beltdyn.designs.batch import OperatingPoint, clearance, distance_from_order
 from beltdyn.designs.found_state import Running
-from beltdyn.designs.watched import OperatingPoint, clearance, distance_from_order
 from beltdyn.model import Drive
 from beltdyn.model.study import Obstacle, Order
 from beltdyn.points.changed_drive import at_speed

@@ -2,7 +2,7 @@ import numpy as np
 import pytest
 
 from beltdyn.arrays import FloatArray
-from beltdyn.elements.ancf.cross_section import add_shear_curvature, nodal_shear, shear_gradient
+from beltdyn.elements.ancf.element import add_shear_curvature, nodal_shear, shear_gradient
 
 GRADIENTS = [(1.0, 0.0, 0.0, 1.0), (0.9, 0.3, -0.1, 1.2), (-0.4, 1.1, -0.9, -0.8), (0.2, -1.3, 0.7, 0.1)]
 

@@ -5,7 +5,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from beltdyn.designs.watched import held, speed_of, study_points
+from beltdyn.designs.batch import held, speed_of, study_points
 from beltdyn.errors import ModelError
 from beltdyn.model import Drive
 from beltdyn.model.study import Points

@@ -8,8 +8,7 @@ import pytest
 
 from beltdyn.model import example, install, loads, read_catalogue
 from beltdyn.model.advice import advise
-from beltdyn.model.tooth_rating import RatedTeeth, ToothRating
-from beltdyn.model.toothing import Toothing
+from beltdyn.model.toothing import RatedTeeth, Toothing, ToothRating
 
 RATING = ToothRating(counted_teeth=6.0, largest_speed=40.0, widths=(0.01, 0.02), source="by hand")
 TEETH = Toothing(pitch=0.01, tooth_stiffness=1e6, largest_tooth_load=50.0)

@@ -5,7 +5,7 @@ from pathlib import Path
 
 from beltdyn.results import Run, open_run
 from beltdyn.results.provenance import mesh_used
-from beltdyn.show.report.page_parts import differing_keys, origin
+from beltdyn.show.report.build import differing_keys, origin
 
 
 def test_the_origin_names_versions_hashes_and_settings(run: Run, tmp_path: Path) -> None:

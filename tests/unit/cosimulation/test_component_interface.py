@@ -5,7 +5,7 @@ from pathlib import Path
 
 import pytest
 
-from beltdyn.cosimulation.interface import Interface, choose_inputs, choose_outputs, inputs_of
+from beltdyn.cosimulation.component import Interface, choose_inputs, choose_outputs, inputs_of
 from beltdyn.errors import ModelError
 from beltdyn.model import Drive, loads
 from beltdyn.results import RECORDED

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from beltdyn.results.mid_span import fill_mid_spans
+from beltdyn.results.belt_history import fill_mid_spans
 
 LINES = np.array([[[[0.0, 0.0], [2.0, 0.0]], [[2.0, 1.0], [0.0, 1.0]]]])
 """A span to the right below, and one to the left above."""

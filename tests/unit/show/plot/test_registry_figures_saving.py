@@ -7,7 +7,7 @@ from matplotlib.figure import Figure
 
 from beltdyn.errors import ModelError
 from beltdyn.results.atomic import is_marked
-from beltdyn.show.plot.figures import save
+from beltdyn.show.plot.registry import save
 
 
 @pytest.mark.parametrize("suffix", [".png", ".svg", ".pdf"])

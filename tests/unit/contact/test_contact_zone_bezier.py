@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from beltdyn.arrays import FloatArray
-from beltdyn.contact.bezier import MAX_DEGREE, combine, fill_bernstein, fill_bernstein_rates, fill_shape_functions
+from beltdyn.contact.contact_zone import MAX_DEGREE, combine, fill_bernstein, fill_bernstein_rates, fill_shape_functions
 from beltdyn.elements.ancf.element import slopes
 from beltdyn.model import Belt
 from beltdyn.system.build import belt_system

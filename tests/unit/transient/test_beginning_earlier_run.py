@@ -12,7 +12,7 @@ from beltdyn.cli.app import main
 from beltdyn.errors import ModelError
 from beltdyn.model import Drive, dumps, load
 from beltdyn.results import Run
-from beltdyn.transient.earlier_run import with_instant
+from beltdyn.transient.beginning import with_instant
 from beltdyn.transient.simulate import simulate
 
 END, MIDDLE = 0.04, 0.02
