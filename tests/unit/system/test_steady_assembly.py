@@ -10,6 +10,7 @@ from beltdyn.kernel import interpreted
 from beltdyn.model import Drive, Path, prepare
 from beltdyn.model.resolution import Laid
 from beltdyn.state.newton import SteadyWork, steady_work
+from beltdyn.state.staying import laid_state
 from beltdyn.system.arrays import System
 from beltdyn.system.build import belt_system
 from beltdyn.system.build_staying import staying_system
@@ -18,7 +19,7 @@ from beltdyn.system.discretization import nodal_coordinates, point_coordinates
 from beltdyn.system.frame import staying
 from beltdyn.system.ring_matrix import entries, places
 from beltdyn.system.state import State, at_rest
-from beltdyn.system.steady_assembly import Anchor, anchor_at, assemble_steady, laid_state
+from beltdyn.system.steady_assembly import Anchor, anchor_at, assemble_steady
 
 SPEED = 3.0
 
