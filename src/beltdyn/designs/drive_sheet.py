@@ -123,6 +123,11 @@ def sheet(
     require_belt(drive, "a drive sheet", "`beltdyn steady-state` with --report")
     if drive.ends:
         raise ModelError("a drive sheet needs a closed belt. Use `beltdyn simulate` for a belt with ends.")
+    if drive.carries or drive.guides.any():
+        raise ModelError(
+            "a drive sheet knows neither supports and goods nor guides that stand still, whose friction sets the "
+            "tensions. Use `beltdyn steady-state`, `beltdyn modes` and `beltdyn tensioner-sheet`."
+        )
     columns = duty_of(drive, table)
     tell = progress or (lambda _: None)
     tell(Progress(0.0, 1.0, 0.0, 0, "equilibrium"))

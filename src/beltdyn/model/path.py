@@ -11,6 +11,7 @@ from numpy.typing import ArrayLike, NDArray
 from beltdyn.arrays import BoolArray, FloatArray, IntArray
 
 _ROUNDING = 1e-12  # rad: a turning angle this far below zero is zero
+_EQUAL = 1e-6  # difference of spans, relative, up to which they count as equally long
 
 
 @dataclass(frozen=True, eq=False)
@@ -177,8 +178,9 @@ class Path:
 
     @property
     def longest_span(self) -> int:
-        """Number of the longest span."""
-        return int(np.argmax(self.span_lengths))
+        """Number of the longest span: the first of them, also where rounding tells them apart."""
+        lengths = self.span_lengths
+        return int(np.argmax(lengths >= (1.0 - _EQUAL) * lengths.max()))
 
     def position(self, s: ArrayLike) -> FloatArray:
         """Points on the path.

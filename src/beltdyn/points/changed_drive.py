@@ -3,7 +3,7 @@
 from math import floor
 
 from beltdyn.errors import ModelError
-from beltdyn.machines import Constant
+from beltdyn.machines import Constant, Goods
 from beltdyn.machines.loads.load import Load
 from beltdyn.model import Drive, Pulley, prepare
 from beltdyn.state.staying import bring_to_stand
@@ -50,7 +50,7 @@ def at_speed(drive: Drive, number: int, speed: float) -> Drive:
 
 def at_speed_under(drive: Drive, number: int, speed: float, factor: float) -> Drive:
     """Multiply all torques and loads, as `with_load`, and prescribe the speed of a pulley, as `at_speed`."""
-    return drive.replace(pulley=_turned(drive, under_load(drive, factor), number, speed))
+    return drive.replace(pulley=_turned(drive, under_load(drive, factor), number, speed), goods=_under(drive, factor))
 
 
 def _turned(drive: Drive, pulleys: list[Pulley], number: int, speed: float) -> list[Pulley]:
@@ -94,13 +94,13 @@ def under_power(drive: Drive, number: int, power: float, pulleys: list[Pulley]) 
 
 
 def with_load(drive: Drive, factor: float) -> Drive:
-    """Multiply all torques and loads, but for those of motors.
+    """Multiply all torques and loads, but for those of motors, and the goods on the belt.
 
     A load times 1.3 is the load and another one with the schedule 0.3, as schedules reach up to 1.
     """
     if factor == 1.0:
         return drive
-    return drive.replace(pulley=under_load(drive, factor))
+    return drive.replace(pulley=under_load(drive, factor), goods=_under(drive, factor))
 
 
 def with_pulley(drive: Drive, number: int, pulley: Pulley) -> Drive:
@@ -118,6 +118,11 @@ def under_load(drive: Drive, factor: float) -> list[Pulley]:
     if factor == 1.0:
         return list(drive.pulleys)
     return [one.replace(torque=_scaled(one, factor), load=_multiplied(one.load, factor)) for one in drive.pulleys]
+
+
+def _under(drive: Drive, factor: float) -> list[Goods]:
+    """The goods with their mass multiplied."""
+    return [one.replace(mass_per_length=factor * one.mass_per_length) for one in drive.goods if factor > 0.0]
 
 
 def _scaled(pulley: Pulley, factor: float) -> Constant | None:

@@ -473,7 +473,7 @@ def operating_map(
         Its speeds: a range such as "700..6000 rpm", a list "700, 1500, 3000 rpm", or an array in rad/s; positive in
         its sense of rotation. By default those of the drive file.
     load
-        Factors on all torques and loads except motors: a range such as "0.2..1.2", a list, or an array.
+        Factors on all torques and loads except motors, and on goods: a range such as "0.2..1.2", a list, or an array.
     points
         Number of speeds of a range.
     load_points

@@ -147,7 +147,8 @@ def without_schedules(drive: Drive, at: float = _LATE) -> tuple[Drive, list[str]
         )
         for one in drive.pulleys
     ]
-    return drive.replace(pulley=pulleys), held
+    goods = [constant(one, f"goods[{number}]") for number, one in enumerate(drive.goods, 1)]
+    return drive.replace(pulley=pulleys, goods=goods), held
 
 
 def _held(part: Part, at: float) -> Mapping[str, Any]:

@@ -103,25 +103,28 @@ def belt_points(motions: SmallMotions) -> Points:
     system, quadrature = motions.system, gauss_points(_POINTS)
     starts = np.cumsum(system.length) - system.length
     along = (starts[:, None] + np.outer(system.length, quadrature.points)).ravel()
-    return _points_at(motions, along, np.outer(system.length, quadrature.weights).ravel())
-
-
-def even_points(motions: SmallMotions) -> Points:
-    """Points at equal distances along the belt, as many of any mesh, and at the same places of neighboring states."""
-    distance = float(motions.system.length.sum()) / _EVEN
-    return _points_at(motions, distance * (np.arange(_EVEN, dtype=float) + 0.5), np.full(_EVEN, distance))
-
-
-def _points_at(motions: SmallMotions, along: FloatArray, length: FloatArray) -> Points:
-    """Points of the belt, each representing a length of it, m."""
-    system = motions.system
     place, slope, _ = centreline_points(system, motions.state.position, along)
     deep = depths(system, motions.state, place)
     touched = np.where(deep.max(axis=0) >= 0.0, deep.argmax(axis=0), -1)
     last = np.maximum.accumulate(np.where(touched >= 0, np.arange(touched.size), -1))
     before = touched[touched >= 0][-1] if motions.prepared.path.ends is None else system.pulleys.size
     span = np.where(last >= 0, touched[last], before)
-    return Points(along, motions.drive.belt.mass_per_length * length, place, slope, span)
+    mass = motions.drive.belt.mass_per_length * np.outer(system.length, quadrature.weights).ravel()
+    return Points(along, mass, place, slope, span)
+
+
+def even_points(motions: SmallMotions) -> Points:
+    """Points at equal distances along the belt, as many of any mesh, and at the same places of neighboring states.
+
+    On a long belt none of them may lie on an arc, as Gauss points do.
+    """
+    system, fine = motions.system, belt_points(motions)
+    distance = float(system.length.sum()) / _EVEN
+    along = distance * (np.arange(_EVEN, dtype=float) + 0.5)
+    place, slope, _ = centreline_points(system, motions.state.position, along)
+    span = fine.span[np.maximum(np.searchsorted(fine.along, along, side="right") - 1, 0)]
+    mass = np.full(_EVEN, motions.drive.belt.mass_per_length * distance)
+    return Points(along, mass, place, slope, span)
 
 
 def shapes_of(motions: SmallMotions, points: Points, coordinates: ComplexArray) -> Shapes:

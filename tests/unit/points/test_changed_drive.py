@@ -5,7 +5,16 @@ import pytest
 import beltdyn as bd
 from beltdyn.errors import ModelError
 from beltdyn.model import Drive
-from beltdyn.points.changed_drive import at_speed, driver_of, held_at, sense_of, under_power, under_torque, with_load
+from beltdyn.points.changed_drive import (
+    at_instant,
+    at_speed,
+    driver_of,
+    held_at,
+    sense_of,
+    under_power,
+    under_torque,
+    with_load,
+)
 
 
 @pytest.fixture
@@ -94,3 +103,12 @@ def test_a_web_line_keeps_its_draws_at_another_speed(drive: Drive) -> None:
     )
     assert [one.driven_speed() for one in at_speed(line, 1, 20.02).pulleys] == pytest.approx([20.0, 20.02], rel=1e-12)
     assert at_speed(drive, 0, 20.0).pulleys[1] == drive.pulleys[1]
+
+
+def test_goods_are_loads_and_are_held_at_an_instant() -> None:
+    late = {"kind": "step", "time": 2.0, "value": 1.0}
+    drive = bd.example("package_conveyor")
+    drive = drive.replace(goods=[drive.goods[0].replace(schedule=late)])
+    assert [at_instant(drive, at).goods[0].schedule.at([9.0])[0] for at in (1.0, 3.0)] == [0.0, 1.0]  # type: ignore[union-attr]
+    assert with_load(drive, 0.5).goods[0].mass_per_length == 0.5 * drive.goods[0].mass_per_length
+    assert with_load(drive, 0.0).goods == ()

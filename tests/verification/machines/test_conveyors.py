@@ -95,6 +95,21 @@ def test_the_closed_form_at_rest_holds_goods_on_the_slope_by_the_driver(lift: fl
     assert along == pytest.approx(-mass * GRAVITY * lift / slope, rel=1e-6)
 
 
+def test_tensions_follow_the_height_of_a_drum() -> None:
+    """That of a meter of belt and goods in the middle of a strand, half as high; spans of drums alike are as long."""
+    names = [f"pulley[{one}].center[2]" for one in ("head", "tail")]
+    found = bd.sensitivity(conveyor(), of=["span_tension[tail-head]", "span_tension[head-tail]"], numbers=names)
+    for name, sign in zip(names, (1.0, -1.0), strict=True):
+        hand = sign * 0.5 * GRAVITY * np.array([BELT + 104.0, BELT])
+        np.testing.assert_allclose(found.dataset.derivative.sel(number=name), hand, rtol=0.01)
+
+
+def test_the_load_of_a_conveyor_is_that_of_its_goods() -> None:
+    found = bd.operating_map(conveyor(), load=[0.0, 1.0]).dataset
+    torques = found.shaft_torque.sel(pulley="head").values / RADIUS
+    np.testing.assert_allclose(torques, [main_resistance(LIFT, 0.0), main_resistance(LIFT, 104.0)], rtol=0.01)
+
+
 def drum_tensions(run: bd.Run) -> tuple[float, float]:
     """Tight and slack tension at the head drum, from the elements next to its arc, N."""
     seen = run.dataset.isel(field_time=-1)
@@ -207,6 +222,8 @@ def test_the_first_longitudinal_mode_is_that_of_two_rods_and_the_take_up() -> No
 
     expected = sorted((frequency(mass), frequency(inertia / RADIUS**2)))
     np.testing.assert_allclose(np.sort(found.frequency.values)[:2], expected, rtol=0.005)
+    over_speed = bd.campbell(drive, speed=[4.0, 8.0], count=2).dataset.frequency
+    np.testing.assert_allclose(over_speed[:, :2], [expected, expected], rtol=0.005)
 
 
 @pytest.mark.slow
