@@ -10,14 +10,14 @@ from beltdyn.model.carriage import free_stroke
 
 
 def printer_axis(run: Run) -> Iterator[Number]:
-    """The way of 2.5 turns of a stretched belt, and what guide and mass take."""
+    """The travel in 2.5 turns of a stretched belt, and the pulls of guide and mass."""
     dataset, belt, carriage = run.dataset, run.drive.belt, run.drive.carriage
     assert carriage is not None
     time, tension = dataset.time.values, dataset.span_tension.values
     stretch = belt.given_pitch / 2e-3 * (1.0 + tension[0, 2] / belt.axial_stiffness)
     there = int(np.argmin(np.abs(time - 0.49)))
     way = 1e3 * float(dataset.carriage_position.values[there, 0])
-    yield Number("way of 2.5 turns, mm", 100.0 * stretch, way, 0.02)
+    yield Number("travel in 2.5 turns, mm", 100.0 * stretch, way, 0.02)
     pull = tension[:, 2] - tension[:, 1]
     steady = (time > 0.2) & (time < 0.3)
     yield Number("pull at 300 mm/s, N", carriage.friction + 0.3 * carriage.damping, float(pull[steady].mean()), 0.05)
