@@ -367,6 +367,8 @@ def sheet(result: Result) -> Sheet:
             labels = [one for one in dataset.coords.values() if one.dims and set(one.dims) <= set(dims)]
             shown = [*(one.broadcast_like(columns[0]) for one in labels), *columns]
             tables += _tables(shown, dataset.get(dataset.attrs.get("tables_by")))
+    across = dataset.attrs.get("columns_by")
+    tables += [_table_across(one) for one in variables if across and one.dims == (*axes, across)]
     return Sheet(str(dataset.attrs["title"]), (*([Facts(tuple(numbers))] if numbers else []), *tables))
 
 
@@ -384,6 +386,16 @@ def _tables(shown: "Sequence[xr.DataArray]", group: "xr.DataArray | None") -> li
         )
         for word in dict.fromkeys(words)
     ]
+
+
+def _table_across(variable: "xr.DataArray") -> Table:
+    """A table of a variable along two dimensions: rows of the first, columns of the second."""
+    rows, columns = (variable.coords[dimension] for dimension in variable.dims)
+    name, (unit, _) = _FIRST_PART.split(str(variable.attrs["long_name"]))[0], shown_unit(variable)
+    words = [f"{_heading(columns)} {one}" for one in _column(columns)]
+    cells = [_column(variable[:, number]) for number in range(columns.size)]
+    title = f"{name}, {unit}" if unit else name
+    return Table(title, (_heading(rows), *words), tuple(zip(_column(rows), *cells, strict=True)))
 
 
 def _single(variable: "xr.DataArray") -> str:

@@ -26,8 +26,8 @@ _PLACE = ("place",)
 _EACH = ("place", "mode")
 _VARIABLES = {
     "stiffness": Variable(_PLACE, "N/m", "Stiffness at the carriage, driver held"),
-    "frequency": Variable(_PLACE, "Hz", "Natural frequency of the carriage on its belt"),
-    "carriage_share": Variable(_PLACE, "1", "Share of the carriage in the kinetic energy of that mode"),
+    "frequency": Variable(_PLACE, "Hz", "Natural frequency of the carriage, on its belt"),
+    "carriage_share": Variable(_PLACE, "1", "Share of the carriage, in the kinetic energy of that mode"),
     "lowest_frequency": Variable(_PLACE, "Hz", "Lowest natural frequency, spans among them"),
     "tension": Variable(_PLACE, "N", "Tension at rest"),
     "mode_frequency": Variable(_EACH, "Hz", "Natural frequencies, from the lowest on"),
@@ -97,7 +97,7 @@ def stroke(
             progress(Progress(float(number), float(ways.size), 0.0, number, "equilibrium"))
         rows.append(_at(rest_of(prepare(_moved(first, way)), None), count))
     columns = {name: np.array([row[name] for row in rows]) for name in _VARIABLES}
-    axis = Variable(_PLACE, "m", "Way of the carriage from its center")
+    axis = Variable(_PLACE, "m", "Way of the carriage, from its center")
     values: dict[str, Any] = {name: (one, columns[name]) for name, one in _VARIABLES.items()}
     tensions = columns["tension"]
     doubts = []
@@ -109,7 +109,7 @@ def stroke(
     numbers = np.arange(1, columns["mode_frequency"].shape[1] + 1)
     modes = Variable(("mode",), "1", "Mode", "int64")
     result = build_result("stroke", drive, values, {"place": (axis, ways), "mode": (modes, numbers)}, doubts)
-    result.dataset.attrs["axes"] = "place"
+    result.dataset.attrs.update(axes="place", columns_by="mode")
     return result
 
 

@@ -26,3 +26,35 @@ def test_numbers_are_facts_and_names_make_tables(drive: Drive) -> None:
         Facts((("Mean tension", "45.000 N"),)),
         Table("", ("Pulley", "Wrap angle\n°"), (("a", "180.00"), ("b", "90.00"))),
     )
+
+
+def test_modes_are_columns_over_the_places(drive: Drive) -> None:
+    dataset = xr.Dataset(
+        {
+            "mode_frequency": (
+                ("place", "mode"),
+                [[10.0, 62.5], [12.25, 60.0]],
+                {"units": "Hz", "long_name": "Natural frequencies, from the lowest on"},
+            ),
+            "mode_part": (
+                ("place", "mode"),
+                [["belt", "carriage"], ["carriage", "belt"]],
+                {"units": "1", "long_name": "Part"},
+            ),
+        },
+        {
+            "place": ("place", [-0.1, 0.1], {"units": "m", "long_name": "Way"}),
+            "mode": ("mode", [1, 2], {"units": "1", "long_name": "Mode"}),
+        },
+        {"kind": "stroke", "title": "Linear axis over its stroke", "axes": "place", "columns_by": "mode"},
+    )
+    assert sheet(Result(dataset, drive)).parts == (
+        Table(
+            "Natural frequencies, Hz",
+            ("Way\nm", "Mode 1", "Mode 2"),
+            (("-0.10000", "10.000", "62.500"), ("0.10000", "12.250", "60.000")),
+        ),
+        Table(
+            "Part", ("Way\nm", "Mode 1", "Mode 2"), (("-0.10000", "belt", "carriage"), ("0.10000", "carriage", "belt"))
+        ),
+    )
