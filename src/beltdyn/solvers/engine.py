@@ -64,14 +64,14 @@ def dispatch(
     request
         What to do.
     settings, state, steps
-        As for `alpha_advance.advance`.
+        As for `alpha_step.advance`.
     equations
         Arrays to work in.
 
     Returns
     -------
     status, filled : int
-        Those of `alpha_advance.advance`; of others 1, or 0 where the tangent is singular, and 0.
+        Those of `alpha_step.advance`; of others 1, or 0 where the tangent is singular, and 0.
     """
     kind, trial = request.kind, state.trial
     if kind == ADVANCE:
@@ -100,7 +100,7 @@ def advance(
     budget: int,
     steps: Steps,
 ) -> tuple[int, int]:
-    """Integrate; see `alpha_advance.advance`."""
+    """Integrate; see `alpha_step.advance`."""
     return dispatch(system, Request(ADVANCE, stop, budget), settings, state, equations, steps)
 
 

@@ -186,7 +186,7 @@ def flowing_element(
     frame
         That of the system.
     system, motion, factors
-        As for `assembly.assemble`.
+        As for `steady_assembly.assemble`.
     element
         Which one; position, velocity of its material points and second derivative over time of its coordinates are in
         the workspace, and residual and tangent are those of its elasticity.

@@ -106,7 +106,7 @@ def test_an_edited_law_acts_at_once_in_kernels_that_inline_it(tmp_path: Path) ->
         return float(subprocess.run(command, env=environment, capture_output=True, text=True, check=True).stdout)
 
     assert force() == force() == 1e4
-    law = copy / "contact" / "normal" / "no_pull.py"
+    law = copy / "contact" / "normal" / "penalty.py"
     text = law.read_text(encoding="utf-8")
     law.write_text(text.replace("law.stiffness * penetration", "3.0 * law.stiffness * penetration"), encoding="utf-8")
     assert force() == 3e4

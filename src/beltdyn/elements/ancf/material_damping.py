@@ -110,7 +110,7 @@ def damping_force(
 
 @kernel(inline=True)
 def _first(a: int) -> int:
-    """First coordinate of the centerline's vector a, in the order of `shape_functions`."""
+    """First coordinate of the centerline's vector a, in the order of `element`."""
     return 6 * (a // 2) + 2 * (a % 2)
 
 
