@@ -44,7 +44,7 @@ def test_a_chain_has_its_frequencies(count: int) -> None:
 
 
 def test_bands_leave_out_nothing() -> None:
-    given = pencil(*chain(200, damping=30.0, turning=120.0), none(200))
+    given = pencil(*chain(120, damping=30.0, turning=120.0), none(120))
     expected = all_eigenvalues(given)[0]
     expected = np.sort_complex(1j * expected[swings(expected)].conj())[:40]
     found = swinging(given, 40)[0]
@@ -124,6 +124,6 @@ def test_which_modes_are_given_is_a_rule(batch: int, count: int, monkeypatch: py
 
 def test_a_search_that_begins_elsewhere_gives_the_same_modes() -> None:
     given = pencil(*oscillators(120)[0], none(120))
-    lists = [swinging(given, 20, first, counted=lightly_damped)[0] for first in (3.0, 10.0, 200.0)]
+    lists = [swinging(given, 20, first, counted=lightly_damped)[0] for first in (3.0, 200.0)]
     for other in lists[1:]:
         np.testing.assert_allclose(other, lists[0], rtol=1e-6)

@@ -204,7 +204,7 @@ def test_a_drive_of_given_length_is_left_alone() -> None:
     assert bring_to_rest(drive).drive == drive
 
 
-@pytest.mark.parametrize("elements", [12, 20, 40, 80, 200])
+@pytest.mark.parametrize("elements", [12, 80, pytest.param(200, marks=pytest.mark.slow)])
 def test_an_equilibrium_that_leaves_a_pulley_is_none(elements: int) -> None:
     """On 5 mm the belt would sink in by 6 mm: forces are in balance of a belt that touches nothing, too."""
     belt = LAYOUT_BELT | {"thickness": 0.01, "width": 0.01, "bending_factor": 0.01, "elements": elements}
@@ -228,8 +228,8 @@ def test_a_belt_as_long_as_its_path_has_a_tension(bending: float, mass: float, c
     assert bring_to_rest(reached).tension == pytest.approx(1.01 * least, rel=ASKED)
 
 
-@pytest.mark.parametrize("stiffness", [1e8, 1e10, 1e11])
-@pytest.mark.parametrize("elements", [9, 12, 20])
+@pytest.mark.parametrize("stiffness", [1e8, 1e11])
+@pytest.mark.parametrize("elements", [9, 20])
 def test_spans_of_coarse_meshes_have_a_tension(elements: int, stiffness: float) -> None:
     """Hard pulleys are touched between the points of contact alone, which left spans without a tension (nan)."""
     belt = LAYOUT_BELT | {"thickness": 0.01, "width": 0.01, "bending_factor": 0.01, "elements": elements}

@@ -20,6 +20,7 @@ def test_the_error_of_the_carriage_is_drawn_in_micrometers() -> None:
         bd.plot.carriage_error(Run(run.dataset.drop_vars("carriage_error"), run.drive))
 
 
+@pytest.mark.slow
 def test_stiffness_and_frequency_are_drawn_over_the_stroke() -> None:
     found = bd.stroke(bd.example("printer_axis"), places="-50, 50 mm")
     ax = bd.plot.stroke(found)
