@@ -23,6 +23,8 @@ class Carrier:
     """The tensioner."""
     row: np.record
     """Its row of `beltdyn.machines.tensioners.registry.TENSIONER_ROWS`, without weight."""
+    presses: bool = False
+    """Whether it presses the roller of a nip, in place of tensioning the belt; it rests at its place zero."""
 
     @property
     def constants(self) -> np.record:
@@ -46,8 +48,8 @@ def carriers_of(tensioners: Sequence[Tensioner], names: Sequence[str], path: Pat
     for tensioner in tensioners:
         if isinstance(tensioner, MovingTensioner):
             pulley = names.index(tensioner.pulley)
-            row = tensioner_row(tensioner, pulley, path.centers[pulley], path.gradient(pulley))
-            carriers.append(Carrier(pulley, tensioner, row))
+            row = tensioner_row(tensioner, pulley, path.centers[pulley], path.yielding(pulley))
+            carriers.append(Carrier(pulley, tensioner, row, pulley in path.beside))
     return carriers
 
 
@@ -77,7 +79,7 @@ def check_tensioners(tensioners: Sequence[Tensioner], pulleys: Sequence[Pulley],
         if isinstance(item, MovingTensioner):
             number = names.index(name)
             center = path.centers[number]
-            item.leverage(center, path.gradient(number))
+            item.leverage(center, path.yielding(number))
             if item.moved_inertia(center, pulleys[number].mass) == 0:
                 raise ValueError(
                     f'the tensioner of "{name}" has no moving mass. Give the mass of the pulley, or that of '

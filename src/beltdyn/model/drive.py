@@ -285,11 +285,14 @@ class Drive(Part):
             )
         carried = {one.pulley for one in self.tensioners}
         for number, nip in enumerate(self.nips, 1):
-            moved = next((name for name in (nip.roller, nip.pulley) if name in carried), None)
-            if moved is not None:
+            if nip.pulley in carried:
                 raise ValueError(
-                    f'nip[{number}]: a tensioner carries "{moved}", but pulleys of a nip have fixed centers. Remove '
-                    "the tensioner, or give force or gap"
+                    f'nip[{number}]: a tensioner carries "{nip.pulley}", but the pulley of a nip has a fixed center. '
+                    "Carry the roller, or remove the tensioner"
+                )
+            if nip.roller in carried and (nip.force is not None or nip.gap is not None):
+                raise ValueError(
+                    f'nip[{number}]: a tensioner carries "{nip.roller}", whose preload presses it. Omit force and gap'
                 )
         return self
 

@@ -13,7 +13,7 @@ from beltdyn.model.carrier import carriers_of, check_sensors, check_tensioners
 from beltdyn.model.contact import Contact
 from beltdyn.model.defaults import Choice, choose_stiffness, stiffness_for_tension
 from beltdyn.model.end import PathEnd, pulling
-from beltdyn.model.nip import Nip, check_nips, placed
+from beltdyn.model.nip import Nip, check_nips, placed, tensioning
 from beltdyn.model.path import Path
 from beltdyn.model.pulley import Pulley
 from beltdyn.model.routing import lay_path
@@ -60,7 +60,12 @@ class Given(NamedTuple):
     @property
     def has_springs(self) -> bool:
         """Whether a spring-loaded tensioner moves a pulley."""
-        return any(isinstance(tensioner, MovingTensioner) for tensioner in self.tensioners)
+        return bool(self.springs)
+
+    @property
+    def springs(self) -> list[MovingTensioner]:
+        """The spring-loaded tensioners that tension the belt: those that do not press the rollers of nips."""
+        return tensioning(self.tensioners, self.nips)
 
     @property
     def pulleys_in_place(self) -> tuple[Pulley, ...]:
@@ -74,7 +79,7 @@ class Given(NamedTuple):
     def pressed(self, pulleys: tuple[Pulley, ...], stiffness: float) -> tuple[Pulley, ...]:
         """Pulleys with the rollers of nips in place, on contact of a stiffness, N/m^2."""
         check_nips(self.nips, pulleys, self.belt)
-        return placed(self.nips, pulleys, self.belt, stiffness)
+        return placed(self.nips, pulleys, self.belt, stiffness, self.tensioners)
 
 
 class Layout(NamedTuple):
@@ -135,7 +140,7 @@ def _require_length(given: Given) -> str | None:
             "belt.length is missing. Give the unstretched length, nominal_length or installed_tension, or a "
             "spring-loaded tensioner of a closed belt, whose nominal position then gives the length"
         )
-    return next(one.pulley for one in given.tensioners if isinstance(one, MovingTensioner))
+    return given.springs[0].pulley
 
 
 def _nominal_tension(given: Given, path: Path) -> float:

@@ -9,6 +9,8 @@ from pydantic import Field, model_validator
 
 from beltdyn.arrays import FloatArray
 from beltdyn.errors import ModelError
+from beltdyn.machines.tensioners.sliding import SlidingTensioner
+from beltdyn.machines.tensioners.tensioner import MovingTensioner, Tensioner
 from beltdyn.model.belt import Belt
 from beltdyn.model.contact import Contact
 from beltdyn.model.path import Path
@@ -34,8 +36,8 @@ _ROUNDING = 1e-9
 class Nip(Part):
     """A roller beside the path of the belt that presses it against a pulley, by a force or to a gap.
 
-    The center of the roller tells the direction in which it presses; its distance follows from `force` or `gap`. With
-    neither of them, the roller stays where its center is.
+    The center of the roller tells the direction in which it presses; its distance follows from `force`, `gap`, or the
+    preload of a tensioner that carries it. Without them, the roller stays where its center is.
 
     Examples
     --------
@@ -109,14 +111,50 @@ def refuse_nips(nips: Sequence[Nip], what: str) -> None:
         )
 
 
-def refuse_forces(nips: Sequence[Nip]) -> None:
-    """Make sure that the rollers of nips have their places in a run over time."""
-    for number, nip in enumerate(nips, 1):
+def on_slides(nips: Sequence[Nip], pulleys: Sequence[Pulley]) -> tuple[tuple[Nip, ...], list[SlidingTensioner]]:
+    """Nips without forces, and slides that press their rollers with these: in a run over time they move."""
+    free, slides = list[Nip](), list[SlidingTensioner]()
+    for number, (nip, (one, other)) in enumerate(zip(nips, numbered(nips, pulleys), strict=True), 1):
         if nip.force is not None:
-            raise ModelError(
-                f"nip[{number}].force = {nip.force:.4g} N is that of steady running; a run over time holds the roller "
-                f'"{nip.roller}" in place. Give gap instead, which `beltdyn.derived.nips` has of steady running.'
-            )
+            if pulleys[one].mass == 0.0:
+                raise ModelError(
+                    f"nip[{number}].force = {nip.force:.4g} N moves the roller in a run over time, but it has no mass. "
+                    f'Give mass for the pulley "{nip.roller}", or gap, which `beltdyn.derived.nips` has of steady '
+                    "running."
+                )
+            way = np.subtract(pulleys[other].center, pulleys[one].center).tolist()
+            slides.append(SlidingTensioner(kind="sliding", pulley=nip.roller, direction=way, preload=nip.force))
+        free.append(nip.replace(force=None))
+    return tuple(free), slides
+
+
+def tensioning(tensioners: Sequence[Tensioner], nips: Sequence[Nip]) -> list[MovingTensioner]:
+    """Spring-loaded tensioners but those that press the rollers of nips."""
+    rollers = [nip.roller for nip in nips]
+    return [one for one in tensioners if isinstance(one, MovingTensioner) and one.pulley not in rollers]
+
+
+def _force(nip: Nip, roller: Pulley, pulley: Pulley, tensioners: Sequence[Tensioner]) -> float | None:
+    """Force of a nip, or that of the preload of what carries its roller, N."""
+    carrier = next((one for one in tensioners if isinstance(one, MovingTensioner) and one.pulley == nip.roller), None)
+    if carrier is None:
+        return nip.force
+    center, way = np.array(roller.center), np.subtract(pulley.center, roller.center)
+    arm = 1.0 if not carrier.turns else carrier.reach(center)
+    try:
+        lever = abs(carrier.leverage(center, way / np.hypot(*way)))
+    except ValueError:
+        raise ValueError(
+            f'the tensioner of "{nip.roller}" does not press it against "{nip.pulley}". Turn its direction, or move '
+            "its pivot"
+        ) from None
+    found = carrier.preload / (arm * lever)
+    if not found > 0.0:
+        raise ValueError(
+            f'the tensioner of "{nip.roller}" has preload = {carrier.preload:.4g}, but it is to press the roller of a '
+            "nip. Give a positive one"
+        )
+    return float(found)
 
 
 def numbered(nips: Sequence[Nip], pulleys: Sequence[Pulley]) -> tuple[tuple[int, int], ...]:
@@ -130,23 +168,20 @@ def touching_distance(roller: Pulley, pulley: Pulley, belt: Belt) -> float:
     return roller.radius + pulley.radius + belt.pitch_offset + belt.back_offset
 
 
-def placed(nips: Sequence[Nip], pulleys: tuple[Pulley, ...], belt: Belt, stiffness: float) -> tuple[Pulley, ...]:
-    """Pulleys with the rollers of nips where gap or force put them.
+def placed(
+    nips: Sequence[Nip],
+    pulleys: tuple[Pulley, ...],
+    belt: Belt,
+    stiffness: float,
+    tensioners: Sequence[Tensioner] = (),
+) -> tuple[Pulley, ...]:
+    """Pulleys with the rollers of nips where gap, force, or the preload of what carries them put them.
 
     `stiffness` is that of contact, N/m^2; infinity places rollers that press by a force where they touch.
     """
     found = list(pulleys)
     for nip, (one, other) in zip(nips, numbered(nips, pulleys), strict=True):
         roller, pulley = pulleys[one], pulleys[other]
-        if nip.gap is not None:
-            depth = belt.thickness - nip.gap
-        elif nip.force is not None:
-            depth = 0.0
-            if np.isfinite(stiffness):
-                depth = Pair.of(roller, pulley, belt, stiffness).indentation_of(nip.force)
-        else:
-            continue
-        apart = touching_distance(roller, pulley, belt) - depth
         x, y = np.subtract(roller.center, pulley.center).tolist()
         size = hypot(x, y)
         if size == 0.0:
@@ -154,6 +189,16 @@ def placed(nips: Sequence[Nip], pulleys: tuple[Pulley, ...], belt: Belt, stiffne
                 f'"{roller.name}" has the center of "{pulley.name}", so that the direction in which it presses is '
                 "unknown. Move it to the side at which it presses"
             )
+        load = _force(nip, roller, pulley, tensioners)
+        if nip.gap is not None:
+            depth = belt.thickness - nip.gap
+        elif load is not None:
+            depth = 0.0
+            if np.isfinite(stiffness):
+                depth = Pair.of(roller, pulley, belt, stiffness).indentation_of(load)
+        else:
+            continue
+        apart = touching_distance(roller, pulley, belt) - depth
         center = pulley.center[0] + apart * x / size, pulley.center[1] + apart * y / size
         found[one] = roller.replace(center=center)
     return tuple(found)

@@ -77,6 +77,17 @@ class Path:
         """Pairs of the nips in the order of their rollers, which is that of results."""
         return sorted(self.nips)
 
+    def yielding(self, pulley: int) -> FloatArray:
+        """Direction in which a tensioner pushes a pulley, shape (2,): the gradient of the length of the path.
+
+        The roller of a nip, of which that length is independent, is pushed towards its pulley.
+        """
+        against = dict(self.nips).get(pulley)
+        if against is None:
+            return self.gradient(pulley)
+        way = self.centers[against] - self.centers[pulley]
+        return np.asarray(way / np.hypot(*way))
+
     @cached_property
     def indentations(self) -> FloatArray:
         """By how much each roller of a nip and its pulley overlap with the belt between them, m, shape (nips,)."""

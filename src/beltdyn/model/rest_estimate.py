@@ -156,7 +156,7 @@ class _Belt:
         """Force of each spring and its stops over that of the belt, N or N m; see `balance_tensioners`."""
         loads = self.hub_loads
         excess = [
-            one.force(q) + float(loads[one.pulley] @ one.place(q)[1])
+            q if one.presses else one.force(q) + float(loads[one.pulley] @ one.place(q)[1])
             for one, q in zip(self.prepared.carriers, self.positions.tolist(), strict=True)
         ]
         return np.array(excess)

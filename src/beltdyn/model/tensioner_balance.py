@@ -142,7 +142,11 @@ def _balanced(layout: _Layout) -> tuple[StaticEstimate, FloatArray]:
     """Places of the tensioners of a layout; see `balance_tensioners`."""
     path, belt, contact, carriers = layout
     positions = np.zeros(len(carriers))
-    situations = [_Situation(path, belt, contact, carriers, positions, number) for number in range(len(carriers))]
+    situations = [
+        _Situation(path, belt, contact, carriers, positions, number)
+        for number, one in enumerate(carriers)
+        if not one.presses
+    ]
     for situation in situations:
         positions[situation.number] = _preferred(situation)
     for _ in range(_MOST_ROUNDS if situations[1:] else 0):
@@ -182,7 +186,9 @@ def held_belt(
 
 
 def _described(situation: _Situation) -> tuple[TensionerBalance, ...]:
-    """All balances of a tensioner."""
+    """All balances of a tensioner; none of one that presses the roller of a nip."""
+    if situation.carrier.presses:
+        return ()
     found = sorted(_balances(situation, 0.0))
     here = min(found, key=lambda q: abs(q - situation.positions[situation.number]), default=None)
     return tuple(TensionerBalance(q, situation.is_stable(q), q == here) for q in found)

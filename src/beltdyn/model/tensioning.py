@@ -43,7 +43,7 @@ def tension_checks(
     """
     if not installation.span_tensions.min() > 0.0:
         return ()
-    held = bool(drive.moving_tensioners) or any(not end.held for end in drive.ends)
+    held = bool(drive.layout.given.springs) or any(not end.held for end in drive.ends)
     scale = 1.0 if specified is None else specified / installation.tension
     return tuple(
         _check(drive, installation, state, scale * factor, held) for state, factor in (HELD if held else STATES).items()

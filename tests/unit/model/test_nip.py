@@ -7,7 +7,7 @@ import pytest
 
 import beltdyn as bd
 from beltdyn.errors import ModelError
-from beltdyn.model.nip import damping_ratios, foundations, rim_ratios, side_stiffness
+from beltdyn.model.nip import damping_ratios, foundations, on_slides, rim_ratios, side_stiffness
 from beltdyn.theory.nip import equivalent_radius, force, half_width, rolling_loss, series
 
 COVER = {"thickness": "10 mm", "youngs_modulus": "4 MPa", "poissons_ratio": 0.45}
@@ -15,6 +15,9 @@ DRUM = {"name": "drum", "center": [0.0, 0.0], "radius": 0.15, "speed": 6.6}
 TAIL = {"name": "tail", "center": [1.2, 0.0], "radius": 0.1, "inertia": 0.2, "torque": -30.0}
 PRESS = {"name": "press", "center": [-0.3, 0.0], "radius": 0.08, "side": "outside", "inertia": 0.05, "cover": COVER}
 NIP = {"roller": "press", "pulley": "drum", "force": "2 kN"}
+SLIDE = {"kind": "sliding", "pulley": "press", "direction": [1, 0], "preload": "2 kN", "rate": 1e5, "mass": 3.0}
+ARM = {"kind": "rotary", "pulley": "press", "pivot": [-0.3, 0.25], "preload": 500.0, "inertia": 0.1}
+OWN = {"roller": "press", "pulley": "drum"}
 
 
 def pressed(**changes: Any) -> bd.Drive:
@@ -136,6 +139,9 @@ def test_only_covered_rollers_are_softer() -> None:
             r"cover.poissons_ratio = 0.5 must be less than 0.5",
         ),
         ({"tensioner": [{"kind": "fixed", "pulley": "drum", "direction": [-1, 0]}]}, 'a tensioner carries "drum"'),
+        ({"tensioner": [SLIDE]}, 'carries "press", whose preload presses it. Omit force'),
+        ({"nip": [OWN], "tensioner": [SLIDE | {"direction": [-1, 0]}]}, 'does not press it against "drum"'),
+        ({"nip": [OWN], "tensioner": [SLIDE | {"preload": -5.0}]}, "preload = -5, but it is to press"),
     ],
 )
 def test_it_says_what_is_wrong(changes: dict[str, Any], words: str) -> None:
@@ -143,9 +149,27 @@ def test_it_says_what_is_wrong(changes: dict[str, Any], words: str) -> None:
         pressed(**changes)
 
 
-def test_a_run_over_time_needs_the_place_of_the_roller() -> None:
-    with pytest.raises(ModelError, match=r"nip\[1\].force = 2000 N is that of steady running.*Give gap"):
+def test_a_run_over_time_needs_the_mass_of_a_roller_that_a_force_moves() -> None:
+    with pytest.raises(ModelError, match=r"nip\[1\].force = 2000 N moves the roller.*no mass. Give mass"):
         bd.simulate(pressed())
+
+
+@pytest.mark.parametrize("carrier", [SLIDE, ARM])
+def test_what_carries_a_roller_presses_it_with_its_preload(carrier: dict[str, Any]) -> None:
+    """A slide with 2 kN, and an arm of 0.25 m with 500 N m, put it where a force of 2 kN does."""
+    carried = bd.model.prepare(pressed(nip=[OWN], tensioner=[carrier]))
+    by_force = bd.model.prepare(pressed())
+    np.testing.assert_allclose(carried.pulleys[2].center, by_force.pulleys[2].center, atol=1e-12)
+    assert carried.installation.tensioner_positions.tolist() == [0.0]
+    assert carried.installation.tension == pytest.approx(by_force.installation.tension)
+    assert bd.model.tensioner_balances(carried.drive, carried.installation) == ((),)
+
+
+def test_rollers_slide_under_their_forces_in_a_run() -> None:
+    heavy = pressed(pulley=[DRUM, TAIL, PRESS | {"mass": 5.0}])
+    nips, (slide,) = on_slides(heavy.nips, heavy.pulleys)
+    assert nips[0].force is None
+    assert (slide.pulley, slide.direction, slide.preload) == ("press", (1.0, 0.0), 2000.0)
 
 
 def test_lumped_models_know_no_nips() -> None:

@@ -197,12 +197,33 @@ def test_a_web_is_pressed_between_unwinder_and_winder() -> None:
 
 
 @pytest.mark.slow
-def test_a_run_over_time_keeps_the_nip_of_steady_running(idle: bd.Run) -> None:
-    """With the gap that was found for a force, a run from steady running stays there."""
-    gap = float(bd.derived.nips(idle).gap[0])
-    held = drive(**{"nip[1].force": None, "nip[1].gap": gap, "simulation.start": "steady", "simulation.duration": 0.01})
+@pytest.mark.parametrize("by", ["gap", "force"])
+def test_a_run_over_time_keeps_the_nip_of_steady_running(idle: bd.Run, by: str) -> None:
+    """With the gap that was found for a force, or on a slide with that force, a run from steady running stays there."""
+    loading = {"nip[1].force": None, "nip[1].gap": float(bd.derived.nips(idle).gap[0])}
+    if by == "force":
+        loading = {"pulley[press].mass": 5.0}
+    held = drive(**{**loading, "simulation.start": "steady", "simulation.duration": 0.01})
     run = bd.simulate(held)
     one, two = bd.derived.nips(idle).isel(nip=0), bd.derived.nips(run).isel(nip=0)
     assert float(two.force) == pytest.approx(500.0, rel=1e-3)
     assert float(two.width) == pytest.approx(float(one.width), rel=0.01)
     assert abs(float(run.dataset.energy_closure[-1])) < 1e-4
+
+
+@pytest.mark.slow
+def test_a_roller_on_a_spring_swings_on_its_nip() -> None:
+    """The force is the preload less what the spring loses; f = sqrt((dF/dd + rate) / m) / 2 pi, dF/dd = 2 K a."""
+    mass, rate = 100.0, 2e4
+    spring = {"preload": 500.0, "rate": rate, "damping": 300.0}
+    slide = {"kind": "sliding", "pulley": "press", "direction": [1, 0], **spring}
+    carried = drive(**{"nip[1].force": None, "tensioner": [slide], "pulley[press].mass": mass})
+    run = bd.steady_state(carried)
+    nip, (stiffness, radius) = bd.derived.nips(run).isel(nip=0), _foundation(run)
+    way = float(run.dataset.tensioner_position[-1, 0])
+    assert float(nip.force) == pytest.approx(500.0 - rate * way, rel=1e-6)
+    found = bd.modes(run, count=10).dataset
+    own = found.isel(mode=int(np.argmax(found.tensioner_share.values)))
+    grows = 2.0 * stiffness * half_width(float(nip.indentation), radius)
+    assert float(own.frequency) == pytest.approx(np.sqrt((grows + rate) / mass) / (2.0 * np.pi), rel=PARABOLA)
+    assert float(own.damping_ratio) > 300.0 / (2.0 * np.sqrt(mass * grows))
