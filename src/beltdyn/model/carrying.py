@@ -118,7 +118,7 @@ def _check_span(where: str, one: OnSpan, spans: Sequence[tuple[str, str]], path:
     if first == second and len(spans) > 1:
         raise ValueError(
             f'{where}.span = ["{first}", "{second}"] is the arc on a pulley, but only spans are carried. Choose one of '
-            f"{known}; idlers of a convex curve are a pulley of its radius with speed = 0"
+            f"{known}; a convex curve is a pulley of its radius with speed = 0"
         )
     if one.span not in spans:
         raise ValueError(f'{where}.span = ["{first}", "{second}"] is no span of the belt. Choose one of {known}')

@@ -198,10 +198,11 @@ class _Belt:
             stretch, share = self.prepared.stretch(one), 1.0
             if one.schedule is not None:
                 share = float(one.schedule.at([0.0])[0])
+            rear, front = one.batch or (-np.inf, np.inf)
             middle = 0.5 * float(path.span_lengths[stretch.span])
             uphill = -float(path.span_directions[stretch.span] @ np.array(self.prepared.gravity))
             for half, (start, stop) in enumerate(((-np.inf, middle), (middle, np.inf))):
-                length = max(0.0, min(stretch.end, stop) - max(stretch.start, start))
+                length = max(0.0, min(stretch.end, front, stop) - max(stretch.start, rear, start))
                 found[half, stretch.span] += share * one.mass_per_length * uphill * length
         return found[0], found[1]
 

@@ -269,6 +269,8 @@ def _goods(prepared: Prepared) -> Records:
     for row, one in zip(table, prepared.goods, strict=True):
         for name, value in _line(prepared.stretch(one)).items():
             row.line[name] = value
+        row.rear, row.front = (-np.inf, np.inf) if one.batch is None else one.batch
+        row.stretch = prepared.laid.stretch
         if one.schedule is not None:
             row.schedule, number = number, number + 1
     return table

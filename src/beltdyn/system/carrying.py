@@ -21,7 +21,7 @@ from beltdyn.machines.carrying.registry import resistance_of_kind
 from beltdyn.machines.profiles.functions import schedule_value
 from beltdyn.system.arrays import CARRYING_LOSS, Bare, BodyForces, Carrying, Motion, System
 from beltdyn.system.element_state import gather
-from beltdyn.system.frame import FlowingByArcs, StayingByArcs, flow_at_ends
+from beltdyn.system.frame import FlowingByArcs, StayingByArcs, flow_at_ends, passed_length
 
 
 class CarryingFactors(NamedTuple):
@@ -143,16 +143,18 @@ _add_to_end = by_type({StayingByArcs: _no_end, FlowingByArcs: _to_end}, "add_to_
 
 
 @kernel(inline=True)
-def _covered(line: np.record, system: System, element: int, work: np.record) -> tuple[float, float]:
+def _covered(
+    line: np.record, first: float, last: float, system: System, element: int, work: np.record
+) -> tuple[float, float]:
     """Part of an element that lies on a stretch of a span, from 0 to 1; empty where it runs the other way."""
     e, (x, y), (ux, uy) = work.coordinates[0], line.origin, line.direction
     dof = len(system.scale)
     before = (e[0] - x) * ux + (e[1] - y) * uy
     after = (e[dof] - x) * ux + (e[dof + 1] - y) * uy
-    if after <= before:
+    if after <= before or last <= first:
         return 0.0, 0.0
-    start = (line.first - before) / (after - before)
-    stop = (line.last - before) / (after - before)
+    start = (first - before) / (after - before)
+    stop = (last - before) / (after - before)
     return min(1.0, max(0.0, start)), min(1.0, max(0.0, stop))
 
 
@@ -384,7 +386,7 @@ def add_to_element(
     rule, length, carry, taken = carrying.rule, system.length[element], work.carrying, 0.0
     for k in range(first, last):
         row = carrying.supports[carrying.support[k]]
-        start, stop = _covered(row.line, system, element, work)
+        start, stop = _covered(row.line, row.line.first, row.line.last, system, element, work)
         if stop > start:
             inertia = _Inertia(0.0, row.rotating, row.line.direction[0], row.line.direction[1])
             for point in range(rule.points.size):
@@ -396,7 +398,9 @@ def add_to_element(
     carry.by_place[:], carry.by_rate[:], carry.by_speed = 0.0, 0.0, 0.0
     for k in range(first_goods, last_goods):
         goods = carrying.goods[carrying.on_element[k]]
-        start, stop = _covered(goods.line, system, element, work)
+        passed = goods.stretch * passed_length(system.frame, motion.position)
+        rear, front = max(goods.line.first, goods.rear + passed), min(goods.line.last, goods.front + passed)
+        start, stop = _covered(goods.line, rear, front, system, element, work)
         mass = goods.mass * schedule_value(system.profiles, goods.schedule, motion.time)
         if stop > start and mass != 0.0:
             inertia = _Inertia(mass, 0.0, goods.line.direction[0], goods.line.direction[1])

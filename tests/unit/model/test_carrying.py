@@ -65,6 +65,7 @@ def test_belt_and_goods_sink_in_by_a_millimeter() -> None:
     assert stiffness_of(drive.supports[0].replace(stiffness=5e4), load) == 5e4
 
 
+GUIDE = {"kind": "guide", "span": ["tail", "head"], "friction": 0.2}
 IDLERS = {"kind": "idlers", "span": ["tail", "head"], "spacing": 1.0}
 
 
@@ -75,6 +76,15 @@ IDLERS = {"kind": "idlers", "span": ["tail", "head"], "spacing": 1.0}
         ({"support": [IDLERS | {"span": ["head", "head"]}]}, "is the arc on a pulley"),
         ({"support": [IDLERS | {"end": 25.0}]}, r"support\[1\].end = 25 m lies beyond the span"),
         ({"goods": [{"span": ["tail", "head"], "mass_per_length": 5.0, "start": 30.0}]}, r"goods\[1\].start = 30 m"),
+        (
+            {"goods": [{"span": ["tail", "head"], "mass_per_length": 5.0, "batch": [3.0, -4.0]}]},
+            r"batch = \[3, -4\] m must be the rear and the front",
+        ),
+        ({"support": [GUIDE | {"span": ["head", "head"]}]}, "is the arc on a pulley"),
+        ({"support": [GUIDE | {"friction": -0.1}]}, r"support\[1\].friction = -0.1 must be at least 0"),
+        ({"support": [GUIDE | {"pressing": "-5 N/m"}]}, "pressing = .*-5.* must be at least 0"),
+        ({"support": [GUIDE | {"curve_radius": 0.0}]}, "curve_radius = 0.0 must be greater than 0"),
+        ({"support": [GUIDE | {"start": 9.0, "end": 4.0}]}, "end = 4 m must lie behind start = 9 m"),
         ({"gravity": (0.0, 0.0)}, "carries by weight, but gravity"),
         ({"gravity": (9.81, 0.98)}, "is vertical"),
         ({"support": [IDLERS | {"curve_radius": 10.0}]}, "lifts the empty belt"),

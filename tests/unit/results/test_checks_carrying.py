@@ -9,7 +9,7 @@ import beltdyn as bd
 from beltdyn.arrays import FloatArray
 from beltdyn.model.path import span_directions
 from beltdyn.results.checks.evidence import Evidence
-from beltdyn.results.checks.machines import sagging_belt
+from beltdyn.results.checks.machines import _on_support, sagging_belt
 from beltdyn.results.mechanics import pressing_at_arcs, tensions_at_arcs
 from beltdyn.results.slip_safety import friction_used, slip_safety_at_arcs
 
@@ -93,3 +93,19 @@ def test_without_supports_the_tension_of_spans_says_the_same() -> None:
     before, after = tensions_at_arcs(spans.__getitem__, plain)
     np.testing.assert_array_equal(before, [20.0, 10.0])
     np.testing.assert_array_equal(after, [10.0, 20.0])
+
+
+def test_a_batch_sags_where_it_is() -> None:
+    """5 m of goods, which the belt carries by 1 m in a second: under its middle after, and not before."""
+    batch = DRIVE.goods[0].replace(start=0.0, end=20.0, schedule=None, batch=[5.0, 10.0])
+    prepared = bd.model.prepare(DRIVE.replace(goods=[batch]))
+    place = np.linspace(0.0, prepared.belt_length, 400, endpoint=False)
+    speeds = np.ones((2, 2))
+    recorded: Any = {"field_time": np.array([0.0, 1.0]), "element_coordinate": place, "belt_speed": speeds}
+    evidence: Any = Evidence(recorded | {"time": np.array([0.0, 1.0])}, prepared, None)  # type: ignore[arg-type]
+    on, weight = _on_support(evidence, prepared.supports[0], np.array([0.0, 1.0]))
+    laid = prepared.laid
+    along = (laid.start + laid.stretch * place[on] - laid.path.span_start(1)) % laid.path.length
+    for row, rear in enumerate((5.0, 6.0)):
+        under = weight[row] > 100.0
+        np.testing.assert_allclose([along[under].min(), along[under].max()], [rear, rear + 5.0], atol=0.15)

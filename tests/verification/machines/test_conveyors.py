@@ -267,6 +267,25 @@ def test_the_wave_of_a_start_or_stop_arrives_at_the_tail_after_the_length_over_i
 
 
 @pytest.mark.slow
+def test_a_batch_moves_in_with_the_belt(monkeypatch: pytest.MonkeyPatch) -> None:
+    """20 m of goods whose front gets on after 10 m of belt; by hand resistance and lift of what is on the belt."""
+    length, lift, mass = 100.0, 5.0, 104.0
+    monkeypatch.setattr(f"{__name__}.LENGTH", length)
+    settings = {"duration": 10.0, "start": "steady", "output_interval": 0.02}
+    drive = conveyor(lift=lift, goods=0.0, simulation=settings)
+    drive = drive.replace(goods=[{"span": ["tail", "head"], "mass_per_length": mass, "batch": [-30.0, -10.0]}])
+    run = bd.simulate(drive).dataset
+    pull, time = run.shaft_torque.values[:, 0] / RADIUS, run.time.values
+    on = np.clip(float(run.belt_speed.mean()) * time - 10.0, 0.0, 20.0)
+    slope = math.hypot(length, lift)
+    hand = main_resistance(lift, 0.0) + mass * on * GRAVITY * (COEFFICIENT * length + lift) / slope
+    for begin in range(0, len(time) - 50, 50):
+        part = slice(begin, begin + 50)
+        assert pull[part].mean() == pytest.approx(hand[part].mean(), rel=5e-3)
+    assert float(np.abs(run.energy_closure).max()) < 1e-5
+
+
+@pytest.mark.slow
 def test_energy_is_accounted_for_while_goods_are_loaded_on_a_slope() -> None:
     """In steps that the tolerance sets: at the default one rounding decides on them, and one alone errs by 5e-4."""
     ramp = {"kind": "cosine_ramp", "start": 0.2, "end": 1.2, "value": 5.0}

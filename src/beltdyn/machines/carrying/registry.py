@@ -38,6 +38,9 @@ SUPPORT = SUPPORT_ROWS.row_type()
 GOODS = record(
     line=LINE,
     mass="f8",  # kg/m
+    rear="f8",  # of a batch, along the span when no belt has passed, m; -inf of goods that lie everywhere
+    front="f8",
+    stretch="f8",  # way of goods over the length of unstretched belt that has passed
     schedule="i8",  # number of the profile that multiplies it, or `NO_SCHEDULE`
 )
 """Goods on a span."""

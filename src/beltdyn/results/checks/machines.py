@@ -5,7 +5,7 @@ from collections.abc import Iterator
 import numpy as np
 
 from beltdyn.arrays import BoolArray, FloatArray, IntArray
-from beltdyn.machines import Support
+from beltdyn.machines import Goods, Support
 from beltdyn.model import off_the_stop, unstable_balance
 from beltdyn.model.carrying import lies_on, upper_side
 from beltdyn.parts.messages import Finding, listing
@@ -108,9 +108,23 @@ def _on_support(evidence: Evidence, support: Support, fields: FloatArray) -> tup
     mass = np.full((fields.size, on.size), prepared.belt.mass_per_length)
     for one in prepared.goods:
         share = np.ones(fields.size) if one.schedule is None else one.schedule.at(fields)
-        mass += one.mass_per_length * share[:, None] * lies_on(prepared.laid, prepared.stretch(one), place[on])
+        on_it = lies_on(prepared.laid, prepared.stretch(one), place[on])
+        mass += one.mass_per_length * share[:, None] * (on_it & _in_batch(evidence, one, place[on], fields))
     normal = upper_side(stretch.direction, prepared.gravity)
     return on, mass * abs(float(normal @ np.array(prepared.gravity)))
+
+
+def _in_batch(evidence: Evidence, goods: Goods, place: FloatArray, fields: FloatArray) -> BoolArray:
+    """Whether places along the belt (m) are those of a batch that moves with the belt, shape (t, e)."""
+    if goods.batch is None:
+        return np.ones((fields.size, place.size), dtype=bool)
+    laid, span = evidence.prepared.laid, evidence.prepared.stretch(goods).span
+    along = laid.start + laid.stretch * place - laid.path.span_start(span)
+    speed, time = np.nanmean(evidence.recorded["belt_speed"], axis=1), evidence.time
+    steps = 0.5 * (speed[1:] + speed[:-1]) * np.diff(time)
+    passed = np.interp(fields, time, np.append(0.0, np.cumsum(steps)))[:, None]
+    way = (along % laid.path.length) - passed
+    return np.asarray((way >= goods.batch[0]) & (way <= goods.batch[1]))
 
 
 _LIFTS = 1.01

@@ -46,6 +46,8 @@ TENSIONER = "#4a5361"
 LINE: dict[str, Any] = {"color": TENSIONER, "linewidth": 2.0, "zorder": 4}
 """How arms and lines of sliding are drawn."""
 _POINTS = 20
+_SCALE_TICKS = 6
+"""Most ticks of the scale of tension."""
 
 
 class TensionerPicture:
@@ -265,6 +267,7 @@ def _frame(ax: Axes, run: Run | StaticResult) -> None:
 def _draw_scale(ax: Axes, belt: LineCollection, tension: xr.DataArray) -> None:
     figure = ax.figure
     bar = figure.colorbar(belt, ax=ax, orientation="horizontal", fraction=0.06, aspect=45, pad=0.03)
+    bar.locator = MaxNLocator(_SCALE_TICKS, steps=[1, 2, 2.5, 5, 10])
     bar.set_label(label(tension))
     bar.outline.set_visible(False)
 
