@@ -46,7 +46,7 @@ TENSIONER = "#4a5361"
 LINE: dict[str, Any] = {"color": TENSIONER, "linewidth": 2.0, "zorder": 4}
 """How arms and lines of sliding are drawn."""
 _POINTS = 20
-_SCALE_TICKS = 6
+_SCALE_TICKS = 4
 """Most ticks of the scale of tension."""
 
 
