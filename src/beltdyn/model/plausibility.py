@@ -37,6 +37,8 @@ _HEAVIER = 0.9
 """Inertia of a tensioner without its pulley, over that with it, below which the mass of the pulley counts."""
 _FEW_TEETH = 6.0
 """Teeth in mesh from which on a pulley carries all that the profile allows, by the rules of makers."""
+_FACES = 2
+"""Of a belt in a nip, on which it creeps."""
 _TAKES = 1e-3
 """Least share of a load in the total power."""
 
@@ -54,6 +56,7 @@ def judge_plausibility(drive: Drive, installation: Installation) -> Iterator[Fin
     yield from _few_teeth(drive, installation)
     yield from _slack_teeth(drive, installation)
     yield from _narrow_teeth(drive, installation)
+    yield from _sliding_nips(drive)
     yield from judge_alignment(drive, installation.path)
 
 
@@ -62,7 +65,7 @@ def _tension(drive: Drive, installation: Installation) -> Iterator[Finding]:
     belt, tension = drive.belt, installation.tension
     most, ribs = belt.largest_tension, belt.value_of("ribs")
     speed = fastest_rim(drive.pulleys, drive.radii)
-    sprung = installation.tensioner_positions.size > 0
+    sprung = bool(drive.layout.given.springs)
     running = tension + sprung * belt.mass_per_length * speed**2
     if most is None or running < most:
         return
@@ -175,7 +178,7 @@ def _sides(drive: Drive) -> Iterator[Finding]:
 def _tight_side(drive: Drive, installation: Installation) -> Iterator[Finding]:
     """Spring-loaded tensioners between the last load and the driver, where the belt is tightest."""
     driver = drive.driver
-    if driver is None or drive.ends or not drive.moving_tensioners:
+    if driver is None or drive.ends or not drive.layout.given.springs:
         return
     powers, speed = _powers(drive, driver, installation)
     others, step = len(drive.pulleys) - 1, drive.running_sense
@@ -185,7 +188,7 @@ def _tight_side(drive: Drive, installation: Installation) -> Iterator[Finding]:
         return
     loaded = [place for place, number in enumerate(behind) if powers[number] > _TAKES * total]
     held, name = installation.tension, drive.pulleys[driver].name
-    for tensioner in drive.moving_tensioners:
+    for tensioner in drive.layout.given.springs:
         number = drive.carried(tensioner)
         if number == driver or behind.index(number) < loaded[-1] or number == behind[loaded[-1]]:
             continue
@@ -196,6 +199,27 @@ def _tight_side(drive: Drive, installation: Installation) -> Iterator[Finding]:
             f"slack-side tension of {max(held - total / speed, 0.0):.4g} N behind {name}, not {held:.4g} N.",
             f"Move it to the span where the belt leaves {name}, or reverse {name}: speeds are positive "
             f"{drive.rotation}.",
+        )
+
+
+def _sliding_nips(drive: Drive) -> Iterator[Finding]:
+    """Nips whose rollers have prescribed speeds that differ by more than friction on both faces takes up."""
+    ratio = prepare(drive).contact.value_of("creep_ratio") if drive.nips else None
+    for pair in drive.path.nips:
+        roller, pulley = (drive.pulleys[one] for one in pair)
+        if roller.speed is None or pulley.speed is None or ratio is None:
+            continue
+        speeds = [one.driven_speed() for one in (roller, pulley)] * drive.rolling_radii[list(pair)]
+        fastest, apart = float(np.max(speeds)), abs(float(speeds[0] - speeds[1]))
+        if apart <= _FACES * ratio * fastest:
+            continue
+        right = roller.driven_speed() * float(speeds[1] / speeds[0]) if speeds[0] else 0.0
+        yield Finding(
+            f"the surface of {roller.name} is to run at {speeds[0]:.5g} m/s and that of {pulley.name} at "
+            f"{speeds[1]:.5g} m/s; creep on both faces takes up {_FACES * ratio:.2%}, and they differ by "
+            f"{apart / fastest:.2%}.",
+            f"The nip slips as a whole and wears the belt: each newton of its friction loses {apart:.2g} W.",
+            f"Give {roller.name} a torque in place of a speed, or a speed of {right * RPM:.5g} rpm.",
         )
 
 

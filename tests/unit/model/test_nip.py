@@ -8,6 +8,7 @@ import pytest
 import beltdyn as bd
 from beltdyn.errors import ModelError
 from beltdyn.model.nip import damping_ratios, foundations, on_slides, rim_ratios, side_stiffness
+from beltdyn.model.plausibility import judge_plausibility
 from beltdyn.theory.nip import equivalent_radius, force, half_width, rolling_loss, series
 
 COVER = {"thickness": "10 mm", "youngs_modulus": "4 MPa", "poissons_ratio": 0.45}
@@ -170,6 +171,22 @@ def test_rollers_slide_under_their_forces_in_a_run() -> None:
     nips, (slide,) = on_slides(heavy.nips, heavy.pulleys)
     assert nips[0].force is None
     assert (slide.pulley, slide.direction, slide.preload) == ("press", (1.0, 0.0), 2000.0)
+
+
+def test_speeds_that_differ_by_more_than_creep_are_told() -> None:
+    """The face of the belt on the drum runs at 6.6 rad/s * 0.153 m; 12.62 rad/s of the roller match it."""
+    driven = {key: value for key, value in PRESS.items() if key != "inertia"}
+
+    def told(speed: float) -> list[str]:
+        drive = pressed(pulley=[DRUM, TAIL, driven | {"speed": speed}])
+        findings = map(str, judge_plausibility(drive, bd.model.install(drive)))
+        return [one for one in findings if "slips as a whole" in one]
+
+    assert told(-6.6 * 0.153 / 0.08) == []
+    (finding,) = told(-12.5)
+    assert "press is to run at 0.99021 m/s and that of drum at 0.9999 m/s" in finding
+    assert "differ by 0.97%" in finding
+    assert f"a speed of {6.6 * 0.153 / 0.08 * 30.0 / np.pi:.5g} rpm" in finding
 
 
 def test_lumped_models_know_no_nips() -> None:

@@ -27,6 +27,12 @@ def test_tensions_at_the_ends_differ_by_the_pulls_in_the_nip(run: bd.Run) -> Non
     assert float(nip.tension_before - nip.tension_after) == pytest.approx(float(nip.pull.sum()), rel=0.05)
 
 
+def test_friction_limits_the_pulls_of_both_sides(run: bd.Run) -> None:
+    nip = bd.derived.nips(run).isel(nip=0)
+    assert float(nip.grip_limit.sel(side="roller")) == pytest.approx(0.4 * 2000.0, rel=1e-3)
+    np.testing.assert_allclose(nip.grip, np.abs(nip.pull) / nip.grip_limit)
+
+
 def test_the_span_of_a_nip_has_the_tension_of_that_before(run: bd.Run) -> None:
     last = run.dataset.isel(time=-1)
     assert float(last.span_tension.sel(span="press-drum")) == float(last.span_tension.sel(span="tail-drum"))

@@ -3,7 +3,7 @@
 import numpy as np
 import xarray as xr
 
-from beltdyn.arrays import BoolArray, FloatArray
+from beltdyn.arrays import BoolArray
 from beltdyn.errors import ModelError
 from beltdyn.model import Prepared
 from beltdyn.results.derived.labels import pulley_number
@@ -103,8 +103,8 @@ def nips(run: Run, time: float | None = None) -> xr.Dataset:
         belt, which recovers behind the nip), ``compression_loss`` (W, of covers and belt on both rollers),
         ``tension_before`` and ``tension_after`` (N) where the running belt enters and leaves, and ``speed_ratio``,
         surface speed of the roller over that of the pulley. By ``nip`` and ``side`` (roller, pulley): ``pull`` (N, on
-        the belt in the nip, positive in the direction in which it runs), ``torque`` (N m, on the shaft), and ``grip``,
-        the pull over its limit mu F.
+        the belt in the nip, positive in the direction in which it runs), ``torque`` (N m, on the shaft), ``grip_limit``
+        (N, mu F), and ``grip``, the pull over it.
 
     Raises
     ------
@@ -161,7 +161,8 @@ def nips(run: Run, time: float | None = None) -> xr.Dataset:
             speed_ratio=float(speeds[roller] / speeds[pulley]) if speeds[pulley] else np.nan,
             pull=pulls,
             torque=at["shaft_torque"].values[[roller, pulley]].tolist(),
-            grip=_grip(pulls, normal, prepared.frictions[[roller, pulley]]),
+            grip_limit=(limits := (prepared.frictions[[roller, pulley]] * normal).tolist()),
+            grip=_grip(pulls, limits),
         )
     described = {
         "force": ("N", "Force of the nip"),
@@ -176,6 +177,7 @@ def nips(run: Run, time: float | None = None) -> xr.Dataset:
         "speed_ratio": ("1", "Surface speed of the roller over that of the pulley"),
         "pull": ("N", "Force along the running belt in the nip"),
         "torque": ("N m", "Torque on the shaft"),
+        "grip_limit": ("N", "Largest force along the belt by friction"),
         "grip": ("1", "Force along the belt over its limit"),
     }
     return xr.Dataset(
@@ -197,8 +199,6 @@ def _thickness(prepared: Prepared, instant: xr.Dataset, row: int, pressed: BoolA
     return float(prepared.belt.thickness - np.max(faces[pressed], initial=0.0) / prepared.contact_stiffness)
 
 
-def _grip(pulls: list[float], normal: list[float], frictions: FloatArray) -> list[float]:
+def _grip(pulls: list[float], limits: list[float]) -> list[float]:
     """Force along the belt on both sides over its limit mu F; NaN without friction."""
-    limits = frictions * np.array(normal)
-    grip = np.divide(np.abs(pulls), limits, out=np.full(2, np.nan), where=limits > 0.0)
-    return [float(one) for one in grip]
+    return [abs(pull) / limit if limit > 0.0 else np.nan for pull, limit in zip(pulls, limits, strict=True)]
