@@ -23,6 +23,8 @@ EXAMPLES = [
     for example in _FINDER.find(importlib.import_module(name), module=None)
     if example.examples and example.name.startswith(name)
 ]
+COSTLY = ("transmission_error", "stroke")
+"""Examples of toothed belts, for which kernels are compiled."""
 
 
 @pytest.fixture(scope="module")
@@ -31,7 +33,11 @@ def run() -> bd.Run:
     return bd.simulate(drive.replace(simulation=drive.simulation.replace(duration=0.01)))
 
 
-@pytest.mark.parametrize("example", EXAMPLES, ids=lambda example: example.name.removeprefix("beltdyn."))
+@pytest.mark.parametrize(
+    "example",
+    [pytest.param(one, marks=[pytest.mark.slow] * one.name.endswith(COSTLY)) for one in EXAMPLES],
+    ids=lambda example: example.name.removeprefix("beltdyn."),
+)
 def test_example(example: doctest.DocTest, run: bd.Run, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.chdir(tmp_path)
     example.globs = {"bd": bd, "drive": bd.example("two_pulley"), "run": run}

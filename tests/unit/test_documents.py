@@ -232,8 +232,8 @@ def test_the_tutorial_prints_what_it_says(
     assert told == 1
 
 
-COSTLY_TASKS = {"design", "python"}
-"""Tasks that optimize, calibrate and simulate over time."""
+COSTLY_TASKS = {"design", "python", "resonance"}
+"""Tasks that optimize, calibrate, simulate over time and compute responses."""
 
 
 @pytest.mark.parametrize(

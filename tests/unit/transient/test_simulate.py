@@ -14,7 +14,7 @@ from beltdyn.results import open_run
 from beltdyn.solvers.progress import Progress
 
 Change = Callable[..., Drive]
-INTEGRATORS = ["generalized_alpha", "cvode", "ida", "bdf", "radau"]
+INTEGRATORS = ["generalized_alpha", "cvode", "ida", "bdf", pytest.param("radau", marks=pytest.mark.slow)]
 
 
 @pytest.mark.parametrize("integrator", INTEGRATORS)

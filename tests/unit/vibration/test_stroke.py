@@ -8,6 +8,7 @@ from beltdyn.errors import ModelError
 AXIS = bd.example("printer_axis")
 
 
+@pytest.mark.slow
 def test_it_is_stiffer_nearer_to_the_driver_and_swings_faster() -> None:
     """The spans in series with the way back: EA (1 / L1 + 1 / L2), softest at the idler."""
     found = bd.stroke(AXIS, places="-100, 0, 100 mm").dataset
