@@ -40,6 +40,8 @@ CREEP_LENGTHS = 16.0
 """Length of the smallest adhesion arc at the tension at rest, over the length of e-fold growth of slip velocity."""
 RESOLVED = {"tension": 0.005, "slip": 0.015}
 """Quantities that the mesh resolves, and their largest estimated errors; pressures at arc ends need more elements."""
+OF_SINGLE_TEETH = {"tension": 0.02, "slip": 0.015}
+"""The same with single teeth, from one to the next of which the tension varies by more."""
 FEWEST, MOST = 40, 2000
 """Least and largest default number of elements."""
 
@@ -134,11 +136,12 @@ def choose_standstill_creep(creep_ratio: float, speed: float, pulleys: Sequence[
 
 def choose_elements(belt: OnPath, tension: float) -> Choice:
     """Choose the number of elements."""
-    needed = {name: fewest(belt, Running(tension), name, limit) for name, limit in RESOLVED.items()}
+    limits = OF_SINGLE_TEETH if belt.belt.has_single_teeth else RESOLVED
+    needed = {name: fewest(belt, Running(tension), name, limit) for name, limit in limits.items()}
     name = max(needed, key=lambda name: needed[name])
     number = min(max(needed[name], FEWEST), MOST)
     reason = (
-        f"estimated error of {name} {RESOLVED[name]:.1%}"
+        f"estimated error of {name} {limits[name]:.1%}"
         if number == needed[name]
         else f"{needed[name]} would resolve speeds and tensions"
         if number == FEWEST
