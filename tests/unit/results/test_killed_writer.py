@@ -14,9 +14,8 @@ WRITER = Path(__file__).with_name("writer_process.py")
 PERIOD = 100
 
 
-@pytest.mark.parametrize("outputs", [1, 7, 50])
-def test_killed_writer_leaves_complete_outputs(tmp_path: Path, outputs: int) -> None:
-    _write_kill_and_read(tmp_path / "result.nc", outputs)
+def test_killed_writer_leaves_complete_outputs(tmp_path: Path) -> None:
+    _write_kill_and_read(tmp_path / "result.nc", outputs=7)
 
 
 @pytest.mark.slow

@@ -98,6 +98,7 @@ def test_the_belt_is_drawn_straight_from_node_to_node(run: Run) -> None:
         np.testing.assert_allclose(points, start + along * (end - start), atol=1e-12)
 
 
+@pytest.mark.slow
 def test_every_figure_is_drawn(run: Run, tmp_path: Path) -> None:
     paths = plot.save_all(run, tmp_path)
     assert "contact_pressure" in [path.stem for path in paths]

@@ -14,7 +14,8 @@ from beltdyn.results import open_run
 from beltdyn.solvers.progress import Progress
 
 Change = Callable[..., Drive]
-INTEGRATORS = ["generalized_alpha", "cvode", "ida", "bdf", pytest.param("radau", marks=pytest.mark.slow)]
+SLOW = [pytest.param(one, marks=pytest.mark.slow) for one in ("ida", "bdf", "radau")]
+INTEGRATORS = ["generalized_alpha", "cvode", *SLOW]
 
 
 @pytest.mark.parametrize("integrator", INTEGRATORS)

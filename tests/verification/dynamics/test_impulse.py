@@ -179,7 +179,9 @@ def quiet(drive: Drive) -> xr.Dataset:
 
 
 @pytest.mark.parametrize("place", [0.9002, 0.9005])
-@pytest.mark.parametrize(("width", "height"), [(1e-4, 400.0), (5e-4, 400.0), (2e-3, 100.0)])
+@pytest.mark.parametrize(
+    ("width", "height"), [(1e-4, 400.0), (5e-4, 400.0), pytest.param(2e-3, 100.0, marks=pytest.mark.slow)]
+)
 def test_pulse_of_a_load_on_a_running_drive(
     drive: Drive, quiet: xr.Dataset, measured: Measured, width: float, height: float, place: float
 ) -> None:

@@ -155,7 +155,7 @@ def converged(short: Drive, change: Change) -> xr.Dataset:
     [
         ("generalized_alpha", (1e-3, 1e-4, 1e-5)),
         ("cvode", (1e-3, 1e-4, 1e-5)),
-        ("ida", (1e-3, 1e-4, 1e-5)),
+        pytest.param("ida", (1e-3, 1e-4, 1e-5), marks=pytest.mark.slow),
         ("bdf", (1e-3, 1e-4)),
         pytest.param("radau", (1e-3, 1e-4), marks=pytest.mark.slow),
     ],

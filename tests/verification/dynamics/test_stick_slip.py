@@ -101,6 +101,7 @@ def test_tensions_and_growth(speed: float) -> None:
     assert frequency == pytest.approx(np.sqrt(STIFFNESS / INERTIA) / (2.0 * np.pi), rel=2e-3)
 
 
+@pytest.mark.slow
 def test_constant_friction_does_not_grow() -> None:
     """With equal static and kinetic friction the drum's own damping is left, to 1 % of what falling friction makes."""
     found = bd.modes(bd.steady_state(drive(2.0, kinetic_ratio=1.0)), count=1).dataset

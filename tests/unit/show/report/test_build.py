@@ -340,7 +340,13 @@ def reported(tmp_path_factory: pytest.TempPathFactory) -> Reported:
 
 
 @pytest.mark.parametrize(
-    "kind", [pytest.param(kind, marks=pytest.mark.slow if kind in ("run", "sweep") else ()) for kind in MAKERS]
+    "kind",
+    [
+        pytest.param(
+            kind, marks=pytest.mark.slow if kind in ("run", "sweep", "traction", "campbell", "calibrate") else ()
+        )
+        for kind in MAKERS
+    ],
 )
 def test_a_report_has_what_matters(kind: str, reported: Reported) -> None:
     _, words, charts = MAKERS[kind]
