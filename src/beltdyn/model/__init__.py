@@ -68,7 +68,7 @@ from beltdyn.model.study import CalibrationStudy, DutyPoint, OptimizationStudy, 
 from beltdyn.model.tensioner_balance import TensionerBalance
 from beltdyn.model.toml import dumps, example, json_schema, load, loads
 from beltdyn.model.toothing import Toothing
-from beltdyn.model.web import Unwinder, Winder
+from beltdyn.model.web import Roll, Unwinder, Winder
 
 __all__ = [
     "ERROR_LIMITS",
@@ -123,6 +123,7 @@ __all__ = [
     "Rating",
     "Resistance",
     "RibFatigue",
+    "Roll",
     "RotaryTensioner",
     "Running",
     "SCurve",

@@ -240,6 +240,12 @@ class Drive(Part):
         return self.unwinder is not None and self.winder is not None
 
     @property
+    def rolls(self) -> tuple[Unwinder | Winder, ...]:
+        """Unwinder and winder of a web line, as far as they have rolls."""
+        ends = (self.unwinder, self.winder)
+        return tuple(one for one in ends if one is not None and one.roll is not None)
+
+    @property
     def ends(self) -> tuple[End, ...]:
         """The ends of an open belt, as given, clamped to the carriage, or held by unwinder and winder."""
         if self.unwinder is not None and self.winder is not None:

@@ -1,14 +1,63 @@
 """A web line: an open path through which a web runs from an unwinder to a winder."""
 
 from collections.abc import Sequence
+from typing import Self
 
 import numpy as np
-from pydantic import Field
+from pydantic import Field, model_validator
 
+from beltdyn.arrays import FloatArray
 from beltdyn.model.end import FixedEnd
 from beltdyn.model.pulley import Pulley
 from beltdyn.parts.part import Part
-from beltdyn.parts.quantity import Coordinate, Force, Name
+from beltdyn.parts.quantity import Coordinate, Force, Inertia, Length, Name
+
+
+class Roll(Part):
+    """The roll of an unwinder or a winder at the beginning of a run.
+
+    Its radius R follows from the length l that is wound, R^2 = R_c^2 + h l / pi, with the thickness h of the web and
+    the radius R_c of the core.
+
+    Examples
+    --------
+    >>> roll = bd.model.Roll(core_radius="50 mm", radius="300 mm")
+    >>> round(roll.length_of(50e-6))
+    5498
+    """
+
+    core_radius: Length = Field(gt=0, description="the radius of the core, in m")
+    radius: Length | None = Field(None, gt=0, description="the radius of the roll at the beginning, in m; or length")
+    length: Length | None = Field(
+        None, ge=0, description="the unstretched length of web on the roll at the beginning, in m"
+    )
+    core_inertia: Inertia = Field(0.0, ge=0, description="the moment of inertia of core and shaft, in kg m^2")
+
+    @model_validator(mode="after")
+    def _has_one_size(self) -> Self:
+        if (self.radius is None) == (self.length is None):
+            raise ValueError("needs one of radius and length, which follow from each other. Give one of the two")
+        if self.radius is not None and self.radius < self.core_radius:
+            raise ValueError(
+                f"radius = {self.radius:g} m is below core_radius = {self.core_radius:g} m. Give the outer radius of "
+                "the roll"
+            )
+        return self
+
+    def length_of(self, thickness: float) -> float:
+        """Unstretched length of web at the beginning, m, of a web of a thickness (m)."""
+        if self.length is not None:
+            return self.length
+        return float(np.pi * ((self.radius or 0.0) ** 2 - self.core_radius**2) / thickness)
+
+    def radius_at(self, length: FloatArray, thickness: float) -> FloatArray:
+        """Radius, m, with unstretched lengths (m, any shape) of a web of a thickness (m)."""
+        return np.asarray(np.sqrt(self.core_radius**2 + thickness * np.maximum(length, 0.0) / np.pi))
+
+    def inertia_at(self, length: FloatArray, thickness: float, mass_per_length: float) -> FloatArray:
+        """Moment of inertia, kg m^2, of core and web; mass in kg/m, other arguments as for `radius_at`."""
+        square = self.radius_at(length, thickness) ** 2 + self.core_radius**2
+        return np.asarray(self.core_inertia + 0.5 * mass_per_length * np.maximum(length, 0.0) * square)
 
 
 class WebEnd(Part):
@@ -17,6 +66,7 @@ class WebEnd(Part):
     name: Name
     point: tuple[Coordinate, Coordinate]
     tension: Force
+    roll: Roll | None
 
     @property
     def end(self) -> FixedEnd:
@@ -38,6 +88,7 @@ class Unwinder(WebEnd):
         description="the point at which the web leaves the unwinder, as [x, y], in m"
     )
     tension: Force = Field(gt=0, description="the tension of the web that enters the line, in N")
+    roll: Roll | None = Field(None, description="the roll, a group [unwinder.roll]; by default none")
 
 
 class Winder(WebEnd):
@@ -54,6 +105,7 @@ class Winder(WebEnd):
         description="the point at which the web reaches the winder, as [x, y], in m"
     )
     tension: Force = Field(gt=0, description="the tension of the web that is wound up, in N")
+    roll: Roll | None = Field(None, description="the roll, a group [winder.roll]; by default none")
 
 
 def check_rollers(pulleys: Sequence[Pulley]) -> None:

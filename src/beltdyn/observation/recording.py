@@ -85,6 +85,7 @@ def result_layout(prepared: Prepared, system: System) -> Layout:
         coordinate_names=element_kind(system).coordinates,
         tensioners=tuple(names[pulley] for pulley in system.tensioners.pulley),
         carriages=_carriages(prepared),
+        rolls=tuple(one.name for one in prepared.drive.rolls),
         bodies=_bodies(prepared, system),
         nips=tuple(prepared.drive.pulleys[roller].name for roller, _ in prepared.path.nips_by_roller),
         tooth_coordinate=tuple(tooth_coordinates(system).tolist()),
@@ -113,6 +114,8 @@ def _carriages(prepared: Prepared) -> tuple[str, ...]:
     return () if prepared.carriage is None else (prepared.carriage.name,)
 
 
+_OF_ROLLS = ("roll_length", "roll_radius", "roll_inertia", "roll_speed", "roll_torque")
+"""Variables of rolls, in the order in which they are found."""
 _SECONDS_BETWEEN_WRITES = 0.25
 _MOST_WAITING = 512
 """States that wait to be observed."""
@@ -388,6 +391,7 @@ class Recording:
         return {
             **(carried if len(system.tensioners) else {}),
             **self._carriage(position, velocity),
+            **self._rolls(position, velocity),
             "pulley_speed": velocity[:, nodes : nodes + pulleys],
             "pulley_angle": position[:, nodes : nodes + pulleys],
             "shaft_speed": velocity[:, shafts],
@@ -403,6 +407,30 @@ class Recording:
         rate = carriage_rate(prepared.carriage, prepared.path, driver)
         ahead = place - rate * position[:, self._system.first_body + driver, None]
         return {"carriage_position": place, "carriage_speed": speed, "carriage_error": ahead}
+
+    def _rolls(self, position: FloatArray, velocity: FloatArray) -> Arrays:
+        """Length, radius, inertia and speed of the rolls of a web line, and the torque of their webs."""
+        prepared, belt, found = self._prepared, self._prepared.belt, list[FloatArray]()
+        for one in prepared.drive.rolls:
+            assert one.roll is not None
+            sense, passed, flow = self._through_end(one is prepared.drive.winder, position, velocity)
+            length = one.roll.length_of(belt.thickness) + sense * passed
+            radius = one.roll.radius_at(length, belt.thickness)
+            inertia = one.roll.inertia_at(length, belt.thickness, belt.mass_per_length)
+            speed = flow * float(belt.stretch_parameters.stretch(one.tension)) / radius
+            found.append(np.stack([length, radius, inertia, speed, one.tension * radius]))
+        return dict(zip(_OF_ROLLS, np.stack(found, axis=-1), strict=True)) if found else {}
+
+    def _through_end(
+        self, winds: bool, position: FloatArray, velocity: FloatArray
+    ) -> tuple[float, FloatArray, FloatArray]:
+        """Sign of what a roll gains, the unstretched length that has passed an end of a web line, and its flow."""
+        frame = self._system.frame
+        if isinstance(frame, FlowingByArcs):
+            ends = slice(frame.place - winds, frame.place + 1)  # the shift at the winder, and what has passed
+            return 1.0 if winds else -1.0, position[:, ends].sum(axis=1), velocity[:, ends].sum(axis=1)
+        still = np.zeros(len(position))
+        return 0.0, still, still + frame.speed[0]
 
     def _nodes(self, states: Chunk, instants: FloatArray) -> Arrays:
         """Coordinates and velocities of nodes, and of bodies at the same instants."""

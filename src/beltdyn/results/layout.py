@@ -41,6 +41,8 @@ class Layout:
     """Names of the rollers of nips, in the order of the pulleys."""
     carriages: tuple[str, ...] = ()
     """Name of the carriage, if there is one."""
+    rolls: tuple[str, ...] = ()
+    """Names of unwinder and winder that have rolls."""
     bodies: tuple[str, ...] = ()
     """Names of all bodies other than the belt, in the order of the coordinates."""
     tooth_coordinate: tuple[float, ...] = ()
@@ -70,6 +72,7 @@ class Layout:
             "tensioner": self.tensioners,
             "nip": self.nips,
             "carriage": self.carriages,
+            "roll": self.rolls,
             "body": self.bodies,
             "axis": AXIS_NAMES,
             "coordinate": self.coordinate_names,
@@ -90,6 +93,7 @@ class Layout:
             "tensioner": len(self.tensioners),
             "nip": len(self.nips),
             "carriage": len(self.carriages),
+            "roll": len(self.rolls),
             "body": len(self.bodies),
             "axis": len(AXIS_NAMES),
             "coordinate": len(self.coordinate_names),
@@ -181,6 +185,7 @@ def _sizes(prepared: Prepared) -> dict[str, int]:
         "tensioner": len(prepared.moving_tensioners),
         "nip": len(prepared.path.nips),
         "carriage": int(prepared.carriage is not None),
+        "roll": len(prepared.drive.rolls),
         "body": _bodies(prepared),
         "axis": len(AXIS_NAMES),
         "coordinate": len(kind.coordinates),

@@ -67,6 +67,7 @@ _TOOTH = ("field_time", "tooth")
 _ARC = ("field_time", "pulley", "arc_part")
 _TENSIONER = ("time", "tensioner")
 _CARRIAGE = ("time", "carriage")
+_ROLL = ("time", "roll")
 _NIP = ("time", "nip")
 _IN_NIP = ("field_time", "nip", "contact_point")
 
@@ -80,6 +81,7 @@ COORDINATES = MappingProxyType(
         "body": Variable(("body",), "1", "Body other than the belt", "str", core=False),
         "tensioner": Variable(("tensioner",), "1", "Tensioner, named by the pulley it carries", "str"),
         "carriage": Variable(("carriage",), "1", "Carriage of a linear axis", "str", core=False),
+        "roll": Variable(("roll",), "1", "Roll of a web line", "str", core=False),
         "nip": Variable(("nip",), "1", "Nip, named by its roller beside the path", "str", core=False),
         "axis": Variable(("axis",), "1", "Axis of the plane", "str"),
         "coordinate": Variable(("coordinate",), "1", "Nodal coordinate", "str"),
@@ -111,6 +113,11 @@ _OUTPUTS = {
     "carriage_position": Variable(_CARRIAGE, "m", "Way of the carriage", core=False, at_rest=True),
     "carriage_speed": Variable(_CARRIAGE, "m/s", "Speed of the carriage", core=False),
     "carriage_error": Variable(_CARRIAGE, "m", "Way of the carriage ahead of the driver", core=False),
+    "roll_length": Variable(_ROLL, "m", "Unstretched length of web on the roll", core=False),
+    "roll_radius": Variable(_ROLL, "m", "Radius of the roll", core=False),
+    "roll_inertia": Variable(_ROLL, "kg m^2", "Moment of inertia of the roll", core=False),
+    "roll_speed": Variable(_ROLL, "rad/s", "Speed of the roll in running direction", core=False),
+    "roll_torque": Variable(_ROLL, "N m", "Torque of the web about the axis of the roll", core=False),
     "nip_width": Variable(_NIP, "m", "Nip width", core=False),
     "nip_tension_before": Variable(_NIP, "N", "Tension where the belt enters a nip", core=False),
     "nip_tension_after": Variable(_NIP, "N", "Tension where the belt leaves a nip", core=False),
@@ -210,7 +217,7 @@ RECORDED = MappingProxyType(
 """Variables passed to a recorder, except those that `Layout.recorded` omits; `TIMES` come last, ``time`` last of "
 "all."""
 
-OPTIONAL = frozenset({"tensioner", "tooth", "carriage", "nip"})
+OPTIONAL = frozenset({"tensioner", "tooth", "carriage", "nip", "roll"})
 """Dimensions that may have size zero; they are then omitted with their variables."""
 
 AUXILIARY_COORDINATES = MappingProxyType(

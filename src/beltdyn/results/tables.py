@@ -49,6 +49,7 @@ _SPANS = ("span_tension", "belt_speed", "mid_span_displacement")
 _ENERGY = (*(name for name, variable in VARIABLES.items() if variable.dims == ("time",)),)
 _TENSIONERS = ("tensioner_position", "tensioner_speed")
 _CARRIAGE = ("carriage_position", "carriage_speed", "carriage_error")
+_ROLLS = ("roll_length", "roll_radius", "roll_inertia", "roll_speed", "roll_torque")
 _CONTACT = ("contact_position", "contact_pulley", "normal_force", "friction_force", "slip_velocity")
 
 _PULLEY_SUMMARY = (
@@ -74,7 +75,7 @@ _SPAN_SUMMARY = ("span", "tension [N]", "least tension [N]", "largest tension [N
 _LOSS_SUMMARY = ("cause", "power [W]", "share of the power input [1]", "energy since the start [J]")
 
 _FIRST_HEADINGS = {
-    **dict.fromkeys(("pulleys", "spans", "energy", "tensioners", "carriage"), "time [s]"),
+    **dict.fromkeys(("pulleys", "spans", "energy", "tensioners", "carriage", "rolls"), "time [s]"),
     "contact": "belt_coordinate [m]",
     "pulley_summary": _PULLEY_SUMMARY[0],
     "span_summary": _SPAN_SUMMARY[0],
@@ -157,6 +158,7 @@ def _tables_of_run(run: Run) -> dict[str, Table]:
         "energy": _ENERGY,
         "tensioners": _with_others(_TENSIONERS, "tensioner"),
         "carriage": _CARRIAGE,
+        "rolls": _with_others(_ROLLS, "roll"),
     }
     tables: dict[str, Table] = {
         name: list(_columns(dataset, ("time", *variables)))

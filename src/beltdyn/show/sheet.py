@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 
 from beltdyn.analyses import STUDY
+from beltdyn.arrays import FloatArray
 from beltdyn.parts.messages import aligned
 from beltdyn.parts.quantity import RPM, SHOWN_UNITS
 from beltdyn.results.provenance import Resolution, mesh_facts
@@ -160,7 +161,9 @@ def run_sheet(run: Run) -> Sheet:
         ("", "tension\nN", "min\nN", "max\nN", "belt speed\nm/s"),
         tuple(_spans(summary)),
     )
-    facts = Facts((*_power(summary), *_tensioners(summary), *_run_up(run), *_mesh_used(run), *_solver(summary)))
+    facts = Facts(
+        (*_power(summary), *_tensioners(summary), *_rolls(run), *_run_up(run), *_mesh_used(run), *_solver(summary))
+    )
     return Sheet(run.drive.name or "", (_pulleys(f"Pulleys{over}", summary), spans, *_steady_running(run), facts))
 
 
@@ -287,6 +290,25 @@ def _tensioners(summary: Summary) -> list[tuple[str, str]]:
         travel = f" (range {lowest} to {highest})" if one.highest > one.lowest else ""
         facts.append((f"tensioner of {one.name}", f"{place}{travel}"))
     return facts
+
+
+def _rolls(run: Run) -> list[tuple[str, str]]:
+    """Radius, inertia and torque of rolls, at the beginning and at the end of a run."""
+    if "roll_radius" not in run.dataset:
+        return []
+    facts = []
+    for name in run.dataset["roll"].values:
+        ends = run.dataset.sel(roll=name).isel(time=[0, -1])
+        radius, inertia, torque = (ends[one].values for one in ("roll_radius", "roll_inertia", "roll_torque"))
+        shown = (_from_to(1e3 * radius, "mm"), _from_to(inertia, "kg m²"), _from_to(torque, "N m"))
+        facts.append((f"roll of {name}", ", ".join(shown)))
+    return facts
+
+
+def _from_to(values: FloatArray, unit: str) -> str:
+    """A number with its unit, or two where it changes."""
+    first, last = (f"{value:.5g}" for value in values)
+    return f"{first} {unit}" if first == last else f"{first} to {last} {unit}"
 
 
 def _solver(summary: Summary) -> list[tuple[str, str]]:

@@ -2,10 +2,11 @@
 
 from typing import Any
 
+import numpy as np
 import pytest
 
 from beltdyn.errors import ModelError
-from beltdyn.model import Drive, dumps, loads, prepare
+from beltdyn.model import Drive, Roll, dumps, loads, prepare
 
 ROLLER = {"name": "roller", "center": [0.5, 0.0], "radius": 0.05, "speed": 40.0}
 IDLER = {"name": "idler", "center": [1.0, 0.3], "radius": 0.05, "side": "outside", "inertia": 1e-3}
@@ -16,6 +17,8 @@ BELT = {
     "thickness": 1e-4,
     "width": 0.2,
 }
+
+END = {"point": [0.0, 0.3], "tension": 100.0}
 
 
 def line(**changes: Any) -> Drive:
@@ -53,6 +56,12 @@ def line(**changes: Any) -> Drive:
             {"end": [{"name": "a", "kind": "fixed", "point": [0, 1]}, {"name": "b", "kind": "fixed", "point": [1, 1]}]},
             r"\[unwinder\] and \[winder\] exclude \[\[end\]\] and \[carriage\]",
         ),
+        ({"unwinder": END | {"roll": {"core_radius": 0.1}}}, "needs one of radius and length"),
+        (
+            {"winder": END | {"roll": {"core_radius": 0.1, "radius": 0.3, "length": 9.0}}},
+            "needs one of radius and length",
+        ),
+        ({"unwinder": END | {"roll": {"core_radius": 0.1, "radius": 0.05}}}, r"radius = 0\.05 m is below core_radius"),
         ({"belt": BELT | {"stretch_loss_factor": 0.05}}, "loss factors of the belt are incompatible with"),
     ],
 )
@@ -83,3 +92,16 @@ def test_a_given_length_serves_as_it_is() -> None:
     longer = prepared.with_length(1.001 * prepared.belt_length)
     assert longer.belt_length == pytest.approx(1.001 * prepared.belt_length, rel=1e-12)
     assert longer.contact == prepared.contact
+
+
+def test_the_size_of_a_roll_follows_from_its_web() -> None:
+    """R^2 = R_c^2 + h l / pi, and the inertia of a ring, m (R^2 + R_c^2) / 2, beside that of the core."""
+    roll = Roll(core_radius=0.05, radius=0.3, core_inertia=0.2)
+    length = roll.length_of(1e-4)
+    assert length == pytest.approx(np.pi * (0.3**2 - 0.05**2) / 1e-4, rel=1e-12)
+    assert roll.radius_at(np.array([0.0, length, -1.0]), 1e-4) == pytest.approx([0.05, 0.3, 0.05])
+    assert roll.inertia_at(np.array([length]), 1e-4, 0.02)[0] == pytest.approx(0.2 + 0.02 * length * 0.0925 / 2.0)
+    assert Roll(core_radius=0.05, length=7.0).length_of(1e-4) == 7.0
+    drive = line(unwinder=END | {"roll": {"core_radius": 0.1, "radius": 0.3}})
+    assert loads(dumps(drive)) == drive
+    assert [one.name for one in drive.rolls] == ["unwinder"]

@@ -22,7 +22,9 @@ from beltdyn.results.tension_balance import largest_closure
 pytestmark = pytest.mark.slow
 
 RADIUS, SPEED, STIFFNESS, TENSION = 0.05, 2.0, 2e4, 100.0
-FRICTION, MASS = 0.8, 0.05
+FRICTION, MASS, THICKNESS = 0.8, 0.05, 1e-4
+UNWINDS = {"core_radius": 0.01, "radius": 0.012}
+WINDS = {"core_radius": 0.01, "length": 0.0, "core_inertia": 1e-4}
 RISE, DRAW = (0.05, 0.10), 5e-4
 
 
@@ -33,12 +35,12 @@ def line(rollers: list[dict[str, Any]], end: float, mass: float = MASS, **more: 
             "axial_stiffness": STIFFNESS,
             "bending_stiffness": 1e-4,
             "mass_per_length": mass,
-            "thickness": 1e-4,
+            "thickness": THICKNESS,
             "width": 0.2,
         },
-        unwinder={"point": [0.0, 0.3], "tension": TENSION},
+        unwinder={"point": [0.0, 0.3], "tension": TENSION, "roll": UNWINDS},
         pulley=[{"radius": RADIUS} | one for one in rollers],
-        winder={"point": [end, 0.3], "tension": TENSION},
+        winder={"point": [end, 0.3], "tension": TENSION, "roll": WINDS},
         contact={"friction": FRICTION, "creep_ratio": 3e-5},  # a fifth of the default: near Coulomb's law
         **more,
     )
@@ -90,6 +92,32 @@ def test_the_account_of_energy_closes_with_the_flow_through_the_ends(stepped: Ru
     """To the tolerance of the steps."""
     assert abs(largest_closure(stepped.dataset).error) < 1e-4
     assert abs(stepped.dataset.numerical_loss.values[-1]) < 1e-4 * stepped.dataset.torque_work.values[-1]
+
+
+def test_rolls_shrink_and_grow_by_what_passes(stepped: Run) -> None:
+    """R^2 = R_0^2 + h l / pi and T R: what is unwound is v t / g to 1e-5, what is wound up less the change of the line.
+
+    The content of the span between the rollers, and of the arc behind it, to which the web sticks, changes by the
+    stretch; what slides is left out, to 1 % of that.
+    """
+    found, time = stepped.dataset, stepped.dataset.time.values
+    stretch = stepped.prepared.belt.stretch_parameters.stretch
+    length, radius = found.roll_length.values, found.roll_radius.values
+    begins = np.pi * (UNWINDS["radius"] ** 2 - UNWINDS["core_radius"] ** 2) / THICKNESS
+    passed = SPEED * time / float(stretch(TENSION))
+    assert begins - length[:, 0] == pytest.approx(passed, rel=1e-5, abs=1e-6)
+    np.testing.assert_allclose(radius**2, 0.01**2 + THICKNESS / np.pi * np.maximum(length, 0.0), rtol=1e-12)
+    np.testing.assert_allclose(found.roll_torque.values, TENSION * radius, rtol=1e-12)
+    path = stepped.prepared.path
+    held = path.span_lengths[0] + RADIUS * path.wrap_angles[1]
+    between = held / stretch(found.span_tension.values[[0, -1], 0])
+    assert length[-1].sum() - begins == pytest.approx(between[0] - between[1], rel=0.01)
+    mass = MASS * length[-1, 1]
+    expected = WINDS["core_inertia"] + mass * (radius[-1, 1] ** 2 + 0.01**2) / 2.0
+    assert found.roll_inertia.values[-1, 1] == pytest.approx(expected, rel=1e-12)
+    assert found.roll_speed.values[0, 0] == pytest.approx(SPEED / radius[0, 0], rel=1e-5)
+    (told,) = [one for one in stepped.warnings if "empty" in one]
+    assert f"the roll of the unwinder is empty from t = {time[np.argmax(length[:, 0] < 0.0)]:.4g} s on" in told
 
 
 def test_steady_running_stays(stepped: Run) -> None:
@@ -154,7 +182,7 @@ def controlled(trimmed: str, gain: float, first: Any = SPEED / RADIUS, **more: A
     """A load cell between two rollers, of which it trims the last by its speed or its torque."""
     own = {"speed": {"speed": SPEED / RADIUS, "speed_gain": SPEED_GAIN}, "torque": {"torque": TORQUE}}[trimmed]
     sensor = {"sensor": "cell", "set_force": SET_FORCE, "force_gain": gain, "integral_time": RISES[trimmed]}
-    rollers = [
+    rollers: list[dict[str, Any]] = [
         {"name": "first", "center": [0.5, 0.0], "speed": first},
         {"name": "cell", "center": [1.0, 0.3], "side": "outside", "inertia": 1e-4, "mass": 0.2},
         {
@@ -267,3 +295,68 @@ def test_a_trim_beyond_its_limit_is_refused() -> None:
     less = last.replace(load=[last.load[0].replace(largest_trim=1e-3)])
     with pytest.raises(ConvergenceError, match=r'controller of "last" holds its set value with a trim of 0\.0113'):
         bd.steady_state(drive.replace(pulley=[*drive.pulleys[:2], less]))
+
+
+# Idlers that slip, and two rollers in an S
+
+LITTLE, DRY, VISCOUS = 0.1, 0.3, 0.02
+"""Friction of an idler; torque of its bearings, N m and N m s/rad."""
+
+
+def with_idler(speed: Any, dry: float, viscous: float, inertia: float = 2e-3, **more: Any) -> Drive:
+    """Two driven rollers, and an idler with friction in its bearings between them."""
+    bearing = {"kind": "resistance", "constant": dry, "linear": viscous}
+    idler = {"name": "idler", "center": [1.0, 0.3], "side": "outside", "inertia": inertia, "friction": LITTLE}
+    ends = ({"name": name, "center": [x, 0.0], "speed": speed} for name, x in (("first", 0.5), ("last", 1.5)))
+    first, last = ends
+    settings = {"duration": 0.24, "start": "steady", "output_interval": 1e-3, "rtol": 1e-4} | more
+    return line([first, idler | {"load": [bearing]}, last], 2.0, simulation=settings)
+
+
+def largest_moment(run: Run, tension: Any, speed: Any) -> Any:
+    """Moment that the web can give to the idler behind a tension (N), by the capstan, N m."""
+    grip = np.exp(LITTLE * run.prepared.path.wrap_angles[1]) - 1.0
+    return RADIUS * (tension - MASS * speed**2) * grip
+
+
+def test_an_idler_slips_where_its_bearings_take_more_than_the_capstan_gives() -> None:
+    """To 0.1 %: M_0 + c w = R (T - m v^2) (exp(mu phi) - 1); with less friction it runs with the web."""
+    run = bd.steady_state(with_idler(SPEED / RADIUS, DRY, VISCOUS))
+    last = run.dataset.isel(time=-1)
+    speed = (largest_moment(run, float(last.span_tension[0]), SPEED) - DRY) / VISCOUS
+    assert speed < 0.5 * SPEED / RADIUS
+    assert -float(last.pulley_speed[1]) == pytest.approx(speed, rel=1e-3)
+    free = bd.steady_state(with_idler(SPEED / RADIUS, 0.02, 2e-3)).dataset.isel(time=-1)
+    assert -float(free.pulley_speed[1]) == pytest.approx(SPEED / RADIUS, rel=1e-3)
+
+
+def test_an_idler_slips_in_a_ramp_where_its_inertia_is_too_large() -> None:
+    """To 1 % of how far it stays behind: J dw/dt = R (T - m v^2) (exp(mu phi) - 1) - M_0 - c w."""
+    speeds = SPEED / RADIUS * np.array([1.0, 1.0, 1.5, 1.5])
+    ramp = {"kind": "table", "times": [0.0, 0.05, 0.15, 10.0], "values": speeds.tolist()}
+    run = bd.simulate(with_idler(ramp, 0.02, 2e-3, inertia=6e-3))
+    slides = run.dataset.time.values > 0.06
+    found = run.dataset.isel(time=slides)
+    speed, web = -found.pulley_speed.values[:, 1], RADIUS * found.pulley_speed.values[:, 0]
+    assert found.sliding_share.values[:, 1] == pytest.approx(1.0)
+    gives = largest_moment(run, found.span_tension.values[:, 0], web)
+    rate = (gives - 0.02 - 2e-3 * speed) / 6e-3
+    expected = speed[0] + cumulative_trapezoid(rate, found.time.values, initial=0)
+    behind = float((web / RADIUS - speed).max())
+    assert behind > 10.0
+    assert np.abs(speed - expected).max() < 0.01 * behind
+
+
+def test_two_rollers_in_an_s_hold_by_the_sum_of_their_arcs() -> None:
+    """To 0.1 % of the ratio of tensions: Euler and Eytelwein over both faces of the web."""
+    slow: dict[str, Any] = {"speed": 0.98 * SPEED / RADIUS, "friction": 0.2}
+    other: dict[str, Any] = {"side": "outside", "speed": -0.98 * SPEED / RADIUS, "friction": 0.2}
+    rollers: list[dict[str, Any]] = [
+        {"name": "one", "center": [0.5, 0.0]} | slow,
+        {"name": "two", "center": [0.8, 0.3]} | other,
+        {"name": "last", "center": [1.5, 0.0], "speed": SPEED / RADIUS},
+    ]
+    run = bd.steady_state(line(rollers, 2.0, simulation={"duration": 1.0}))
+    carried = MASS * float(run.dataset.attrs["belt_parameter"]) ** 2
+    before, after = run.dataset.span_tension.values[-1, [3, 1]] - carried
+    assert after / before == pytest.approx(np.exp(0.2 * sum(run.prepared.path.wrap_angles[:2])), rel=1e-3)

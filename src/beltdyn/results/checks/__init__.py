@@ -17,7 +17,7 @@ from beltdyn.results.checks.contact import (
     slack_spans,
 )
 from beltdyn.results.checks.creep import impossible_slip, regularized_slip, smoothed_friction
-from beltdyn.results.checks.ending import NOTHING_RECORDED, unfinished, unsettled
+from beltdyn.results.checks.ending import NOTHING_RECORDED, empty_rolls, unfinished, unsettled
 from beltdyn.results.checks.evidence import Check, Evidence
 from beltdyn.results.checks.machines import (
     jumped_teeth,
@@ -47,6 +47,7 @@ __all__ = ["CHECKS", "Check", "Evidence", "Finding", "find"]
 CHECKS: tuple[Check, ...] = (
     unfinished,
     unsettled,
+    empty_rolls,
     open_account,
     numerical_damping,
     unbalanced_powers,

@@ -3,10 +3,12 @@
 from collections.abc import Iterator
 from math import isnan, tau
 
+import numpy as np
+
 from beltdyn.model import Pulley
 from beltdyn.parts.messages import Finding
 from beltdyn.results.checks.evidence import Evidence
-from beltdyn.results.schema import attribute
+from beltdyn.results.schema import attribute, names
 
 SETTLED = 0.01
 """Starting transient left in the span tensions at the start of a run-up, over the largest mean span tension."""
@@ -33,6 +35,22 @@ def unfinished(evidence: Evidence) -> Iterator[Finding]:
             f"Means are taken from {evidence.window.start:.4g} s on and may include the starting transient.",
             "Run the drive again to complete it, unless it is still being computed.",
         )
+
+
+def empty_rolls(evidence: Evidence) -> Iterator[Finding]:
+    """Rolls from which more web runs than was on them."""
+    if "roll_length" not in evidence.recorded:
+        return
+    for name, length in zip(
+        names(evidence.recorded, "roll"), np.asarray(evidence.recorded["roll_length"]).T, strict=True
+    ):
+        if length[-1] < 0.0:
+            at = float(evidence.time[np.argmax(length < 0.0)])
+            yield Finding(
+                f"the roll of the {name} is empty from t = {at:.4g} s on.",
+                f"The web that runs on, {-length[-1]:.4g} m, is not there.",
+                "Increase the radius or the length of the roll, or simulate a shorter time.",
+            )
 
 
 def least_window(pulley: Pulley, speed: float) -> float:
