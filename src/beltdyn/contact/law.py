@@ -45,3 +45,7 @@ class PulleyState(NamedTuple):
     """Radius at which the tension line rolls off over that of the surface."""
     hertz: float = 0.0
     """Penetration of a solid roller over the square of its line force, 2 R / (b E*)^2, m^3/N^2."""
+    lasting: float = 0.0
+    """By how much the belt stays compressed where it leaves, m."""
+    unloading: float = 1.0
+    """Stiffness where it leaves over that where it is pressed."""

@@ -167,9 +167,11 @@ def point_force(here: Approach, pulley: PulleyState, law: ContactLaw, secant: bo
     secant
         Whether `by_slip` is the secant of friction from no slip, in place of its slope.
     """
-    normal = normal_force(law.normal, here.penetration, -here.radial * pulley.damping)
-    normal = _on_cover(normal, pulley.foundation, pulley.damping)
-    normal = _on_solid(normal, pulley.foundation * law.normal.stiffness, pulley.hertz)
+    normal = _pressed(here, pulley, law, 0.0, 1.0)
+    if pulley.lasting > 0.0 and here.radial > 0.0:
+        leaving = _pressed(here, pulley, law, pulley.lasting, pulley.unloading)
+        if leaving.force < normal.force:
+            normal = NormalForce(leaving.force, leaving.by_penetration, leaving.by_rate, normal.elastic, normal.energy)
     slip = slip_velocity(here, pulley)
     radius = pulley.surface.radius
     friction, by_slip, by_normal, by_rim = friction_force(
@@ -193,6 +195,15 @@ def point_force(here: Approach, pulley: PulleyState, law: ContactLaw, secant: bo
         arm,
         arm_slope,
     )
+
+
+@kernel(inline=True)
+def _pressed(here: Approach, pulley: PulleyState, law: ContactLaw, lasting: float, unloading: float) -> NormalForce:
+    """Normal force of a belt that is thinner by what lasts of its compression, with a stiffness times a factor."""
+    factor = pulley.foundation * unloading
+    normal = normal_force(law.normal, here.penetration - lasting, -here.radial * pulley.damping)
+    normal = _on_cover(normal, factor, pulley.damping)
+    return _on_solid(normal, factor * law.normal.stiffness, pulley.hertz)
 
 
 @kernel(inline=True)

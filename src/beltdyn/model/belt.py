@@ -209,6 +209,12 @@ class Belt(Part):
         le=2,
         description="the loss factor of compression by the pulleys; needs contact_stiffness",
     )
+    compression_set: Ratio = Field(
+        0.0,
+        ge=0,
+        le=0.4,
+        description="the part of the largest compression in a nip that stays behind it, in steady running",
+    )
     axial_factor: Ratio = Field(1.0, gt=0, description="the factor α₁ on the axial stiffness")
     bending_factor: Ratio = Field(1.0, gt=0, description="the factor α₂ on the bending and shear stiffness")
     shear_correction: Ratio | None = Field(

@@ -218,6 +218,8 @@ class Pair(NamedTuple):
     """R, m."""
     hertz: float
     """A of solid rollers, m^3/N^2."""
+    lasting: float = 0.0
+    """Compression of the belt that stays behind the nip over the line force, m^2/N."""
 
     @classmethod
     def of(cls, roller: Pulley, pulley: Pulley, belt: Belt, stiffness: float) -> Self:
@@ -225,11 +227,26 @@ class Pair(NamedTuple):
         sides = [side_stiffness(one, belt, stiffness) for one in (roller, pulley)]
         radius = equivalent_radius(*_sizes(roller, pulley, belt))
         modulus = series(*(inf if one.cover is None else one.cover.solid_modulus for one in (roller, pulley)))
-        return cls(series(*sides), radius, hertz_compliance(modulus, radius, belt.width))
+        lasting = 2.0 * belt.compression_set / stiffness
+        return cls(series(*sides), radius, hertz_compliance(modulus, radius, belt.width), lasting)
+
+    def force(self, indentation: float) -> float:
+        """Force at an indentation (m), N: half of those of a belt that is pressed, and of one that leaves."""
+        pressed = force(indentation, self.stiffness, self.radius, self.hertz)
+        if self.lasting == 0.0:
+            return pressed
+        left = indentation - self.lasting * self.peak(indentation)
+        leaving = 1.0 / (1.0 / self.stiffness - self.lasting)
+        return 0.5 * (pressed + force(left, leaving, self.radius, self.hertz))
 
     def indentation_of(self, load: float) -> float:
         """Indentation under a force (N), m."""
-        return indentation_of(load, self.stiffness, self.radius, self.hertz)
+        found = indentation_of(load, self.stiffness, self.radius, self.hertz)
+        if self.lasting == 0.0:
+            return found
+        from scipy.optimize import brentq
+
+        return float(brentq(lambda depth: self.force(depth) - load, found, 2.0 * found, xtol=1e-15))
 
     def half_width(self, indentation: float) -> float:
         """Half of the width of the nip, m."""
@@ -241,8 +258,8 @@ class Pair(NamedTuple):
 
     def slope(self, indentation: float) -> float:
         """Growth of the force with the indentation, N/m."""
-        step, pair = 1e-4 * indentation, (self.stiffness, self.radius, self.hertz)
-        return (force(indentation + step, *pair) - force(indentation - step, *pair)) / (2.0 * step)
+        step = 1e-4 * indentation
+        return (self.force(indentation + step) - self.force(indentation - step)) / (2.0 * step)
 
 
 def side_stiffness(pulley: Pulley, belt: Belt, stiffness: float) -> float:
@@ -299,12 +316,24 @@ def _loss_factor(pulley: Pulley, belt: Belt, stiffness: float) -> float:
     return of_cover + belt.compression_loss_factor * side / stiffness
 
 
-def hertz_compliances(path: Path, pulleys: Sequence[Pulley], belt: Belt, stiffness: float) -> FloatArray:
-    """Compliance A of the solid rollers of each nip at its roller beside the path, m^3/N^2, shape (n,)."""
-    found = np.zeros(len(pulleys))
-    for roller, pulley in path.nips:
-        found[roller] = Pair.of(pulleys[roller], pulleys[pulley], belt, stiffness).hertz
+def beside_the_path(path: Path, pulleys: Sequence[Pulley], belt: Belt, stiffness: float) -> dict[str, FloatArray]:
+    """What rollers of nips have more than pulleys, shapes (n,): Hertz of the pair, and the set of the belt."""
+    found = {"hertz": np.zeros(len(pulleys)), "lasting": np.zeros(len(pulleys)), "unloading": np.ones(len(pulleys))}
+    for (roller, pulley), depth in zip(path.nips, path.indentations.tolist(), strict=True):
+        pair = Pair.of(pulleys[roller], pulleys[pulley], belt, stiffness)
+        found["hertz"][roller] = pair.hertz
+        found["lasting"][roller] = pair.lasting * pair.peak(depth)
+        found["unloading"][roller] = 1.0 / (1.0 - pair.lasting * side_stiffness(pulleys[roller], belt, stiffness))
     return found
+
+
+def refuse_set(belt: Belt, nips: Sequence[Nip], what: str) -> None:
+    """Make sure that a belt with a lasting compression is only asked for steady running."""
+    if nips and belt.compression_set > 0.0:
+        raise ModelError(
+            f"belt.compression_set = {belt.compression_set:g} is that of a belt that runs steadily through its nips, "
+            f"and {what} would need its history. Compute it with `beltdyn steady-state`, or omit compression_set."
+        )
 
 
 def rim_ratios(pairs: Sequence[tuple[int, int]], pulleys: Sequence[Pulley], radii: FloatArray) -> FloatArray:

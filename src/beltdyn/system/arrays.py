@@ -31,6 +31,8 @@ PULLEY = record(
     damping="f8",  # damping over stiffness of contact against that of the law
     rim_ratio="f8",  # radius at which the tension line rolls off over the effective radius
     hertz="f8",  # penetration of solid rollers of a nip over the square of the line force, m^3/N^2
+    lasting="f8",  # compression of the belt that stays behind a nip, m
+    unloading="f8",  # stiffness of contact where the belt leaves a nip over that where it is pressed
     beside="i8",  # 1 of the roller of a nip, on which the belt does not lie, else 0
 )
 """A pulley."""

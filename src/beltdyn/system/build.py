@@ -14,7 +14,7 @@ from beltdyn.errors import ModelError
 from beltdyn.machines import Goods, Tensioner
 from beltdyn.model import Belt, Contact, Path, Prepared, Pulley
 from beltdyn.model.hysteresis import Passing, passing_strains, rolling_resistances
-from beltdyn.model.nip import damping_ratios, foundations, hertz_compliances, rim_ratios
+from beltdyn.model.nip import beside_the_path, damping_ratios, foundations, rim_ratios
 from beltdyn.model.pulley import friction_on, surface_part
 from beltdyn.model.routing import radii as effective_radii
 from beltdyn.quadrature import Quadrature, gauss_points, lobatto_points
@@ -167,7 +167,8 @@ def belt_system(
         shafts["rim_ratio"] = rim_ratios(path.nips, pulleys, radii)
         shafts["damping"] = damping_ratios(path, pulleys, belt, contact)
         if contact is not None:
-            shafts["hertz"] = hertz_compliances(path, pulleys, belt, contact.given("stiffness"))
+            for name, values in beside_the_path(path, pulleys, belt, contact.given("stiffness")).items():
+                shafts[name] = values
         shafts["beside"][list(path.beside)] = 1
     bodies = body_arrays(pulleys, radii, tensioners)
     supports = nodal_supports(nodes, len(mesh.scale), fixed, forces, moments)

@@ -83,6 +83,7 @@ def pulley_arrays(
         foundation=np.ones(len(pulleys)),
         damping=np.ones(len(pulleys)),
         rim_ratio=np.ones(len(pulleys)),
+        unloading=np.ones(len(pulleys)),
         beside=np.zeros(len(pulleys), dtype=np.int64),
     )
 

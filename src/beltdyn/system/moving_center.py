@@ -62,6 +62,8 @@ def pulley_state(system: System, pulley: int, position: FloatArray, velocity: Fl
             item.damping,
             item.rim_ratio,
             item.hertz,
+            item.lasting,
+            item.unloading,
         )
     at = tensioner_coordinate(system, carrier)
     center = tensioner_center(system.tensioners[carrier], position[at])
@@ -79,6 +81,8 @@ def pulley_state(system: System, pulley: int, position: FloatArray, velocity: Fl
         item.damping,
         item.rim_ratio,
         item.hertz,
+        item.lasting,
+        item.unloading,
     )
 
 

@@ -22,6 +22,8 @@ class NipLoad(NamedTuple):
     """N."""
     stiffness: float
     """Growth of the force over the way of the roller, N/m."""
+    pair: Pair
+    """Of which the lasting compression of the belt follows from the overlap."""
 
 
 def nip_loads(prepared: Prepared) -> list[NipLoad]:
@@ -30,7 +32,7 @@ def nip_loads(prepared: Prepared) -> list[NipLoad]:
     for nip, (roller, pulley), depth in zip(prepared.drive.nips, path.nips, path.indentations.tolist(), strict=True):
         if nip.force is not None:
             pair = Pair.of(prepared.pulleys[roller], prepared.pulleys[pulley], prepared.belt, contact)
-            found.append(NipLoad(roller, pulley, nip.force, pair.slope(depth)))
+            found.append(NipLoad(roller, pulley, nip.force, pair.slope(depth), pair))
     return found
 
 
@@ -41,11 +43,13 @@ def with_own_rollers(system: System) -> System:
 
 def pressed_on(system: System, loads: list[NipLoad], hub: FloatArray, size: float) -> bool:
     """Move rollers by what forces of the belt on hubs, shape (P, 2), miss; False if all moves are small."""
-    centers, far = system.pulleys.center, False
+    centers, radii, far = system.pulleys.center, system.pulleys.radius, False
     for one in loads:
         way = centers[one.pulley] - centers[one.roller]
         way /= np.hypot(*way)
         step = (one.force + float(hub[one.roller] @ way)) / one.stiffness
         centers[one.roller] += step * way
+        depth = radii[one.roller] + radii[one.pulley] - np.hypot(*(centers[one.pulley] - centers[one.roller]))
+        system.pulleys.lasting[one.roller] = one.pair.lasting * one.pair.peak(float(depth))
         far = far or abs(step) > _ACCURACY * size
     return far

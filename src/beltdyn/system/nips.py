@@ -22,7 +22,7 @@ class Nips(NamedTuple):
     """What is seen in R nips at k states; the names are those of the results."""
 
     nip_width: FloatArray
-    """Length of belt on which the roller presses, m, shape (k, R)."""
+    """Length of belt within the roller, m, shape (k, R); one that stays compressed lets go before its end."""
     nip_tension_before: FloatArray
     """Tension where the running belt enters, N, shape (k, R)."""
     nip_tension_after: FloatArray

@@ -7,6 +7,7 @@ import numpy as np
 from beltdyn.arrays import IntArray
 from beltdyn.errors import ModelError
 from beltdyn.model import Drive, Prepared, prepare
+from beltdyn.model.nip import refuse_set
 from beltdyn.results import Run
 from beltdyn.state.linearized import DRY_FRICTION, SmallMotions, in_motion, linearised
 from beltdyn.state.settling import DIRECTION
@@ -76,6 +77,7 @@ def require_closed(drive: Drive, *, web: bool = False) -> None:
     """Refuse belts with ends, and web lines where they are not told to serve."""
     if drive.is_web and not web:
         raise ModelError('a web line has modes about steady running alone. Set about = "steady", or omit it.')
+    refuse_set(drive.belt, drive.nips, "a small motion")
     if drive.is_web and drive.nips:
         raise ModelError("a web line with nips has no modes. Use `beltdyn steady-state`, or remove its [[nip]].")
     if drive.ends and not drive.is_web:

@@ -124,3 +124,21 @@ def test_a_solid_roller_gives_way_in_series(state: FloatArray, pulley: PulleySta
     assert (deeper.energy - force.energy) / step == pytest.approx(force.elastic, rel=1e-5)
     faster = point_force(here._replace(radial=here.radial - 1e-6), soft, every_law).normal
     assert (faster.force - force.force) / 1e-6 == pytest.approx(force.by_rate, rel=1e-4)
+
+
+def test_a_belt_that_stays_compressed_lets_go_early(state: FloatArray, pulley: PulleyState, law: ContactLaw) -> None:
+    """Where it leaves, K' (d - set) with K' = K / (1 - set / peak) in place of K d; the rest is lost."""
+    deep = float(np.abs(point(state, pulley).penetration))
+    lasting, rest = 0.2 * deep, pulley._replace(damping=0.0)
+    here = point(state, pulley)._replace(penetration=deep)
+    whole = point_force(here, rest, law).normal
+    kept = point_force(here, rest._replace(lasting=lasting, unloading=1.25), law).normal
+    assert kept.force == pytest.approx(whole.force)
+    half = here._replace(penetration=0.5 * deep)
+    given = point_force(half, rest._replace(lasting=lasting, unloading=1.25), law).normal
+    leaves = here.radial > 0.0
+    assert given.force == pytest.approx(whole.force * (1.25 * 0.3 if leaves else 0.5))
+    assert given.elastic == pytest.approx(0.5 * whole.force)
+    gone = here._replace(penetration=0.1 * deep)
+    left = point_force(gone, rest._replace(lasting=lasting, unloading=1.25), law).normal
+    assert (left.force == 0.0) == leaves

@@ -173,6 +173,14 @@ def test_rollers_slide_under_their_forces_in_a_run() -> None:
     assert (slide.pulley, slide.direction, slide.preload) == ("press", (1.0, 0.0), 2000.0)
 
 
+def test_a_lasting_compression_is_that_of_steady_running() -> None:
+    held = pressed(nip=[{"roller": "press", "pulley": "drum", "gap": "2.4 mm"}])
+    lasting = held.replace(belt=held.belt.replace(compression_set=0.1))
+    for analysis in (bd.simulate, bd.modes):
+        with pytest.raises(ModelError, match=r"compression_set = 0.1 is that of a belt that runs steadily.*history"):
+            analysis(lasting)
+
+
 def test_speeds_that_differ_by_more_than_creep_are_told() -> None:
     """The face of the belt on the drum runs at 6.6 rad/s * 0.153 m; 12.62 rad/s of the roller match it."""
     driven = {key: value for key, value in PRESS.items() if key != "inertia"}

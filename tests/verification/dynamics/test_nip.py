@@ -8,7 +8,7 @@ import pytest
 
 import beltdyn as bd
 from beltdyn.errors import ConvergenceError
-from beltdyn.model.nip import side_stiffness
+from beltdyn.model.nip import Pair, side_stiffness
 from beltdyn.theory.nip import (
     equivalent_radius,
     force,
@@ -116,6 +116,24 @@ def test_a_solid_roller_loses_as_johnson_says() -> None:
     nip, (_, radius) = bd.derived.nips(run).isel(nip=0), _foundation(run)
     rolls = 0.02 * 500.0 * 0.5 * float(nip.width) / (3.0 * radius)
     assert float(nip.compression_loss) == pytest.approx(rolls * SPEED * (DRUM + 1.5e-3), rel=PARABOLA)
+
+
+def test_a_belt_that_stays_compressed_loses_what_it_does_not_give_back() -> None:
+    """The set s of the compression 2 f / k at the peak costs s f^2 / k of each meter, and leaves the belt thinner."""
+    share, contact = 0.2, 2e9
+    changes = {"belt.compression_set": share, "belt.contact_stiffness": contact, "contact.damping": 0.0}
+    run = bd.steady_state(drive(**changes, **{"pulley[press].cover": None, "nip[1].force": 5e3}))
+    nip, prepared = bd.derived.nips(run).isel(nip=0), run.prepared
+    pair = Pair.of(prepared.pulleys[2], prepared.pulleys[0], prepared.belt, prepared.contact_stiffness)
+    depth = float(nip.indentation)
+    peak, lasting = pair.peak(depth), share * 2.0 * pair.peak(depth) / contact
+    assert pair.force(depth) == pytest.approx(5e3, rel=PARABOLA)
+    assert float(nip.thickness_after) == pytest.approx(3e-3 - lasting, abs=PARABOLA * lasting)
+    lost = share * peak**2 / contact * SPEED * (DRUM + 1.5e-3)
+    assert float(nip.compression_loss) == pytest.approx(lost, rel=PARABOLA)
+    last, span = run.dataset.isel(time=-1), float(run.dataset.time[-1])
+    put_in = float((last.shaft_torque * last.pulley_speed).sum())
+    assert put_in == pytest.approx(sum(float(last[one]) / span for one in ("friction_loss", "damping_loss")), rel=1e-4)
 
 
 def test_an_idle_roller_takes_nothing_and_rolls_on_the_outer_face(idle: bd.Run) -> None:

@@ -100,10 +100,11 @@ def nips(run: Run, time: float | None = None) -> xr.Dataset:
     xarray.Dataset
         By ``nip``: ``force`` (N), ``width`` (m), ``peak_pressure`` (Pa), ``indentation`` (m, by which the undeformed
         rollers and the belt overlap) and the ``gap`` that follows from it (m), ``thickness`` (m, the least one of the
-        belt, which recovers behind the nip), ``compression_loss`` (W, of covers and belt on both rollers),
-        ``tension_before`` and ``tension_after`` (N) where the running belt enters and leaves, and ``speed_ratio``,
-        surface speed of the roller over that of the pulley. By ``nip`` and ``side`` (roller, pulley): ``pull`` (N, on
-        the belt in the nip, positive in the direction in which it runs), ``torque`` (N m, on the shaft), ``grip_limit``
+        belt) and ``thickness_after`` (m, behind the nip, by ``belt.compression_set``), ``compression_loss`` (W, of
+        covers and belt on both rollers), ``tension_before`` and ``tension_after`` (N) where the running belt enters and
+        leaves, and ``speed_ratio``, surface speed of the roller over that of the pulley. By ``nip`` and ``side``
+        (roller, pulley): ``pull`` (N, on the belt in the nip, positive in the direction in which it runs), ``torque``
+        (N m, on the shaft), ``grip_limit``
         (N, mu F), and ``grip``, the pull over it.
 
     Raises
@@ -155,6 +156,7 @@ def nips(run: Run, time: float | None = None) -> xr.Dataset:
             indentation=float(radii.sum()) - apart,
             gap=prepared.belt.thickness - float(radii.sum()) + apart,
             thickness=_thickness(prepared, instant, row, pressed),
+            thickness_after=_thickness(prepared, instant, row, pressed, prepared.belt.compression_set),
             compression_loss=float(at["contact_damping_power"].values[[roller, pulley]].sum()),
             tension_before=float(at["nip_tension_before"].values[row]),
             tension_after=float(at["nip_tension_after"].values[row]),
@@ -171,6 +173,7 @@ def nips(run: Run, time: float | None = None) -> xr.Dataset:
         "indentation": ("m", "Overlap of undeformed rollers and belt"),
         "gap": ("m", "Gap of undeformed rollers"),
         "thickness": ("m", "Least thickness of the belt in the nip"),
+        "thickness_after": ("m", "Thickness of the belt behind the nip"),
         "compression_loss": ("W", "Power lost by compression"),
         "tension_before": ("N", "Tension where the belt enters the nip"),
         "tension_after": ("N", "Tension where the belt leaves the nip"),
@@ -193,10 +196,13 @@ def nips(run: Run, time: float | None = None) -> xr.Dataset:
     )
 
 
-def _thickness(prepared: Prepared, instant: xr.Dataset, row: int, pressed: BoolArray) -> float:
-    """Least thickness of a belt that each face presses by its line force over the stiffness of contact, m."""
+def _thickness(prepared: Prepared, instant: xr.Dataset, row: int, pressed: BoolArray, part: float = 1.0) -> float:
+    """Least thickness of a belt that each face presses by its line force over the stiffness of contact, m.
+
+    A part of that compression leaves the thickness behind the nip.
+    """
     faces = instant["nip_normal_force"].values[row] + instant["normal_force"].values
-    return float(prepared.belt.thickness - np.max(faces[pressed], initial=0.0) / prepared.contact_stiffness)
+    return float(prepared.belt.thickness - part * np.max(faces[pressed], initial=0.0) / prepared.contact_stiffness)
 
 
 def _grip(pulls: list[float], limits: list[float]) -> list[float]:
