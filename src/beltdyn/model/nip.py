@@ -106,7 +106,8 @@ def refuse_nips(nips: Sequence[Nip], what: str) -> None:
     """Make sure that what knows no nips is not asked of a drive that has some."""
     if nips:
         raise ModelError(
-            f'{what} knows no nip, such as that of "{nips[0].roller}". Compute steady running with '
+            f'{what} has a belt without thickness, which knows no nip, such as that of "{nips[0].roller}". Compute '
+            "steady running with "
             "`beltdyn steady-state`, its modes, or a run over time."
         )
 
