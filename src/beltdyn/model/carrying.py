@@ -5,6 +5,7 @@ from math import hypot
 from typing import NamedTuple
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 from beltdyn.arrays import BoolArray, FloatArray
 from beltdyn.machines.carrying.goods import Goods
@@ -72,6 +73,15 @@ def lies_on(laid: Laid, stretch: Stretch, along: FloatArray) -> BoolArray:
     first = (laid.path.span_start(stretch.span) + stretch.start - laid.start) / laid.stretch
     length = laid.path.length / laid.stretch
     return np.asarray((along - first) % length <= stretch.length / laid.stretch)
+
+
+def in_batch(laid: Laid, stretch: Stretch, goods: Goods, along: FloatArray, passed: ArrayLike = 0.0) -> BoolArray:
+    """Whether goods are at places of a laid belt (m) when lengths of it have passed (m), by their batch."""
+    if goods.batch is None:
+        return np.ones(np.broadcast_shapes(np.shape(along), np.shape(passed)), dtype=bool)
+    place = (laid.start + laid.stretch * along - laid.path.span_start(stretch.span)) % laid.path.length
+    way = place - laid.stretch * np.asarray(passed)
+    return np.asarray((way >= goods.batch[0]) & (way <= goods.batch[1]))
 
 
 def hanging_lengths(supports: Sequence[Support], spans: Sequence[tuple[str, str]], path: Path) -> list[FloatArray]:

@@ -6,11 +6,15 @@ from typing import NamedTuple
 import numpy as np
 
 from beltdyn.arrays import ComplexArray, FloatArray, IntArray
+from beltdyn.kernel import interpreted
+from beltdyn.machines.profiles.functions import schedule_value
 from beltdyn.model import Drive
+from beltdyn.model.carrying import in_batch, lies_on
 from beltdyn.quadrature import gauss_points
 from beltdyn.state.linearized import SmallMotions
 from beltdyn.state.staying import depths
 from beltdyn.system.arc_mesh import passed_at
+from beltdyn.system.arrays import Carrying
 from beltdyn.system.constant_drive import rim_of_bodies
 from beltdyn.system.frame import centreline_points
 
@@ -31,7 +35,9 @@ class Points(NamedTuple):
     along: FloatArray
     """Belt coordinates, m, shape (q,)."""
     weight: FloatArray
-    """Mass that belongs to each, kg."""
+    """Mass of belt and goods that belongs to each, kg."""
+    turning: FloatArray
+    """Mass of idlers that moves along the belt with each, kg."""
     place: FloatArray
     """m, shape (q, 2)."""
     slope: FloatArray
@@ -109,8 +115,8 @@ def belt_points(motions: SmallMotions) -> Points:
     last = np.maximum.accumulate(np.where(touched >= 0, np.arange(touched.size), -1))
     before = touched[touched >= 0][-1] if motions.prepared.path.ends is None else system.pulleys.size
     span = np.where(last >= 0, touched[last], before)
-    mass = motions.drive.belt.mass_per_length * np.outer(system.length, quadrature.weights).ravel()
-    return Points(along, mass, place, slope, span)
+    masses = _masses(motions, along, np.outer(system.length, quadrature.weights).ravel())
+    return Points(along, *masses, place, slope, span)
 
 
 def even_points(motions: SmallMotions) -> Points:
@@ -123,8 +129,21 @@ def even_points(motions: SmallMotions) -> Points:
     along = distance * (np.arange(_EVEN, dtype=float) + 0.5)
     place, slope, _ = centreline_points(system, motions.state.position, along)
     span = fine.span[np.maximum(np.searchsorted(fine.along, along, side="right") - 1, 0)]
-    mass = np.full(_EVEN, motions.drive.belt.mass_per_length * distance)
-    return Points(along, mass, place, slope, span)
+    return Points(along, *_masses(motions, along, np.full(_EVEN, distance)), place, slope, span)
+
+
+def _masses(motions: SmallMotions, along: FloatArray, length: FloatArray) -> tuple[FloatArray, FloatArray]:
+    """Masses of belt with goods, and of idlers, that belong to lengths (m) at places along the belt, kg."""
+    prepared, system = motions.prepared, motions.system
+    riding, turning = np.full(along.size, prepared.belt.mass_per_length), np.zeros(along.size)
+    rows = system.carrying.goods if isinstance(system.carrying, Carrying) else ()
+    for one, row in zip(prepared.goods, rows, strict=True):
+        stretch, share = prepared.stretch(one), interpreted(schedule_value)(system.profiles, int(row.schedule), 0.0)
+        here = lies_on(prepared.laid, stretch, along) & in_batch(prepared.laid, stretch, one, along)
+        riding += one.mass_per_length * share * here
+    for support in prepared.supports:
+        turning += support.rotating_mass * lies_on(prepared.laid, prepared.stretch(support), along)
+    return riding * length, turning * length
 
 
 def shapes_of(motions: SmallMotions, points: Points, coordinates: ComplexArray) -> Shapes:
@@ -155,8 +174,9 @@ def speeds_of(motions: SmallMotions, points: Points, value: complex, vector: Com
     moved, turned = _of_points(motions, points, vector)
     passed, speed = passed_at(system, shafts, points.along), motions.state.velocity[system.frame.place]
     velocity = value * (moved + passed[:, None] * points.slope) + speed * turned
-    root, inertia = np.sqrt(points.weight), np.sqrt(np.asarray(system.bodies.kinetic))
-    across, along = (root * np.sum(velocity * direction, axis=1) for direction in (points.normal, points.tangent))
+    inertia = np.sqrt(np.asarray(system.bodies.kinetic))
+    across = np.sqrt(points.weight) * np.sum(velocity * points.normal, axis=1)
+    along = np.sqrt(points.weight + points.turning) * np.sum(velocity * points.tangent, axis=1)
     return across, along, inertia[: shafts.size] * value * shafts, inertia[shafts.size :] * value * arms
 
 

@@ -222,6 +222,11 @@ def test_the_first_longitudinal_mode_is_that_of_two_rods_and_the_take_up() -> No
 
     expected = sorted((frequency(mass), frequency(inertia / RADIUS**2)))
     np.testing.assert_allclose(np.sort(found.frequency.values)[:2], expected, rtol=0.005)
+    moving = float(found.tensioner_share.values[np.argmin(np.abs(found.frequency.values - frequency(mass))), 0])
+    wave = 2.0 * math.pi * frequency(mass) / speed
+    of_belt = along * (LENGTH - math.sin(2.0 * wave * LENGTH) / (2.0 * wave))
+    of_arm = mass * math.sin(wave * LENGTH) ** 2
+    assert moving == pytest.approx(of_arm / (of_arm + of_belt), rel=0.01)
     over_speed = bd.campbell(drive, speed=[4.0, 8.0], count=2).dataset.frequency
     np.testing.assert_allclose(over_speed[:, :2], [expected, expected], rtol=0.005)
 

@@ -7,7 +7,7 @@ import numpy as np
 from beltdyn.arrays import BoolArray, FloatArray, IntArray
 from beltdyn.machines import Goods, Support
 from beltdyn.model import off_the_stop, unstable_balance
-from beltdyn.model.carrying import lies_on, upper_side
+from beltdyn.model.carrying import in_batch, lies_on, upper_side
 from beltdyn.parts.messages import Finding, listing
 from beltdyn.results.checks.evidence import Evidence
 from beltdyn.results.incidents import jumps_in, on_stops
@@ -118,13 +118,10 @@ def _in_batch(evidence: Evidence, goods: Goods, place: FloatArray, fields: Float
     """Whether places along the belt (m) are those of a batch that moves with the belt, shape (t, e)."""
     if goods.batch is None:
         return np.ones((fields.size, place.size), dtype=bool)
-    laid, span = evidence.prepared.laid, evidence.prepared.stretch(goods).span
-    along = laid.start + laid.stretch * place - laid.path.span_start(span)
-    speed, time = np.nanmean(evidence.recorded["belt_speed"], axis=1), evidence.time
-    steps = 0.5 * (speed[1:] + speed[:-1]) * np.diff(time)
-    passed = np.interp(fields, time, np.append(0.0, np.cumsum(steps)))[:, None]
-    way = (along % laid.path.length) - passed
-    return np.asarray((way >= goods.batch[0]) & (way <= goods.batch[1]))
+    prepared, time = evidence.prepared, evidence.time
+    speed = np.nanmean(evidence.recorded["belt_speed"], axis=1) / prepared.laid.stretch
+    passed = np.append(0.0, np.cumsum(0.5 * (speed[1:] + speed[:-1]) * np.diff(time)))
+    return in_batch(prepared.laid, prepared.stretch(goods), goods, place, np.interp(fields, time, passed)[:, None])
 
 
 _LIFTS = 1.01
