@@ -49,6 +49,7 @@ from beltdyn.system.arrays import Bare, BodyForces, Carrying, NoCarriage, Suppor
 from beltdyn.system.frame import ArcMesh, Flowing, FlowingByArcs, Staying, StayingByArcs, Travelling
 from beltdyn.system.guide import Guided
 from beltdyn.system.running_web import RunningWeb
+from beltdyn.system.single_teeth import JumpWatch
 from beltdyn.system.state import State
 
 # Objects as bytes and back: JSON, arrays behind it, and a checksum before both
@@ -249,7 +250,17 @@ _SYSTEM = (
     *(NoCarriage, Guided, RunningWeb),
 )
 _INTEGRATION = (AlphaIntegration, GeneralizedAlpha, Settings, Task, Statistics, Instants, Chunk, BodyForces)
-_RECORDING = (*(Observer, FrictionWork, WorkSoFar, MaterialWork, EnergyAccount, FlutterWatch, BandLimit, SlipThrough),)
+_RECORDING = (
+    Observer,
+    FrictionWork,
+    WorkSoFar,
+    MaterialWork,
+    EnergyAccount,
+    FlutterWatch,
+    BandLimit,
+    SlipThrough,
+    JumpWatch,
+)
 
 
 class CheckpointWarning(UserWarning):
@@ -337,7 +348,7 @@ def checkpoint_file(path: Path) -> Path:
 def write_checkpoint(path: Path, point: Checkpoint) -> None:
     """Write a checkpoint."""
     with atomic_path(path, is_checkpoint) as temporary:
-        temporary.write_bytes(f"{_HEAD} {_made_by()}\n".encode() + _packing().pack(point))
+        temporary.write_bytes(f"{_HEAD} {_made_by()}\n".encode() + packing().pack(point))
 
 
 def read_checkpoint(path: Path) -> Checkpoint:
@@ -360,7 +371,7 @@ def read_checkpoint(path: Path) -> Checkpoint:
             "own, and a run can only be resumed by the same. Use those that started the run, or run the drive again."
         )
     try:
-        point = _packing().unpack(content)
+        point = packing().unpack(content)
     except ModelError as error:
         raise ModelError(f"{path} is damaged ({error}). Run the drive again.") from error
     if not isinstance(point, Checkpoint):
@@ -381,7 +392,7 @@ def _made_by() -> str:
     return " ".join([version("beltdyn"), source_hash(PACKAGE), *([own] if own_labels() else [])])
 
 
-def _packing() -> Packing:
+def packing() -> Packing:
     """With the classes of all laws and elements that are registered."""
     laws = (law.record for laws in (FRICTION_LAWS, NORMAL_LAWS, STRETCH_LAWS) for law in laws.values())
     elements = (kind.element for kind in ELEMENTS.values())

@@ -12,6 +12,7 @@ from beltdyn.system.meshing import fit_phases
 from beltdyn.system.single_teeth import JumpWatch, tooth_coordinates, tooth_forces
 from beltdyn.system.state import State, laid
 from beltdyn.system.state_forces import body_forces_at
+from beltdyn.transient.checkpoint import packing
 from tests.unit.model.test_toothing import drive
 
 
@@ -80,6 +81,17 @@ def test_a_groove_that_passes_is_a_jump(system: System, state: State) -> None:
         watch.take(time[part], *(one[part] for one in states))
     assert [(pulley, teeth) for _, pulley, teeth in watch.events] == [(1, 1), (1, 1)]
     assert watch.events[0][0] == pytest.approx(0.7 / 2.2, abs=0.02)
+
+
+def test_a_watch_goes_on_from_a_checkpoint(system: System, state: State) -> None:
+    watch, time = JumpWatch(system, np.linspace(0.45, 0.5, 7)), np.linspace(0.0, 1.0, 100)
+    states = turned(system, state, 2.2 * 2.0 * np.pi / 36, 100)
+    watch.take(time[:50], *(one[:50] for one in states))
+    kept = packing().unpack(packing().pack(watch))
+    for one in (watch, kept):
+        one.take(time[50:], *(part[50:] for part in states))
+    assert kept.events == watch.events
+    assert len(kept.events) == 2
 
 
 def lift(places: np.ndarray, by: float) -> None:
