@@ -33,7 +33,6 @@ from pathlib import Path
 from types import CodeType, FunctionType, ModuleType
 from typing import Any
 
-import numba
 import platformdirs
 
 # The way of compilation: quick for known versions of Numba, otherwise by its public decorator
@@ -264,6 +263,8 @@ def marks_in(types: Iterable[Any]) -> set[str]:
 @contextmanager
 def setting(name: str, value: Any) -> Iterator[None]:
     """Change a setting of Numba temporarily; other packages keep theirs."""
+    import numba  # takes long to import, and a drive can be checked without it
+
     before = getattr(numba.config, name)
     setattr(numba.config, name, value)
     try:

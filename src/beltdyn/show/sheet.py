@@ -294,7 +294,7 @@ def _tensioners(summary: Summary) -> list[tuple[str, str]]:
 
 def _rolls(run: Run) -> list[tuple[str, str]]:
     """Radius, inertia and torque of rolls, at the beginning and at the end of a run."""
-    if "roll_radius" not in run.dataset:
+    if not run.drive.rolls:  # asked of the drive: without rolls the dataset is not needed
         return []
     facts = []
     for name in run.dataset["roll"].values:

@@ -42,9 +42,7 @@ def test_chosen_figures(tmp_path: Path, run: Run) -> None:
 
 
 def test_unknown_figure_is_a_model_error(tmp_path: Path, run: Run) -> None:
-    with pytest.raises(
-        ModelError, match=r"figure 'speed' is unknown\. Choose from configuration, carriage_error, contact_forces, "
-    ):
+    with pytest.raises(ModelError, match=r"figure 'speed' is unknown\. Choose from configuration, contact_forces, "):
         plot.save_all(run, tmp_path / "figures", ["slip", "speed"])
     assert not (tmp_path / "figures").exists()
 
