@@ -26,7 +26,7 @@ from rich.table import Table
 from beltdyn import simulate
 from beltdyn.arrays import FloatArray
 from beltdyn.model import Drive
-from beltdyn.solvers.progress import Progress
+from beltdyn.solvers.run_progress import Progress
 from validation.published import better, loaded_two_pulley, two_pulley
 
 Solution = tuple[FloatArray, float]

@@ -18,7 +18,7 @@ from rich.table import Table
 
 from beltdyn import simulate
 from beltdyn.model import Drive
-from beltdyn.solvers.progress import Progress
+from beltdyn.solvers.run_progress import Progress
 from validation.published import better, two_pulley
 
 ELEMENTS = (20, 50, 100, 200, 500, 1000)

@@ -24,7 +24,7 @@ from beltdyn.arrays import FloatArray
 from beltdyn.cli.output import show_result
 from beltdyn.designs.calibrate import Residuals, fit
 from beltdyn.designs.designs import free_number
-from beltdyn.model.study import CalibrationStudy
+from beltdyn.model.parameter_study import CalibrationStudy
 from beltdyn.model.toml import read_study
 from beltdyn.show.plot.style import INK, new_figure, styled
 

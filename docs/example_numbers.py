@@ -20,7 +20,7 @@ from beltdyn.model import Pulley, prepare
 from beltdyn.model.hysteresis import compression_losses
 from beltdyn.results import summarize
 from beltdyn.theory.creep import capstan_ratio, gross_slip_tensions, speed_loss
-from beltdyn.theory.hysteresis import bending_loss
+from beltdyn.theory.nip import bending_loss
 from beltdyn.theory.span import open_belt
 
 RPM = pi / 30.0

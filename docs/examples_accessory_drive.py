@@ -13,7 +13,7 @@ import beltdyn as bd
 from beltdyn.arrays import FloatArray
 from beltdyn.model import install
 from beltdyn.show.plot.style import new_figure, styled
-from beltdyn.show.plot.sweep import orders
+from beltdyn.show.plot.waterfall import orders
 
 TURN = 0.075
 """A turn of the crank at idle, s."""

@@ -40,9 +40,7 @@ from beltdyn.model import (
 )
 from beltdyn.model.belt_form import Nominal, Sold, Stiffnesses
 from beltdyn.model.fatigue import CordFatigue, RibFatigue
-from beltdyn.model.pulley import Diameter, surface_part
-from beltdyn.model.stretch_curve import StretchCurve
-from beltdyn.model.study import (
+from beltdyn.model.parameter_study import (
     DutyPoint,
     FreeNumber,
     Goal,
@@ -54,10 +52,12 @@ from beltdyn.model.study import (
     Requirement,
     VariedNumber,
 )
+from beltdyn.model.pulley import Diameter, surface_part
+from beltdyn.model.stretch_curve import StretchCurve
 from beltdyn.parts.kind_fields import NameOf
 from beltdyn.parts.part import Part
 from beltdyn.show.plot import FIGURES
-from beltdyn.show.plot.registry import on_request
+from beltdyn.show.plot.figures import on_request
 
 CHOSEN = {
     Belt: ("length", "elements", "discretization"),

@@ -29,10 +29,10 @@ from .model import (
     loads,
     read_catalogue,
 )
+from .points.belt_rating import rating
 from .points.duty import duty
 from .points.life import life
 from .points.operating_points import operating_map
-from .points.rating import rating
 from .points.tensioner_sheet import tensioner_sheet
 from .points.traction import traction
 from .results import (

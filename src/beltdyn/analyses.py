@@ -95,7 +95,7 @@ for _analysis in (
         "beltdyn.designs.drive_sheet:sheet",
         "Compute the drive sheet: positions, tensions, hub loads, slip safety, peaks, modes, belts.",
     ),
-    Analysis("beltdyn.points.rating:rating", "Rate the belt: rated power, utilization, belts needed.", True),
+    Analysis("beltdyn.points.belt_rating:rating", "Rate the belt: rated power, utilization, belts needed.", True),
     Analysis("beltdyn.designs.sensitivity:sensitivity", "Compute the sensitivity of results to each input.", True),
     Analysis("beltdyn.vibration.modes:modes", "Compute natural modes: frequencies, damping, shapes.", True),
     Analysis("beltdyn.designs.optimize:optimize", "Optimize parameters of a drive for a goal."),

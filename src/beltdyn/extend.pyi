@@ -15,9 +15,9 @@ from beltdyn.parts.quantity import quantity
 from beltdyn.records import record, records
 from beltdyn.results.result import build_result
 from beltdyn.results.schema import Variable
-from beltdyn.show.plot.registry import figure
+from beltdyn.show.plot.figures import figure
 from beltdyn.solvers.generalized_alpha import GeneralizedAlpha
-from beltdyn.solvers.progress import BatchProgress, Progress
+from beltdyn.solvers.run_progress import BatchProgress, Progress
 from beltdyn.solvers.standard import ErrorControl, FixedSteps, StandardIntegrator, StepError, Stepwise
 from beltdyn.stretch.law import Stretching, StretchLaw
 

@@ -24,13 +24,13 @@ from beltdyn.machines import profiles
 from beltdyn.model import Belt, Contact, Limits, Pulley, Rating, Simulation, Steady, Toothing, dumps, loads
 from beltdyn.model.belt_form import Nominal, Sold
 from beltdyn.model.catalogue import Entry, read_catalogue
+from beltdyn.model.parameter_study import CalibrationStudy, OptimizationStudy
 from beltdyn.model.pulley import Diameter
-from beltdyn.model.study import CalibrationStudy, OptimizationStudy
 from beltdyn.model.toml import example
 from beltdyn.model.toothing import ToothRating
 from beltdyn.parts.part import Part
 from beltdyn.show.plot import FIGURES
-from beltdyn.show.plot.registry import on_request
+from beltdyn.show.plot.figures import on_request
 from beltdyn.transient.simulate import simulate
 
 ROOT = Path(__file__).parents[2]

@@ -10,7 +10,7 @@ SOURCE = UNIT.parents[1] / "src" / "beltdyn"
 
 FAMILIES = {
     "elements/*.py": "unit/elements/test_kind.py",
-    "show/plot/*.py": "unit/show/plot/test_registry_figures.py",
+    "show/plot/*.py": "unit/show/plot/test_figures_registry_figures.py",
 }
 """Where a kind is tested with all of its family, if it has no test of its own."""
 
@@ -24,7 +24,7 @@ ELSEWHERE = {
     "machines/loads/*.py": "unit/machines/loads/test_shaft.py",
     "machines/profiles/*.py": "unit/machines/profiles/test_functions.py",
     "machines/carrying/*.py": "unit/machines/carrying/test_carrying.py",
-    "machines/tensioners/registry.py": "unit/machines/tensioners/test_tensioner.py",
+    "machines/tensioners/tensioner_rows.py": "unit/machines/tensioners/test_tensioner.py",
     "stretch/*.py": "unit/stretch/test_laws.py",
     "results/checks/*.py": "unit/results/test_checks.py",
     "show/plot/__init__.py": "unit/test_extend.py",
@@ -32,8 +32,8 @@ ELSEWHERE = {
     "system/arc_tangent.py": "unit/system/test_arc_mesh.py",
     "system/body_forces.py": "unit/system/test_bodies.py",
     "system/carrying.py": "unit/system/test_arc_mesh.py",
-    "system/nip_loads.py": "unit/system/test_nips.py",
-    "results/derived/nip.py": "unit/system/test_nips.py",
+    "system/nips.py": "unit/system/test_nips.py",
+    "results/derived/nip_profile.py": "unit/system/test_nips.py",
     "model/cover.py": "unit/theory/test_nip.py",
     "system/element_state.py": "unit/system/test_discretization.py",
     "system/observations.py": "unit/system/test_observe.py",
@@ -50,8 +50,8 @@ ELSEWHERE = {
     "__init__.py": "unit/test_public_names.py",
     "analyses.py": "unit/cli/test_analysis.py",
     "cli/*.py": "unit/cli/test_commands.py",
-    "cosimulation/beltdyn_fmi*.py": "unit/cosimulation/test_fmu.py",
-    "cosimulation/slave.py": "unit/cosimulation/test_fmu.py",
+    "cosimulation/beltdyn_fmi*.py": "unit/cosimulation/test_archive.py",
+    "cosimulation/slave.py": "unit/cosimulation/test_archive.py",
     "results/__init__.py": "unit/test_public_names.py",
 }
 """Where modules are tested that have no test of their name."""

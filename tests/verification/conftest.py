@@ -8,9 +8,9 @@ import pytest
 from hypothesis import settings
 
 from beltdyn.arrays import FloatArray
+from beltdyn.elements.ancf.belt_element import ANCF
 from beltdyn.elements.ancf.elastic_force import element_energy, element_force
 from beltdyn.elements.ancf.element import Ancf
-from beltdyn.elements.ancf.kind import ANCF
 from beltdyn.model import Belt, Drive, loads
 from beltdyn.quadrature import gauss_points
 from beltdyn.records import blank

@@ -9,7 +9,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from beltdyn.arrays import FloatArray
-from beltdyn.elements.ancf.kind import element_mass
+from beltdyn.elements.ancf.belt_element import element_mass
 from beltdyn.model import Belt
 from beltdyn.system.discretization import belt_section
 

@@ -13,9 +13,9 @@ from scipy.integrate import solve_ivp
 from scipy.linalg import eig
 
 from beltdyn.arrays import FloatArray
+from beltdyn.elements.ancf.belt_element import ANCF, element_mass
 from beltdyn.elements.ancf.elastic_force import element_energy, element_force
 from beltdyn.elements.ancf.element import Ancf
-from beltdyn.elements.ancf.kind import ANCF, element_mass
 from beltdyn.elements.ancf.material_damping import damping_force
 from beltdyn.elements.kind import DampingFactors
 from beltdyn.model import Belt

@@ -5,7 +5,7 @@ from pathlib import Path
 
 import beltdyn as bd
 from beltdyn.model import Drive, ParameterStudy, advise, install
-from beltdyn.model.study import CalibrationStudy, OptimizationStudy
+from beltdyn.model.parameter_study import CalibrationStudy, OptimizationStudy
 
 Work = Callable[[Drive, Path], object]
 

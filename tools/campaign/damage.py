@@ -14,7 +14,7 @@ import beltdyn as bd
 from beltdyn.designs.study import study
 from beltdyn.model import Drive, ParameterStudy, load
 from beltdyn.results import open_result
-from beltdyn.solvers.progress import Progress
+from beltdyn.solvers.run_progress import Progress
 from beltdyn.transient.checkpoint import checkpoint_file, read_checkpoint
 from beltdyn.transient.simulate import simulate
 

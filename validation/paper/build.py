@@ -13,7 +13,7 @@ from beltdyn.errors import ModelError
 from beltdyn.model import Drive
 from beltdyn.results import provenance
 from beltdyn.results.atomic import make_folder, unwritable
-from beltdyn.solvers.progress import BatchProgress
+from beltdyn.solvers.run_progress import BatchProgress
 from validation.paper.page import write_page
 from validation.paper.runs import RunMissingError, Runs, run_all
 from validation.paper.statement import Section

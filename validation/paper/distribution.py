@@ -7,7 +7,7 @@ import numpy as np
 
 from beltdyn.arrays import BoolArray, FloatArray
 from beltdyn.results import Run
-from beltdyn.show.plot.contact import unwrap
+from beltdyn.show.plot.contact_pressure import unwrap
 from validation.paper.kept import sliding
 from validation.paper.measures import rms
 

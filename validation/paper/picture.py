@@ -6,7 +6,7 @@ from typing import Literal, ParamSpec
 
 from matplotlib.figure import Figure
 
-from beltdyn.show.plot.registry import data_uri
+from beltdyn.show.plot.figures import data_uri
 from beltdyn.show.plot.style import styled
 from validation.paper.statement import Picture
 

@@ -10,7 +10,7 @@ from beltdyn.designs.batch import simulate_all
 from beltdyn.model import Drive
 from beltdyn.results import Run
 from beltdyn.results.atomic import make_folder
-from beltdyn.solvers.progress import BatchProgress
+from beltdyn.solvers.run_progress import BatchProgress
 from beltdyn.transient.simulate import simulate
 from validation.paper.kept import keep, open_kept
 

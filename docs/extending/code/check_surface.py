@@ -2,7 +2,7 @@ import numpy as np
 
 import beltdyn as bd
 from beltdyn.contact.surface import KINDS
-from beltdyn.contact.surface.circle import circle_gap
+from beltdyn.contact.surface.circular import circle_gap
 from beltdyn.contact.surface.lobed import lobed_gap
 from beltdyn.records import row
 

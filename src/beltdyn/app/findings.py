@@ -227,7 +227,7 @@ def _pieces(path: Path, names: Sequence[str]) -> tuple[list[float], tuple[tuple[
 
 def _along(run: Run) -> Around | None:
     """The tension around the belt at the last instant of a run with fields."""
-    from beltdyn.show.report.motion import along_belt
+    from beltdyn.show.report.replay import along_belt
 
     if not run.dataset.sizes["field_time"]:
         return None

@@ -172,7 +172,7 @@ class _Teller:
 
     def _remaining(self, progress: Any, part: float, now: float) -> float:
         """Time that is left, s, by the pace that the analysis tells, or else by that of this phase until now."""
-        from beltdyn.solvers.progress import FORECAST
+        from beltdyn.solvers.run_progress import FORECAST
 
         begun, first = self._begun.setdefault(progress.phase, (now, part))
         if not math.isnan(progress.remaining):
@@ -204,7 +204,7 @@ def _outcome(found: Any, result: Path) -> Outcome:
 
 def _pictures(found: Any) -> tuple[str, ...]:
     """The first figures of a result as a report has them, but for those that the page draws itself."""
-    from beltdyn.show.plot.registry import FIGURES, Choice, chosen_by_default, data_uri
+    from beltdyn.show.plot.figures import FIGURES, Choice, chosen_by_default, data_uri
 
     names = [name for name in chosen_by_default([found]) if name not in _DRAWN][:_MOST_PICTURES]
     return tuple(data_uri(FIGURES[name].arrange(found, Choice())) for name in names)

@@ -12,7 +12,7 @@ import uvicorn
 from fastapi import FastAPI
 from nicegui import ui
 
-from beltdyn.app.page import Page
+from beltdyn.app.main_page import Page
 from beltdyn.app.workspace import Workspace
 from beltdyn.errors import ModelError
 

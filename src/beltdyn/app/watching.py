@@ -16,7 +16,7 @@ from beltdyn.arrays import FloatArray
 from beltdyn.parts.quantity import RPM
 from beltdyn.results import RECORDED, Run, open_run
 from beltdyn.show.plot.style import tension_colors
-from beltdyn.show.report.motion import along_belt
+from beltdyn.show.report.replay import along_belt
 from beltdyn.show.sheet import Table
 
 _REFRESH = 0.4

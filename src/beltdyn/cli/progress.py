@@ -11,8 +11,8 @@ from rich.progress import BarColumn, Progress, Task, TaskID, TextColumn, TimeRem
 from rich.text import Text
 
 if TYPE_CHECKING:
-    from beltdyn.solvers.progress import BatchProgress
-    from beltdyn.solvers.progress import Progress as SolverProgress
+    from beltdyn.solvers.run_progress import BatchProgress
+    from beltdyn.solvers.run_progress import Progress as SolverProgress
 
 _EARLY = 5.0
 """Computing time after which a long run is announced, s."""
@@ -77,7 +77,7 @@ def _state(progress: "SolverProgress") -> str:
 @contextmanager
 def runs_bar(at_end: str = "done") -> Iterator[Callable[["BatchProgress"], None]]:
     """Show the number of completed runs, and a line for each active run, on standard error."""
-    from beltdyn.solvers.progress import FORECAST
+    from beltdyn.solvers.run_progress import FORECAST
 
     with _bar() as bar:
         whole = bar.add_task("", total=None, state="", visible=False)
@@ -120,7 +120,7 @@ class _Remaining(TimeRemainingColumn):
 
     def render(self, task: Task) -> Text:
         """The time, or dashes."""
-        from beltdyn.solvers.progress import FORECAST
+        from beltdyn.solvers.run_progress import FORECAST
 
         early = not task.finished and task.percentage < 100.0 * FORECAST
         return Text("-:--:--", style="progress.remaining") if early else super().render(task)

@@ -12,7 +12,7 @@ from beltdyn.errors import ModelError
 from beltdyn.model import Drive, Pulley, RotaryTensioner, load
 from beltdyn.parts.messages import suggest
 from beltdyn.results import RECORDED
-from beltdyn.solvers.progress import Report
+from beltdyn.solvers.run_progress import Report
 from beltdyn.transient.checkpoint import STATE, Packing
 from beltdyn.transient.simulator import Simulator, SimulatorState, output_names
 

@@ -20,15 +20,15 @@ from beltdyn.errors import ModelError
 from beltdyn.model import Drive, prepare
 from beltdyn.model.carrier import moved
 from beltdyn.model.drive import refuse_functions, refuse_kinds_of_scripts
+from beltdyn.model.parameter_study import Obstacle, Order, Points
 from beltdyn.model.path import Surroundings, distance_from_belt
-from beltdyn.model.study import Obstacle, Order, Points
 from beltdyn.observation.compilation import usable_cores
 from beltdyn.parts.quantity import RPM, numbers_in
 from beltdyn.points.changed_drive import driver_of
 from beltdyn.points.duty import at_row, durations_of, read_duty
 from beltdyn.points.operating_points import at_point, load_factors
 from beltdyn.results import Run
-from beltdyn.solvers.progress import BatchProgress
+from beltdyn.solvers.run_progress import BatchProgress
 from beltdyn.transient.beginning import compile_ahead
 from beltdyn.transient.sweep import without_schedules
 

@@ -16,7 +16,7 @@ from beltdyn.designs.named_results import names_of, unit_of
 from beltdyn.designs.optimization_history import headed, require_free, write_found
 from beltdyn.errors import ConvergenceError, ModelError
 from beltdyn.model import Drive
-from beltdyn.model.study import CalibrationStudy, Measurement, Points
+from beltdyn.model.parameter_study import CalibrationStudy, Measurement, Points
 from beltdyn.model.toml import edited, loads, read_study
 from beltdyn.parts.change import unit_at
 from beltdyn.parts.messages import suggest
@@ -26,7 +26,7 @@ from beltdyn.results import Result, Variable, build_result
 from beltdyn.results.atomic import locked_output
 from beltdyn.results.schema import VARIOUS
 from beltdyn.signals import uninterrupted
-from beltdyn.solvers.progress import Progress, Report
+from beltdyn.solvers.run_progress import Progress, Report
 
 # Tables of measured results: a row for each state in which something was measured
 

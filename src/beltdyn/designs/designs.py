@@ -12,7 +12,7 @@ from beltdyn.designs.found_state import FoundState, Resting, Running
 from beltdyn.designs.named_results import need_bands
 from beltdyn.errors import ConvergenceError, ModelError
 from beltdyn.model import Drive, prepare
-from beltdyn.model.study import FreeNumber, Points
+from beltdyn.model.parameter_study import FreeNumber, Points
 from beltdyn.parts.change import converted, unit_at, value_at
 from beltdyn.state.search import go_on
 from beltdyn.state.staying import Standing, bring_to_stand, stand_like

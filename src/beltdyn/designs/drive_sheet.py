@@ -16,7 +16,7 @@ from beltdyn.errors import ModelError
 from beltdyn.model import Drive, FixedTensioner, Prepared, alignment, prepare
 from beltdyn.model.alignment import judge_alignment
 from beltdyn.model.installation import Installation
-from beltdyn.model.study import PASS
+from beltdyn.model.parameter_study import PASS
 from beltdyn.model.tensioning import DEFLECTION, tension_checks
 from beltdyn.parts.quantity import Number, Numbers, number_in, numbers_in
 from beltdyn.points.changed_drive import at_instant, require_belt
@@ -26,7 +26,7 @@ from beltdyn.points.tensioner_sheet import length_of
 from beltdyn.results import Result, Variable, build_result
 from beltdyn.results.means import rate, utilization
 from beltdyn.results.schema import AXIS_NAMES, COORDINATES
-from beltdyn.solvers.progress import Progress, Report
+from beltdyn.solvers.run_progress import Progress, Report
 from beltdyn.state.installation import looked_at
 from beltdyn.state.staying import bring_to_stand
 from beltdyn.vibration.excitation import averaged

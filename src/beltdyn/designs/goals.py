@@ -10,7 +10,7 @@ from beltdyn.designs.batch import OperatingPoint, Watched, clearance, distance_f
 from beltdyn.designs.named_results import names_in, names_of
 from beltdyn.errors import ModelError
 from beltdyn.model import Drive
-from beltdyn.model.study import Bound, Goal, OptimizationStudy
+from beltdyn.model.parameter_study import Bound, Goal, OptimizationStudy
 from beltdyn.parts.quantity import to_si
 
 

@@ -13,10 +13,10 @@ from beltdyn.designs.goals import Aims, aims_of
 from beltdyn.designs.optimization_history import History
 from beltdyn.errors import ConvergenceError, ModelError
 from beltdyn.model import Drive
-from beltdyn.model.study import OptimizationStudy
+from beltdyn.model.parameter_study import OptimizationStudy
 from beltdyn.model.toml import read_study
 from beltdyn.results import Result
-from beltdyn.solvers.progress import Progress, Report
+from beltdyn.solvers.run_progress import Progress, Report
 
 # The search for the best design: linear programs in a trust region (Fletcher and Sainz de la Maza 1989)
 

@@ -32,7 +32,7 @@ from beltdyn.observation.compilation import usable_cores
 from beltdyn.results import Result, Run, Summary, open_result, summarize
 from beltdyn.results.atomic import locked_output, stamp
 from beltdyn.signals import ENDING
-from beltdyn.solvers.progress import Progress
+from beltdyn.solvers.run_progress import Progress
 
 if TYPE_CHECKING:
     from ctypes import Array, c_double

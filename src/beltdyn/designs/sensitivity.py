@@ -22,7 +22,7 @@ from beltdyn.designs.found_state import FoundState, Resting, Running
 from beltdyn.designs.named_results import listed, names_in, names_of, need_bands, unit_of
 from beltdyn.errors import ConvergenceError, ModelError
 from beltdyn.model import Drive, prepare
-from beltdyn.model.study import Points
+from beltdyn.model.parameter_study import Points
 from beltdyn.parts.change import unit_at, value_at
 from beltdyn.parts.messages import suggest
 from beltdyn.parts.part import Part
@@ -31,7 +31,7 @@ from beltdyn.parts.tolerances import tolerances_of
 from beltdyn.points.changed_drive import at_instant
 from beltdyn.results import Result, Variable, build_result
 from beltdyn.results.schema import AXIS_NAMES, VARIOUS
-from beltdyn.solvers.progress import Progress, Report
+from beltdyn.solvers.run_progress import Progress, Report
 from beltdyn.state.staying import bring_to_stand
 from beltdyn.state.steady import steady_state
 from beltdyn.vibration.modes import REST, STEADY

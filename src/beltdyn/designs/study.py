@@ -35,7 +35,7 @@ from beltdyn.results.atomic import OutputLock, atomic_path, make_folder, require
 from beltdyn.results.dataset import is_result, read_dataset
 from beltdyn.results.recorder import status_after
 from beltdyn.signals import uninterrupted
-from beltdyn.solvers.progress import Pace, Phase, Progress, Report
+from beltdyn.solvers.run_progress import Pace, Phase, Progress, Report
 from beltdyn.transient.beginning import compile_ahead
 
 # The rows of a study in a CSV file: added to as points finish, and read again when the study goes on

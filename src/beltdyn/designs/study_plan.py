@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 from beltdyn.arrays import FloatArray
 from beltdyn.errors import ModelError
 from beltdyn.model import Drive, ParameterStudy
-from beltdyn.model.study import SAMPLED, VariedNumber
+from beltdyn.model.parameter_study import SAMPLED, VariedNumber
 from beltdyn.parts.change import converted, unit_at, value_at
 from beltdyn.parts.quantity import numbers_in
 from beltdyn.parts.table_file import HeadedColumn, read_headed

@@ -4,7 +4,7 @@ Importing a kind here registers it.  `kind` says what a kind provides, and `disp
 kinds under one name each.
 """
 
-from beltdyn.elements.ancf.kind import ANCF as ANCF
+from beltdyn.elements.ancf.belt_element import ANCF as ANCF
 from beltdyn.elements.kind import ELEMENTS as ELEMENTS
 from beltdyn.elements.kind import Element as Element
 from beltdyn.elements.kind import ElementKind as ElementKind

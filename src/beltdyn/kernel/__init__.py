@@ -2,6 +2,12 @@
 
 from beltdyn.kernel.by_kind import choice
 from beltdyn.kernel.by_type import by_type
+from beltdyn.kernel.compilation_progress import (
+    CompilationReport,
+    observe_compilation,
+    report_compilation,
+    watch_compilation,
+)
 from beltdyn.kernel.decorator import Kernel, interpreted, kernel, runs_compiled
 from beltdyn.kernel.fingerprint import (
     CACHE_VARIABLE,
@@ -13,8 +19,7 @@ from beltdyn.kernel.fingerprint import (
     kernel_cache,
     source_hash,
 )
-from beltdyn.kernel.kinds import KernelKinds, KindRows, labels
-from beltdyn.kernel.progress import CompilationReport, observe_compilation, report_compilation, watch_compilation
+from beltdyn.kernel.rows import KernelKinds, KindRows, labels
 
 __all__ = [
     "CACHE_VARIABLE",

@@ -57,6 +57,7 @@ from beltdyn.model.end import FixedEnd, PulledEnd, WeightEnd
 from beltdyn.model.fatigue import CordFatigue, RibFatigue
 from beltdyn.model.installation import Installation
 from beltdyn.model.nip import Nip
+from beltdyn.model.parameter_study import CalibrationStudy, DutyPoint, OptimizationStudy, ParameterStudy
 from beltdyn.model.path import Path
 from beltdyn.model.prepared import Prepared, install, prepare, tensioner_balances
 from beltdyn.model.pulley import Pulley
@@ -64,7 +65,6 @@ from beltdyn.model.rating import Rating
 from beltdyn.model.resolution import ERROR_LIMITS, Running, elements_needed, layer_lengths, mesh_errors, unresolved
 from beltdyn.model.rest_estimate import estimate_at_rest
 from beltdyn.model.simulation import Limits, Simulation, Steady
-from beltdyn.model.study import CalibrationStudy, DutyPoint, OptimizationStudy, ParameterStudy
 from beltdyn.model.tensioner_balance import TensionerBalance
 from beltdyn.model.toml import dumps, example, json_schema, load, loads
 from beltdyn.model.toothing import Toothing

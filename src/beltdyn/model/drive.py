@@ -14,8 +14,8 @@ from beltdyn.contact.friction import FrictionParameters
 from beltdyn.elements import ELEMENTS, ElementKind
 from beltdyn.errors import ModelError
 from beltdyn.machines import FunctionLoad, Goods, MovingTensioner, Tensioner
-from beltdyn.machines.carrying.registry import AnySupport
-from beltdyn.machines.tensioners.registry import AnyTensioner
+from beltdyn.machines.carrying.support_rows import AnySupport
+from beltdyn.machines.tensioners.tensioner_rows import AnyTensioner
 from beltdyn.model.as_supplied import Rotation, as_supplied
 from beltdyn.model.belt import Belt
 from beltdyn.model.carriage import Carriage, check_carriage
@@ -24,14 +24,14 @@ from beltdyn.model.completion import Completed, complete
 from beltdyn.model.contact import Contact
 from beltdyn.model.end import AnyEnd, End, PathEnd, ends_on_path
 from beltdyn.model.layout import Given, Layout, lay_out
-from beltdyn.model.meshing import check_teeth
+from beltdyn.model.mesh_choice import check_teeth
 from beltdyn.model.nip import Nip, rim_ratios
+from beltdyn.model.parameter_study import DutyPoint, check_duty
 from beltdyn.model.path import Path
 from beltdyn.model.pulley import Pulley, friction_on
 from beltdyn.model.rating import RatedBelt
 from beltdyn.model.routing import radii, span_names
 from beltdyn.model.simulation import Frame, Limits, Simulation, Steady, choose_frame, element_of
-from beltdyn.model.study import DutyPoint, check_duty
 from beltdyn.model.toothing import DISCRETE, RatedTeeth
 from beltdyn.model.web import Unwinder, Winder, check_rollers
 from beltdyn.parts.change import changed_arguments

@@ -8,7 +8,7 @@ from beltdyn.arrays import FloatArray
 from beltdyn.model.end import pulling
 from beltdyn.model.prepared import Prepared
 from beltdyn.model.resolution import layer_lengths
-from beltdyn.theory.hysteresis import BENDING_SHARE, STRETCH_SHARE, bending_loss, compression_loss
+from beltdyn.theory.nip import BENDING_SHARE, STRETCH_SHARE, bending_loss, compression_loss
 
 SMOOTHED = 2.0
 """Length over which slow rates of bending are smoothed, over that on which the curvature changes."""

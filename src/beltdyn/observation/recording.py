@@ -23,7 +23,7 @@ from beltdyn.results.provenance import mesh_used, own_kinds
 from beltdyn.results.recorder import status_after
 from beltdyn.results.schema import FILTER_REACH, FILTERED, TIMES
 from beltdyn.signals import uninterrupted
-from beltdyn.solvers.progress import Pace, Phase, Progress, Report
+from beltdyn.solvers.run_progress import Pace, Phase, Progress, Report
 from beltdyn.solvers.trajectory import Chunk, Statistics, interpolated
 from beltdyn.system.arrays import System
 from beltdyn.system.discretization import curve_lengths, element_kind, point_coordinates

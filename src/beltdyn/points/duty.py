@@ -11,7 +11,7 @@ from numpy.typing import ArrayLike, NDArray
 from beltdyn.arrays import FloatArray
 from beltdyn.errors import ModelError
 from beltdyn.model import Drive, Pulley
-from beltdyn.model.study import PASS, columns_of
+from beltdyn.model.parameter_study import PASS, columns_of
 from beltdyn.parts.messages import suggest
 from beltdyn.parts.table_file import HeadedColumn, read_headed
 from beltdyn.points.changed_drive import (
@@ -25,7 +25,7 @@ from beltdyn.points.changed_drive import (
 )
 from beltdyn.points.operating_points import VARIABLES, Axes, OperatingPoints
 from beltdyn.results import Result, Variable
-from beltdyn.solvers.progress import Report
+from beltdyn.solvers.run_progress import Report
 
 UNITS = {
     "duration": "s",

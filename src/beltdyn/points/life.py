@@ -16,9 +16,9 @@ from beltdyn.points.duty import Column, at_row, durations_of, duty_of
 from beltdyn.points.operating_points import PULLEY, Axes, OperatingPoints
 from beltdyn.results import Result, Run, Variable, open_result
 from beltdyn.results.belt_history import turn_history
+from beltdyn.results.damage import HOUR, Damage, Lives, damage_of_run, known_variables
 from beltdyn.results.dataset import is_result
-from beltdyn.results.fatigue import HOUR, Damage, Lives, damage_of_run, known_variables
-from beltdyn.solvers.progress import Report
+from beltdyn.solvers.run_progress import Report
 
 _KEPT = ("belt_speed", "span_tension", "cord_force", "cord_damage_rate", "cord_damage", "rib_damage_rate", "rib_damage")
 """Variables of operating points in the table."""

@@ -20,15 +20,15 @@ from beltdyn.parts.quantity import RPM, Numbers, numbers_in
 from beltdyn.points.changed_drive import at_speed_under, driver_of, held_at, sense_of, with_load
 from beltdyn.results import Result, Run, Variable, build_result
 from beltdyn.results.atomic import locked_output, require_replaceable
+from beltdyn.results.damage import VARIABLES as OF_FATIGUE
+from beltdyn.results.damage import fatigue_by_name, known_variables
 from beltdyn.results.dataset import is_result
-from beltdyn.results.fatigue import VARIABLES as OF_FATIGUE
-from beltdyn.results.fatigue import fatigue_by_name, known_variables
 from beltdyn.results.recorder import status_after
 from beltdyn.results.schema import AXIS_NAMES, COORDINATES
 from beltdyn.results.summary import Means, means_of
 from beltdyn.results.tension_balance import causes_of
 from beltdyn.signals import uninterrupted
-from beltdyn.solvers.progress import Progress, Report
+from beltdyn.solvers.run_progress import Progress, Report
 from beltdyn.state.steady import require_steady, steady_state
 
 # What is known of an operating point, and how it follows from steady running

@@ -14,7 +14,7 @@ from beltdyn.model.path import span_directions
 from beltdyn.points.changed_drive import driver_of
 from beltdyn.results.slip_safety import slip_safety_of_states
 from beltdyn.results.tension_balance import TensionBalance
-from beltdyn.theory.hysteresis import bending_loss
+from beltdyn.theory.nip import bending_loss
 
 Torques = Callable[[float], FloatArray]
 """Torques on the shafts of all pulleys, N m, counter-clockwise positive, at a belt speed, m/s; zero on the driver."""

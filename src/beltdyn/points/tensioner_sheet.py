@@ -18,7 +18,7 @@ from beltdyn.parts.quantity import Number, to_si
 from beltdyn.points.changed_drive import require_belt
 from beltdyn.points.operating_points import Axes
 from beltdyn.results import Result, Variable, build_result
-from beltdyn.solvers.progress import Progress, Report
+from beltdyn.solvers.run_progress import Progress, Report
 from beltdyn.state.installation import looked_at
 from beltdyn.state.staying import bring_to_stand, stand
 

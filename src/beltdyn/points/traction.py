@@ -17,7 +17,7 @@ from beltdyn.points.changed_drive import at_speed, driver_of, held_at, require_b
 from beltdyn.points.operating_points import Axes, OperatingPoints
 from beltdyn.results import Result, Run, Variable, summarize
 from beltdyn.results.checks.sliding import gross_slip, near_gross_slip
-from beltdyn.solvers.progress import Report
+from beltdyn.solvers.run_progress import Report
 from beltdyn.state.steady import steady_state
 
 _FIRST, _LAST = 5e-4, 0.6

@@ -23,7 +23,7 @@ from beltdyn.model import (
 )
 from beltdyn.model.alignment import is_given
 from beltdyn.model.hysteresis import bending_resistance, compression_losses
-from beltdyn.model.meshing import teeth_in_mesh
+from beltdyn.model.mesh_choice import teeth_in_mesh
 from beltdyn.model.plausibility import other_diameters
 from beltdyn.model.simulation import unused_settings
 from beltdyn.model.tensioning import DEFLECTION, TensionCheck, tension_checks
@@ -32,7 +32,7 @@ from beltdyn.parts.messages import aligned
 from beltdyn.results.layout import describe_size
 from beltdyn.show.notebook import picture, templates
 from beltdyn.show.sheet import Facts, Sheet, Table, as_text
-from beltdyn.solvers.progress import Report
+from beltdyn.solvers.run_progress import Report
 from beltdyn.state.installation import bring_to_rest, is_compiled
 
 

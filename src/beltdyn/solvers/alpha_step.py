@@ -23,7 +23,7 @@ from typing import Any, Final, NamedTuple
 import numpy as np
 
 from beltdyn.kernel import by_type, kernel
-from beltdyn.machines.links.registry import torque_of_kind
+from beltdyn.machines.links.link_rows import torque_of_kind
 from beltdyn.machines.loads.shaft import load_torque
 from beltdyn.machines.profiles.functions import NO_SCHEDULE, after_jump, profile_value, schedule_value
 from beltdyn.solvers.integrator_state import (

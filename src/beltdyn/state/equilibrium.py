@@ -7,7 +7,7 @@ from beltdyn.errors import ModelError
 from beltdyn.model import Drive, Prepared, prepare
 from beltdyn.observation.recording import Recording
 from beltdyn.results import StaticResult, mesh_error_attribute, static_result
-from beltdyn.solvers.progress import Report
+from beltdyn.solvers.run_progress import Report
 from beltdyn.solvers.trajectory import Chunk
 from beltdyn.state.installation import bring_to_rest, holding_force, on_equal_elements, rest_of
 from beltdyn.state.refinement import refine_at_rest

@@ -16,7 +16,7 @@ from beltdyn.model import Path as BeltPath
 from beltdyn.model.prepared import Prepared, prepare
 from beltdyn.observation.compilation import compile_for_rest, rest_is_compiled
 from beltdyn.parts.messages import listing
-from beltdyn.solvers.progress import Phase, Progress, Report
+from beltdyn.solvers.run_progress import Phase, Progress, Report
 from beltdyn.state.newton import steady_work
 from beltdyn.state.static import find_equilibrium, standing, tensioner_compliance
 from beltdyn.state.tightening import Tightening, begin

@@ -30,7 +30,7 @@ from beltdyn.system.constant_drive import (
     with_speeds_unknown,
 )
 from beltdyn.system.meshing import fit_phases, has_teeth, led_by, mesh_speeds, on_lengths, phases
-from beltdyn.system.nip_loads import nip_loads, pressed_on, with_own_rollers
+from beltdyn.system.nips import nip_loads, pressed_on, with_own_rollers
 from beltdyn.system.observe import observe
 from beltdyn.system.ring_matrix import clear, substitute
 from beltdyn.system.state import State

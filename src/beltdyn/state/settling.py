@@ -17,7 +17,7 @@ from beltdyn.model.simulation import Instants
 from beltdyn.results import mesh_error_attribute
 from beltdyn.results.checks.ending import LEAST_WINDOWS, SETTLED, least_window
 from beltdyn.results.tension_balance import WEB_LINE
-from beltdyn.solvers.progress import Progress, Report
+from beltdyn.solvers.run_progress import Progress, Report
 from beltdyn.solvers.trajectory import Chunk, Integrator, Statistics, Task, drive_task
 from beltdyn.state.refinement import MeshRule, errors_at_rest, refine_at_rest, steady_from_rest
 from beltdyn.state.search import SteadySearch

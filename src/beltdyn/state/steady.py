@@ -18,7 +18,7 @@ from beltdyn.results.checks.machines import GROWTH
 from beltdyn.results.provenance import STAYING, mesh_used
 from beltdyn.results.schema import runs_steadily
 from beltdyn.results.tension_balance import WEB_LINE
-from beltdyn.solvers.progress import Progress, Report
+from beltdyn.solvers.run_progress import Progress, Report
 from beltdyn.solvers.trajectory import Chunk
 from beltdyn.state.linearized import growing, in_motion
 from beltdyn.state.newton import SteadyWork

@@ -5,9 +5,9 @@ import numpy as np
 from beltdyn.arrays import FloatArray
 from beltdyn.contact.contact_force import ContactTotals
 from beltdyn.kernel import kernel
-from beltdyn.machines.links.registry import link_torque
+from beltdyn.machines.links.link_rows import link_torque
 from beltdyn.machines.loads.shaft import sensor_slope, shaft_torque, state_rate
-from beltdyn.machines.tensioners.registry import tensioner_center, tensioner_force
+from beltdyn.machines.tensioners.tensioner_rows import tensioner_center, tensioner_force
 from beltdyn.system.arrays import (
     COMPRESSION_LOSS,
     COUPLING_LOSS,

@@ -24,7 +24,7 @@ from beltdyn.system.build_machines import body_arrays, machine_arrays, pulley_ar
 from beltdyn.system.discretization import Discretization, discretize
 from beltdyn.system.frame import Travelling
 from beltdyn.system.guide import with_carriage
-from beltdyn.system.hysteresis import hysteresis_rows
+from beltdyn.system.material_loss import hysteresis_rows
 from beltdyn.system.meshing import with_teeth
 
 # Weight of the belt as nodal forces (gravity is not in the paper)

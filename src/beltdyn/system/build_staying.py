@@ -15,7 +15,7 @@ from beltdyn.system.build import nodal_supports, system_of, weight_forces
 from beltdyn.system.build_machines import carrying_arrays, on_other_lengths
 from beltdyn.system.discretization import discretize
 from beltdyn.system.frame import FlowingByArcs, StayingByArcs, flowing, staying
-from beltdyn.system.hysteresis import hysteresis_rows
+from beltdyn.system.material_loss import hysteresis_rows
 from beltdyn.system.meshing import meshing, on_lengths
 from beltdyn.system.running_web import RunningWeb, running_web
 from beltdyn.system.web import WebLine, web_line

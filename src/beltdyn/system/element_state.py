@@ -13,7 +13,7 @@ from beltdyn.records import blank, record
 from beltdyn.system.arrays import BENDING_LOSS, STRETCH_LOSS, Bare, BodyForces, System, TangentFactors
 from beltdyn.system.discretization import element_kind
 from beltdyn.system.frame import Travelling, add_flow, flow_record
-from beltdyn.system.hysteresis import add_hysteresis, hysteresis_scratch
+from beltdyn.system.material_loss import add_hysteresis, hysteresis_scratch
 from beltdyn.system.moving_center import drift_record
 
 

@@ -17,7 +17,7 @@ from beltdyn.system.arrays import BENDING_LOSS, STRETCH_LOSS, Equations, Motion,
 from beltdyn.system.body_forces import add_contact, differentiates_forces
 from beltdyn.system.element_state import centreline, loses_in_belt, material_forces
 from beltdyn.system.frame import Flowing, FlowingByArcs, Staying, StayingByArcs, Travelling, element_speed
-from beltdyn.system.hysteresis import add_hysteresis_flow
+from beltdyn.system.material_loss import add_hysteresis_flow
 from beltdyn.system.moving_center import couple_center, keep_drift, moving_center, pulley_state
 from beltdyn.system.supports import couple_rim, take_contact
 

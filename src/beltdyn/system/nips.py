@@ -10,10 +10,12 @@ from beltdyn.contact.law import PulleyState
 from beltdyn.contact.penetration import approach, slip_velocity
 from beltdyn.contact.point_force import point_force
 from beltdyn.kernel import kernel
+from beltdyn.model import Prepared
+from beltdyn.model.nip import Pair
 from beltdyn.system.arc_mesh import fit_mesh
 from beltdyn.system.arrays import System
 from beltdyn.system.element_state import centreline, element_workspace, gather_motion
-from beltdyn.system.hysteresis import hysteresis_tension
+from beltdyn.system.material_loss import hysteresis_tension
 from beltdyn.system.moving_center import pulley_state
 from beltdyn.system.observe import stretch_at
 
@@ -132,3 +134,49 @@ def _enter(system: System, piece: Curve, pulley: PulleyState, part: Part, work: 
             before[k, r] = first
         after[k, r] = last
         found.nip_width[k, r] += (end - start) * piece.length
+
+
+_ACCURACY = 1e-9
+"""Of a move that ends the search, over the smallest radius."""
+
+
+class NipLoad(NamedTuple):
+    """A nip that is loaded by a force."""
+
+    roller: int
+    pulley: int
+    force: float
+    """N."""
+    stiffness: float
+    """Growth of the force over the way of the roller, N/m."""
+    pair: Pair
+    """Of which the lasting compression of the belt follows from the overlap."""
+
+
+def nip_loads(prepared: Prepared) -> list[NipLoad]:
+    """The nips of a drive that are loaded by forces."""
+    found, path, contact = list[NipLoad](), prepared.path, prepared.contact_stiffness
+    for nip, (roller, pulley), depth in zip(prepared.drive.nips, path.nips, path.indentations.tolist(), strict=True):
+        if nip.force is not None:
+            pair = Pair.of(prepared.pulleys[roller], prepared.pulleys[pulley], prepared.belt, contact)
+            found.append(NipLoad(roller, pulley, nip.force, pair.slope(depth), pair))
+    return found
+
+
+def with_own_rollers(system: System) -> System:
+    """The same system, with an array of its own for the centers of rollers that move."""
+    return system._replace(pulleys=system.pulleys.copy()) if np.any(system.pulleys.beside) else system
+
+
+def pressed_on(system: System, loads: list[NipLoad], hub: FloatArray, size: float) -> bool:
+    """Move rollers by what forces of the belt on hubs, shape (P, 2), miss; False if all moves are small."""
+    centers, radii, far = system.pulleys.center, system.pulleys.radius, False
+    for one in loads:
+        way = centers[one.pulley] - centers[one.roller]
+        way /= np.hypot(*way)
+        step = (one.force + float(hub[one.roller] @ way)) / one.stiffness
+        centers[one.roller] += step * way
+        depth = radii[one.roller] + radii[one.pulley] - np.hypot(*(centers[one.pulley] - centers[one.roller]))
+        system.pulleys.lasting[one.roller] = one.pair.lasting * one.pair.peak(float(depth))
+        far = far or abs(step) > _ACCURACY * size
+    return far

@@ -19,11 +19,11 @@ from beltdyn.contact.point_force import point_force
 from beltdyn.contact.teeth import tooth_at, tooth_push, tooth_traction
 from beltdyn.elements.dispatch import strain_energy, tension
 from beltdyn.kernel import kernel
-from beltdyn.machines.tensioners.registry import tensioner_center
+from beltdyn.machines.tensioners.tensioner_rows import tensioner_center
 from beltdyn.system.arc_mesh import fit_mesh
 from beltdyn.system.arrays import BodyForces, System
 from beltdyn.system.element_state import centreline, gather_motion
-from beltdyn.system.hysteresis import hysteresis_tension
+from beltdyn.system.material_loss import hysteresis_tension
 from beltdyn.system.moving_center import pulley_state, tensioner_coordinate
 from beltdyn.system.observations import (
     Observations,

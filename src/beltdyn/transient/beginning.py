@@ -20,7 +20,7 @@ from beltdyn.parts.text_file import entry_name, shorten
 from beltdyn.results import Run, open_run
 from beltdyn.results.schema import runs_steadily
 from beltdyn.solvers.generalized_alpha import GeneralizedAlpha
-from beltdyn.solvers.progress import Report
+from beltdyn.solvers.run_progress import Report
 from beltdyn.solvers.trajectory import Integrator, Statistics, drive_task
 from beltdyn.state.installation import Rest, rest_of
 from beltdyn.state.search import SteadySearch

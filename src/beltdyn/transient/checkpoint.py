@@ -26,7 +26,7 @@ from beltdyn.contact.surface import PolygonRims, RoundRims, ShapedRims, ToothedR
 from beltdyn.elements import ELEMENTS, Section
 from beltdyn.errors import ModelError
 from beltdyn.kernel.fingerprint import PACKAGE, source_hash
-from beltdyn.kernel.kinds import own_labels
+from beltdyn.kernel.rows import own_labels
 from beltdyn.machines.loads.shaft import ShaftLoads
 from beltdyn.machines.profiles.functions import Profiles
 from beltdyn.model import Drive, Prepared, prepare

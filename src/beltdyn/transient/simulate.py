@@ -17,7 +17,7 @@ from beltdyn.results import Run, require_room
 from beltdyn.results.checks.mesh import COARSE_SETTINGS
 from beltdyn.results.summary import FAILURE, VALUES, coarse_settings, ends_steadily, steady_losses, steady_values
 from beltdyn.solvers.generalized_alpha import AlphaIntegration, GeneralizedAlpha
-from beltdyn.solvers.progress import Report
+from beltdyn.solvers.run_progress import Report
 from beltdyn.solvers.standard import Name, StandardIntegrator
 from beltdyn.solvers.trajectory import Integrator, drive_task
 from beltdyn.state.steady import require_steady, steady_state

@@ -17,7 +17,7 @@ from beltdyn.parts.quantity import number_in
 from beltdyn.results.tension_balance import STORED
 from beltdyn.solvers.generalized_alpha import GeneralizedAlpha
 from beltdyn.solvers.integrator_state import IntegratorState, grown
-from beltdyn.solvers.progress import Report
+from beltdyn.solvers.run_progress import Report
 from beltdyn.solvers.trajectory import Statistics, drive_task
 from beltdyn.system.arrays import ENERGY_WORKS
 from beltdyn.system.build_machines import profile_arrays

@@ -11,7 +11,7 @@ from beltdyn.observation.observer import SlipThrough
 from beltdyn.parts.part import Part
 from beltdyn.parts.quantity import number_in, with_other_sense
 from beltdyn.results import Run
-from beltdyn.solvers.progress import Report
+from beltdyn.solvers.run_progress import Report
 from beltdyn.state.settling import Settling
 from beltdyn.transient.simulate import record_run
 

@@ -21,7 +21,7 @@ from beltdyn.points.changed_drive import at_instant, at_speed, driver_of, held_a
 from beltdyn.points.operating_points import Axes, OperatingPoints
 from beltdyn.results import Result, Run, Variable
 from beltdyn.solvers.flutter import Vibrations, flutter_shift
-from beltdyn.solvers.progress import Report
+from beltdyn.solvers.run_progress import Report
 from beltdyn.state.linearized import SmallMotions
 from beltdyn.theory.creep import SlidingBelt, fastest_flutter
 from beltdyn.vibration.excitation import Excitation, averaged, given_excitations, one_line_each, own_excitations

@@ -14,7 +14,7 @@ from beltdyn.points.changed_drive import at_speed, driver_of, held_at, sense_of
 from beltdyn.results import Result, Run, Variable, build_result
 from beltdyn.results.schema import AXIS_NAMES, COORDINATES, runs_steadily
 from beltdyn.solvers.eigenvalues import LIGHT, MOST_SWINGING, lightly_damped, pencil, swinging, swings
-from beltdyn.solvers.progress import Report
+from beltdyn.solvers.run_progress import Report
 from beltdyn.state.linearized import SmallMotions, growing
 from beltdyn.state.steady import steady_state
 from beltdyn.transient.beginning import compile_solving_ahead, instant_of

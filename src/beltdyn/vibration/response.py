@@ -16,7 +16,7 @@ from beltdyn.parts.table_file import HeadedColumn, read_headed
 from beltdyn.points.changed_drive import at_instant, at_speed, driver_of, held_at, sense_of
 from beltdyn.points.operating_points import Axes, OperatingPoints, labels_of
 from beltdyn.results import Result, Run, Variable, open_run
-from beltdyn.solvers.progress import Report
+from beltdyn.solvers.run_progress import Report
 from beltdyn.vibration.excitation import Excitation, averaged
 from beltdyn.vibration.modes import SLIDING, STUCK
 from beltdyn.vibration.response_answers import RESPONSES, SMALL_ERROR, Answers, ForcedMotion

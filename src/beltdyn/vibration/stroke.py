@@ -11,7 +11,7 @@ from beltdyn.model.carriage import free_stroke
 from beltdyn.parts.quantity import Numbers, numbers_in
 from beltdyn.results import Result, Variable, build_result
 from beltdyn.solvers.flutter import Vibrations
-from beltdyn.solvers.progress import Progress, Report
+from beltdyn.solvers.run_progress import Progress, Report
 from beltdyn.state.installation import Rest, rest_of
 from beltdyn.state.static import standing
 from beltdyn.system.constant_drive import constant_drive

@@ -6,7 +6,7 @@ from pathlib import Path
 
 from beltdyn.app.jobs import Job, Outcome, _Teller
 from beltdyn.results import open_result
-from beltdyn.solvers.progress import Progress
+from beltdyn.solvers.run_progress import Progress
 
 
 def ended(job: Job) -> Outcome:

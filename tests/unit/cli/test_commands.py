@@ -19,7 +19,7 @@ from beltdyn.cli.analysis import analysis_command
 from beltdyn.errors import ConvergenceError
 from beltdyn.model import Drive, advise, install, load
 from beltdyn.results import FileRecorder, Layout, Run, open_run
-from beltdyn.solvers.progress import Progress
+from beltdyn.solvers.run_progress import Progress
 from beltdyn.state.equilibrium import equilibrium
 from beltdyn.state.installation import bring_to_rest
 from beltdyn.transient.simulate import simulate

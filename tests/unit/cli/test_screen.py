@@ -14,7 +14,7 @@ from beltdyn.cli.output import show_result
 from beltdyn.cli.progress import progress_bar, runs_bar
 from beltdyn.model import Drive
 from beltdyn.results import Run, TensionerSummary, summarize
-from beltdyn.solvers.progress import BatchProgress, Progress
+from beltdyn.solvers.run_progress import BatchProgress, Progress
 
 RunMain = Callable[[list[str]], tuple[int, str, str]]
 

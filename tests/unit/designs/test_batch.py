@@ -20,7 +20,7 @@ from beltdyn.designs.processes import Ending
 from beltdyn.errors import ModelError
 from beltdyn.model import Drive
 from beltdyn.results import Run, open_run, summarize
-from beltdyn.solvers.progress import BatchProgress
+from beltdyn.solvers.run_progress import BatchProgress
 
 Change = Callable[..., Drive]
 

@@ -8,7 +8,7 @@ import pytest
 from beltdyn.designs.batch import OperatingPoint, clearance, distance_from_order
 from beltdyn.designs.found_state import Running
 from beltdyn.model import Drive
-from beltdyn.model.study import Obstacle, Order
+from beltdyn.model.parameter_study import Obstacle, Order
 from beltdyn.points.changed_drive import at_speed
 from beltdyn.state.steady import steady_state
 from validation.published.cases import better, loaded_two_pulley

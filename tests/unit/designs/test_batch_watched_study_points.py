@@ -8,7 +8,7 @@ import pytest
 from beltdyn.designs.batch import held, speed_of, study_points
 from beltdyn.errors import ModelError
 from beltdyn.model import Drive
-from beltdyn.model.study import Points
+from beltdyn.model.parameter_study import Points
 from validation.published.cases import better, loaded_two_pulley
 
 

@@ -14,7 +14,7 @@ from beltdyn.designs.found_state import Resting
 from beltdyn.errors import ModelError
 from beltdyn.model import CalibrationStudy, Drive, loads, prepare
 from beltdyn.results import Result, open_result, summarize
-from beltdyn.solvers.progress import Progress
+from beltdyn.solvers.run_progress import Progress
 from beltdyn.state.staying import bring_to_stand
 from beltdyn.state.steady import steady_state
 from validation.published.cases import better, loaded_two_pulley

@@ -14,7 +14,7 @@ from beltdyn.errors import ConvergenceError, ModelError
 from beltdyn.model import Drive, OptimizationStudy, dumps, loads
 from beltdyn.points.traction import traction
 from beltdyn.results import Result, open_result, summarize
-from beltdyn.solvers.progress import Progress
+from beltdyn.solvers.run_progress import Progress
 from beltdyn.state.steady import steady_state
 from validation.published.cases import better, loaded_two_pulley
 

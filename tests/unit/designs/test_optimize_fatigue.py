@@ -7,7 +7,7 @@ from beltdyn.designs.batch import OperatingPoint
 from beltdyn.designs.goals import aims_of
 from beltdyn.designs.named_results import names_of, unit_of, values_of
 from beltdyn.model import Drive, OptimizationStudy
-from beltdyn.results.fatigue import hourly_damage
+from beltdyn.results.damage import hourly_damage
 from beltdyn.state.steady import steady_state
 
 TORQUE = {"path": "belt.installed_tension", "least": "250 N", "largest": "350 N"}

@@ -6,7 +6,7 @@ import time
 import pytest
 
 from beltdyn.designs.processes import SPAWN, LocalProcesses, heeding, start_process
-from beltdyn.solvers.progress import Progress
+from beltdyn.solvers.run_progress import Progress
 
 
 def test_a_process_that_is_killed_is_replaced() -> None:

@@ -18,7 +18,7 @@ from beltdyn.designs.study import study
 from beltdyn.errors import ModelError
 from beltdyn.model import Drive, ParameterStudy
 from beltdyn.results import Result, open_result
-from beltdyn.solvers.progress import Progress
+from beltdyn.solvers.run_progress import Progress
 from beltdyn.state.equilibrium import equilibrium
 
 STUDY = """

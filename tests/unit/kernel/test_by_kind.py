@@ -45,8 +45,8 @@ def test_python_runs_a_kernel_and_those_that_it_calls_without_the_compiler() -> 
 import sys
 import numpy as np
 from beltdyn.kernel import interpreted
-from beltdyn.machines.tensioners.registry import tensioner_force
-from beltdyn.machines.tensioners.registry import TENSIONER
+from beltdyn.machines.tensioners.tensioner_rows import tensioner_force
+from beltdyn.machines.tensioners.tensioner_rows import TENSIONER
 from beltdyn.records import row
 spring = {"preload": 20.0, "rate": 30.0, "creep_speed": 0.1, "lower": -np.inf, "upper": np.inf}
 tensioner = row(TENSIONER, kind=1, sliding={"spring": spring})

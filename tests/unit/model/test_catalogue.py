@@ -6,7 +6,7 @@ import pytest
 
 from beltdyn.model import Belt, Entry, read_catalogue
 from beltdyn.model.catalogue import find_entry
-from beltdyn.theory.hysteresis import bending_loss, compression_loss
+from beltdyn.theory.nip import bending_loss, compression_loss
 
 MINE = """
 [PK]

@@ -13,7 +13,7 @@ from beltdyn.model.hysteresis import (
     passing_strains,
     rolling_resistances,
 )
-from beltdyn.theory.hysteresis import BENDING_SHARE, STRETCH_SHARE, compression_loss, stretch_loss
+from beltdyn.theory.nip import BENDING_SHARE, STRETCH_SHARE, compression_loss, stretch_loss
 
 MakeDrive = Callable[..., Drive]
 

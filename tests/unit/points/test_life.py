@@ -11,7 +11,7 @@ from beltdyn.model import Drive, dumps
 from beltdyn.points.life import life
 from beltdyn.points.operating_points import operating_map
 from beltdyn.results import Result, Run, open_result
-from beltdyn.results.fatigue import Damage
+from beltdyn.results.damage import Damage
 from beltdyn.state.steady import steady_state
 
 TABLE = "duration [h], large torque [N m], temperature [°C]\n3, -12, 80\n1, -15, 103\n"

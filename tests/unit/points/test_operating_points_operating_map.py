@@ -12,7 +12,7 @@ from beltdyn.errors import ConvergenceError, ModelError
 from beltdyn.model import Drive, advise, install
 from beltdyn.points.operating_points import operating_map
 from beltdyn.results import Result, open_result, summarize, write_csv
-from beltdyn.solvers.progress import Progress
+from beltdyn.solvers.run_progress import Progress
 from beltdyn.state.steady import steady_state
 from validation.published import two_pulley
 from validation.published.cases import better, loaded_two_pulley

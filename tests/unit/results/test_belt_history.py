@@ -10,7 +10,7 @@ from beltdyn.errors import ModelError
 from beltdyn.model import Drive
 from beltdyn.results import Run
 from beltdyn.results.belt_history import belt_history, turn_history
-from beltdyn.results.fatigue import rainflow
+from beltdyn.results.damage import rainflow
 from beltdyn.state.steady import steady_state
 from tests.conftest import SLACK, TIGHT
 

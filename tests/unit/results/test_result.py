@@ -11,7 +11,7 @@ from beltdyn.errors import ModelError
 from beltdyn.model import Drive
 from beltdyn.results import Result, Run, Variable, build_result, open_result, open_run
 from beltdyn.show import plot
-from beltdyn.show.plot.registry import always, figure
+from beltdyn.show.plot.figures import always, figure
 from beltdyn.show.plot.style import axes_or_new
 
 LOADS = np.array([1.0, 2.0, 4.0])

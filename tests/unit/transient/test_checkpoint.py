@@ -17,7 +17,7 @@ import pytest
 from beltdyn.errors import ModelError
 from beltdyn.model import Drive, dumps, load
 from beltdyn.results import Run
-from beltdyn.solvers.progress import Progress
+from beltdyn.solvers.run_progress import Progress
 from beltdyn.transient.checkpoint import CheckpointWarning, Packing, checkpoint_file, is_checkpoint, read_checkpoint
 from beltdyn.transient.simulate import simulate
 

@@ -16,7 +16,7 @@ from beltdyn.errors import BeltdynError, ConvergenceError
 from beltdyn.model import CalibrationStudy, Drive, OptimizationStudy, ParameterStudy
 from beltdyn.results import Run
 from beltdyn.show.plot import animate, save_all
-from beltdyn.solvers.progress import Progress
+from beltdyn.solvers.run_progress import Progress
 from beltdyn.transient.checkpoint import checkpoint_file
 
 LargestFile = Callable[[int], AbstractContextManager[None]]

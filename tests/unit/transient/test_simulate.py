@@ -11,7 +11,7 @@ from beltdyn import equilibrium, simulate
 from beltdyn.errors import ConvergenceError, ModelError
 from beltdyn.model import Drive
 from beltdyn.results import open_run
-from beltdyn.solvers.progress import Progress
+from beltdyn.solvers.run_progress import Progress
 
 Change = Callable[..., Drive]
 SLOW = [pytest.param(one, marks=pytest.mark.slow) for one in ("ida", "bdf", "radau")]

@@ -11,7 +11,7 @@ from beltdyn.errors import ConvergenceError
 from beltdyn.model import Drive
 from beltdyn.results import summarize
 from beltdyn.state.steady import steady_state
-from beltdyn.theory.hysteresis import bending_loss
+from beltdyn.theory.nip import bending_loss
 from validation.published.cases import CASES, better, loaded_two_pulley
 
 EXAMPLES = sorted(path.name[:-5] for path in (files("beltdyn") / "examples").iterdir() if path.name.endswith(".toml"))

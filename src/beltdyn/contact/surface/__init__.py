@@ -9,8 +9,7 @@ from math import cos, sin
 from typing import Any, NamedTuple
 
 from beltdyn.arrays import FloatArray
-from beltdyn.contact.surface import circle as circle
-from beltdyn.contact.surface import eccentric as eccentric
+from beltdyn.contact.surface import circular as circular
 from beltdyn.contact.surface.kind import KINDS as KINDS
 from beltdyn.contact.surface.kind import Gap as Gap
 from beltdyn.contact.surface.kind import SurfaceKind as SurfaceKind

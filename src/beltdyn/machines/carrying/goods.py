@@ -5,7 +5,7 @@ from typing import Self
 from pydantic import Field, model_validator
 
 from beltdyn.machines.carrying.support import OnSpan
-from beltdyn.machines.profiles.registry import Schedule
+from beltdyn.machines.profiles.profile_types import Schedule
 from beltdyn.parts.quantity import Coordinate, MassPerLength
 
 

@@ -2,14 +2,16 @@
 
 from collections.abc import Callable, Mapping
 from math import tanh
-from typing import TYPE_CHECKING, Any, ClassVar, NamedTuple, Self
+from typing import TYPE_CHECKING, Any, ClassVar, Literal, NamedTuple, Self
 
 import numpy as np
 from pydantic import Field, model_validator
 
 from beltdyn.kernel import KernelKinds, kernel
+from beltdyn.kinds import register
 from beltdyn.parts.part import Part
-from beltdyn.parts.quantity import Coordinate, LineDamping, LineStiffness, Name
+from beltdyn.parts.quantity import Coordinate, Length, LineDamping, LineStiffness, Mass, Name, Ratio, Speed, Stiffness
+from beltdyn.records import record
 
 
 class LineForce(NamedTuple):
@@ -113,3 +115,123 @@ class Support(OnSpan):
 
 SUPPORTS = KernelKinds[type[Support]]("support", Support)
 """All kinds of supports by name."""
+
+
+IDLERS = record(
+    friction="f8",  # C f
+    constant="f8",  # C f m_R g + r, N/m
+    linear="f8",  # l, N s/m^2
+    creep_speed="f8",  # m/s
+)
+
+
+@kernel
+def idler_resistance(constants: np.record, normal: float, speed: float) -> LineForce:
+    """Resistance of idlers.
+
+    Parameters
+    ----------
+    constants
+        A row of `IDLERS`.
+    normal
+        n, N/m.
+    speed
+        v, m/s.
+    """
+    limit = constants.friction * normal + constants.constant
+    dry = dry_resistance(limit, constants.friction, speed, constants.creep_speed)
+    return LineForce(dry.force + constants.linear * speed, dry.by_normal, dry.by_speed + constants.linear)
+
+
+@register
+class Idlers(Support):
+    """A line of idlers under a span, spread over its length.
+
+    Examples
+    --------
+    >>> line = bd.model.Idlers(kind="idlers", span=["tail", "head"], spacing="1.2 m", idler_mass="18 kg")
+    >>> line.rotating_mass  # kg/m
+    15.0
+    """
+
+    constants = IDLERS
+    resistance_at = idler_resistance
+    needs_weight = True
+
+    kind: Literal["idlers"] = Field(description="the kind of support")
+    spacing: Length = Field(gt=0, description="the distance from idler to idler, in m")
+    idler_mass: Mass = Field(0.0, ge=0, description="the mass of the rotating parts of an idler, in kg")
+    friction: Ratio = Field(
+        0.02, ge=0, description="the hypothetical friction coefficient f of DIN 22101, for belt, goods and idlers"
+    )
+    secondary_factor: Ratio = Field(
+        1.0, ge=1, description="the coefficient C of DIN 22101 for secondary resistances, a factor on friction"
+    )
+    resistance: Stiffness = Field(0.0, ge=0, description="a further resistance, independent of weight, in N/m")
+    linear: LineDamping = Field(0.0, ge=0, description="the resistance in proportion to speed, in N*s/m^2")
+    creep_speed: Speed = Field(0.01, gt=0, description="the speed at which resistance reaches 76 %, in m/s")
+
+    def values(self, weight: float) -> Mapping[str, Any]:
+        """As in the base."""
+        friction = self.secondary_factor * self.friction
+        return {
+            "friction": friction,
+            "constant": friction * self.rotating_mass * weight + self.resistance,
+            "linear": self.linear,
+            "creep_speed": self.creep_speed,
+        }
+
+    @property
+    def free_length(self) -> float:
+        """As in the base."""
+        return self.spacing
+
+    @property
+    def rotating_mass(self) -> float:
+        """As in the base."""
+        return self.idler_mass / self.spacing
+
+
+GUIDE = record(
+    friction="f8",  # mu
+    pressing="f8",  # p, N/m
+    creep_speed="f8",  # m/s
+)
+
+
+@kernel
+def guide_resistance(constants: np.record, normal: float, speed: float) -> LineForce:
+    """Friction of a guide.
+
+    Parameters
+    ----------
+    constants
+        A row of `GUIDE`.
+    normal
+        n, N/m.
+    speed
+        v, m/s.
+    """
+    limit = constants.friction * (normal + constants.pressing)
+    return dry_resistance(limit, constants.friction, speed, constants.creep_speed)
+
+
+@register
+class Guide(Support):
+    """A guide or slider bed along a span, which holds the belt on both sides.
+
+    Examples
+    --------
+    >>> bd.model.Guide(kind="guide", span=["newel", "drive"], friction=0.2, pressing="15 N/m").pressing
+    15.0
+    """
+
+    constants = GUIDE
+    resistance_at = guide_resistance
+
+    kind: Literal["guide"] = Field(description="the kind of support")
+    friction: Ratio = Field(ge=0, description="the coefficient of friction between belt and guide")
+    pressing: Stiffness = Field(
+        0.0, ge=0, description="the normal force of clamping, besides that of weight and curvature, in N/m"
+    )
+    creep_speed: Speed = Field(0.01, gt=0, description="the speed at which friction reaches 76 %, in m/s")

@@ -4,8 +4,8 @@ from beltdyn.machines.loads.brake import BandBrake as BandBrake
 from beltdyn.machines.loads.brake import Brake as Brake
 from beltdyn.machines.loads.brake import Holdback as Holdback
 from beltdyn.machines.loads.function import FunctionLoad as FunctionLoad
-from beltdyn.machines.loads.generator import Generator as Generator
 from beltdyn.machines.loads.induction_motor import InductionMotor as InductionMotor
+from beltdyn.machines.loads.motor import Generator as Generator
 from beltdyn.machines.loads.motor import Motor as Motor
 from beltdyn.machines.loads.motor import ServoMotor as ServoMotor
 from beltdyn.machines.loads.resistance import Fan as Fan

@@ -10,7 +10,7 @@ import numpy as np
 from beltdyn.arrays import FloatArray, IntArray
 from beltdyn.kernel import kernel, labels
 from beltdyn.machines.loads.load import LOADS, Load, LoadTorque, SensorSlope, ShaftState, StateRate
-from beltdyn.machines.loads.registry import (
+from beltdyn.machines.loads.load_rows import (
     NO_STATE,
     SHAFT_LOADS,
     kink_of_kind,

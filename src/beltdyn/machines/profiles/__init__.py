@@ -18,4 +18,4 @@ from beltdyn.machines.profiles.ramps import (
 from beltdyn.machines.profiles.ramps import (
     Step as Step,
 )
-from beltdyn.machines.profiles.table import Table as Table
+from beltdyn.machines.profiles.ramps import Table as Table

@@ -2,8 +2,8 @@
 
 from beltdyn.results.derived.arc import contact_arc, wear_by_arc, wear_by_belt
 from beltdyn.results.derived.labels import pulley_number
-from beltdyn.results.derived.nip import nip_profile, nips
-from beltdyn.results.derived.pulley import (
+from beltdyn.results.derived.nip_profile import nip_profile, nips
+from beltdyn.results.derived.pulley_means import (
     balance,
     hub_loads,
     mid_span_displacements,
@@ -16,7 +16,7 @@ from beltdyn.results.derived.pulley import (
     turn_means,
 )
 from beltdyn.results.derived.spectrum import amplitude_spectrum, element_order, orders, overall_level, waterfall
-from beltdyn.results.derived.teeth import order_spectrum, transmission_error
+from beltdyn.results.derived.tooth_variables import order_spectrum, transmission_error
 
 __all__ = [
     "amplitude_spectrum",

@@ -16,7 +16,7 @@ from beltdyn.errors import ModelError
 from beltdyn.parts.quantity import number_in
 from beltdyn.results import Run
 from beltdyn.results.atomic import MARK, atomic_path, is_marked, require_replaceable
-from beltdyn.show.plot.drive import DrivePicture, size_of
+from beltdyn.show.plot.drive_picture import DrivePicture, size_of
 from beltdyn.show.plot.style import new_figure, styled
 from beltdyn.show.plot.view import spread
 

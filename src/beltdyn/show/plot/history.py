@@ -12,7 +12,7 @@ from beltdyn.parts.quantity import RPM
 from beltdyn.results import Run, derived
 from beltdyn.results.incidents import GROSS_SLIP, JUMP, SLACK, STOP, incidents
 from beltdyn.results.tension_balance import largest_closure, losses_of
-from beltdyn.show.plot.registry import figure, over_time
+from beltdyn.show.plot.figures import figure, over_time
 from beltdyn.show.plot.style import (
     SHADE,
     Dash,

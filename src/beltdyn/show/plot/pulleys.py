@@ -14,9 +14,9 @@ from beltdyn.errors import ModelError
 from beltdyn.results import Balance, Run, derived, power_balance, summarize
 from beltdyn.results.cycles import mean_window
 from beltdyn.results.incidents import GROSS_SLIP
+from beltdyn.show.plot.figures import Choice, figure, over_time, over_turns
 from beltdyn.show.plot.headline import names_of_results
 from beltdyn.show.plot.history import draw_limits, envelope, lines, mark_incidents
-from beltdyn.show.plot.registry import Choice, figure, over_time, over_turns
 from beltdyn.show.plot.style import (
     INK,
     POLAR_SIZE,

@@ -17,8 +17,8 @@ from beltdyn.parts.messages import suggest
 from beltdyn.parts.quantity import RPM, SHOWN_UNITS
 from beltdyn.results import Result, Run
 from beltdyn.show.plot.animation import film
-from beltdyn.show.plot.drive import LINE, extent_of, size_of
-from beltdyn.show.plot.registry import Choice, always, figure, over_time
+from beltdyn.show.plot.drive_picture import LINE, extent_of, size_of
+from beltdyn.show.plot.figures import Choice, always, figure, over_time
 from beltdyn.show.plot.style import (
     INK,
     PALE,

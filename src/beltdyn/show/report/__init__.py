@@ -1,5 +1,5 @@
 """Reports: results as one self-contained page."""
 
-from beltdyn.show.report.build import InteractiveFigures, interactive, report_file, require_report, write_report
+from beltdyn.show.report.report import InteractiveFigures, interactive, report_file, require_report, write_report
 
 __all__ = ["InteractiveFigures", "interactive", "report_file", "require_report", "write_report"]

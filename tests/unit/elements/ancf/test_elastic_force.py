@@ -2,9 +2,9 @@ import numpy as np
 import pytest
 
 from beltdyn.arrays import FloatArray
+from beltdyn.elements.ancf.belt_element import ANCF
 from beltdyn.elements.ancf.elastic_force import element_energy, element_force
 from beltdyn.elements.ancf.element import Ancf
-from beltdyn.elements.ancf.kind import ANCF
 from beltdyn.elements.kind import Section
 from beltdyn.quadrature import gauss_points
 from beltdyn.records import blank

@@ -76,7 +76,7 @@ def test_the_scale_has_room_for_all_results(
 
 
 def test_a_page_of_several_runs_has_their_names_above(pair: list[Run], tmp_path: Path) -> None:
-    page = plot.FIGURES["powers"].arrange(pair, plot.registry.Choice())
+    page = plot.FIGURES["powers"].arrange(pair, plot.figures.Choice())
     assert page.get_suptitle() == "one, other"
     names = [path.stem for path in plot.save_all(pair, tmp_path)]
     expected = ["speeds", "span_tensions", "slip", "hub_load_sizes", "slip_safety", "torques", "powers", "losses"]
@@ -140,7 +140,7 @@ def test_long_names_stand_below_the_figure(make_run: Callable[..., Run]) -> None
 def test_drives_of_different_pulleys_have_a_panel_for_each(run: Run, make_run: Callable[..., Run]) -> None:
     """The second drive has one pulley in common with the first; each keeps its line style in all panels."""
     other = Run(make_run().dataset, run.drive.with_({"pulley[driven].name": "fan"}), Path("other.nc"))
-    page = plot.FIGURES["contact_forces"].arrange([named(run, "one.nc"), other], plot.registry.Choice())
+    page = plot.FIGURES["contact_forces"].arrange([named(run, "one.nc"), other], plot.figures.Choice())
     titles = [ax.get_title(loc="left").partition(",")[0] for ax in page.axes]
     assert titles[:3] == ["driver", "driven", "fan"]
     shown = [[line for line in ax.lines if line.get_label() in titles] for ax in page.axes[:3]]

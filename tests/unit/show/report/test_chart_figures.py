@@ -7,7 +7,7 @@ from matplotlib.figure import Figure
 
 from beltdyn.errors import ModelError
 from beltdyn.results import Run
-from beltdyn.show.plot.registry import FIGURES, chosen_by_default
+from beltdyn.show.plot.figures import FIGURES, chosen_by_default
 from beltdyn.show.report.chart import charted
 
 

@@ -9,7 +9,7 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
 from beltdyn.results import Run
-from beltdyn.show.plot.registry import FIGURES, Choice
+from beltdyn.show.plot.figures import FIGURES, Choice
 from beltdyn.show.report.chart import can_be_charted, charts, thinned
 
 

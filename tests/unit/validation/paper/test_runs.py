@@ -7,7 +7,7 @@ import xarray as xr
 from beltdyn.designs.processes import Ending
 from beltdyn.model import Drive, load
 from beltdyn.results import Run
-from beltdyn.solvers.progress import BatchProgress
+from beltdyn.solvers.run_progress import BatchProgress
 from validation.paper.runs import RunMissingError, Runs, run_all
 from validation.published import two_pulley
 

@@ -1,0 +1,429 @@
+"""Report of results: content and file."""
+
+import hashlib
+import json
+from collections.abc import Mapping, Sequence
+from html import escape
+from importlib.resources import files
+from pathlib import Path
+from typing import Any, NamedTuple
+
+import numpy as np
+from jinja2 import ChoiceLoader, Environment, FunctionLoader, PackageLoader, StrictUndefined
+from matplotlib.colors import to_hex
+
+from beltdyn.errors import ModelError
+from beltdyn.model.alignment import is_given
+from beltdyn.parts.messages import listing, show
+from beltdyn.parts.text_file import as_text
+from beltdyn.results import KeyNumber, Result, Run, StaticResult, key_numbers
+from beltdyn.results.atomic import MARK, atomic_path, is_marked, require_replaceable
+from beltdyn.results.incidents import Incident, incidents
+from beltdyn.results.provenance import mesh_facts
+from beltdyn.results.schema import runs_steadily
+from beltdyn.show.notebook import picture
+from beltdyn.show.plot.headline import given_keys, headlines, name_of, names_of_results
+from beltdyn.show.plot.style import tension_colors
+from beltdyn.show.report.chart import Shown, charted
+from beltdyn.show.report.replay import motion, swinging
+from beltdyn.show.rest_sheet import alignment_table, tensioning
+from beltdyn.show.sheet import Table, sheet
+
+# The charting library of the page (Bokeh, BSD license), taken from its installation, and what it is given
+
+_NAME = "figures"
+
+
+def library() -> str:
+    """The library as the text of a script; it fetches nothing."""
+    from bokeh.resources import INLINE
+
+    return str(INLINE.js_raw[0])
+
+
+def embedded(parts: Mapping[str, Any]) -> str:
+    """Write what the page's script reads, safe inside a page."""
+    content: Any = dict(parts)
+    if parts and not all(isinstance(part, dict) for part in parts.values()):
+        content = _document(parts)
+    return json.dumps(content, separators=(",", ":")).replace("<", "\\u003c")
+
+
+def _document(charts: Mapping[str, Any]) -> dict[str, Any]:
+    """A document of Bokeh as plain values, whose arrays are in base64, and where its parts stand."""
+    from bokeh.core.json_encoder import serialize_json
+    from bokeh.document import Document
+
+    document = Document()
+    with document.models.freeze():  # else all charts are gone through once more with each
+        for chart in charts.values():
+            document.add_root(chart)
+    roots = {chart.id: place for place, chart in charts.items()}
+    return {
+        "documents": {_NAME: json.loads(serialize_json(document.to_json(deferred=False)))},
+        "items": [{"docid": _NAME, "root_ids": list(roots), "roots": roots}],
+    }
+
+
+_MOST_DIFFERENCES = 40
+
+
+def origin(result: Result) -> list[tuple[str, str]]:
+    """Facts about how a result was made."""
+    said = result.dataset.attrs
+    packages = ("beltdyn", "numba", "numpy", "scipy", "python")
+    versions = ", ".join(f"{name} {said[f'{name}_version']}" for name in packages if f"{name}_version" in said)
+    facts = [
+        ("analysis", f"{analysis_of(result)}, {result.status}"),
+        ("versions", versions),
+        ("computed", str(said.get("created", "unknown"))),
+        ("format of the result file", str(said.get("format", "unknown"))),
+        ("SHA-256 of the drive", _hash(result.drive.text.encode())),
+    ]
+    if result.path is not None and result.path.is_file():
+        facts += [(f"SHA-256 of {as_text(result.path.name)}", _hash(result.path.read_bytes()))]
+    settings = result.drive.simulation
+    if isinstance(result, Run):
+        integrator = said.get("integrator", settings.integrator)
+        facts += [("integrator", f"{integrator}, rtol {settings.rtol:g}, start {settings.start}")]
+    facts += mesh_facts(said)
+    facts += [(choice.key, choice.words) for choice in result.prepared.choices]
+    return facts
+
+
+def analysis_of(result: Result) -> str:
+    """Name of the analysis: of a run, whether it is steady running or a sweep."""
+    if isinstance(result, Run) and runs_steadily(result.dataset):
+        return "steady"
+    return "sweep" if "swept_pulley" in result.dataset.attrs else result.kind.replace("_", " ")
+
+
+def differing_keys(results: Sequence[Result]) -> list[tuple[str, list[str]]]:
+    """Give the keys of drive files in which drives differ, with their values."""
+    given = [given_keys(result) for result in results]
+    keys = dict.fromkeys(key for one in given for key in one)
+    values = {key: [show(one[key]) if key in one else "by default" for one in given] for key in keys}
+    return [(key, row) for key, row in values.items() if len(set(row)) > 1][:_MOST_DIFFERENCES]
+
+
+def _hash(content: bytes) -> str:
+    return hashlib.sha256(content).hexdigest()
+
+
+# Key numbers of results against their limits, and the verdict
+
+_WHOLE, _HUGE = 1e4, 1e9
+"""Between these a number is written without an exponent."""
+
+
+class SideBySide(NamedTuple):
+    """A key number of all results."""
+
+    name: str
+    """Its name."""
+    key: str
+    """Key of its limit in the drive file."""
+    numbers: list[KeyNumber | None]
+    """One for each result; None where a result does not know it."""
+
+    def difference(self, number: int) -> str:
+        """By how much a result differs from the first, in words; nothing where that is not known."""
+        first, other = self.numbers[0], self.numbers[number]
+        if number == 0 or first is None or other is None or not np.isfinite([first.value, other.value]).all():
+            return ""
+        if first.value == 0.0:
+            return (
+                ""
+                if other.value == 0.0
+                else f"{in_unit(other.value - first.value, first.unit, '+')} relative to the first"
+            )
+        return f"{other.value / first.value - 1.0:+z.1%} relative to the first"
+
+
+def compared(results: Sequence[Result]) -> list[SideBySide]:
+    """Set the key numbers of results side by side."""
+    known = [{one.key: one for one in key_numbers(result)} for result in results]
+    names = {key: one.name for numbers in known for key, one in numbers.items()}
+    return [SideBySide(name, key, [numbers.get(key) for numbers in known]) for key, name in names.items()]
+
+
+def verdict(results: Sequence[Result]) -> tuple[str, str]:
+    """Compare results with their limits."""
+    judged = [one.passes for result in results for one in key_numbers(result) if one.passes is not None]
+    kept = sum(judged)
+    happened = [one for result in results for one in _incidents(result)]
+    said = listing(list(map(str, happened))) if happened else ""
+    if not judged:
+        return "open", f"No limits are given{said and f'; {said}'}"
+    if kept < len(judged):
+        broken = listing([_broken(one) for result in results for one in key_numbers(result) if one.passes is False])
+        return "fail", f"{kept} of {len(judged)} limits are met: {broken}{said and f'; {said}'}"
+    words = f"All {kept} limits are met" if kept > 1 else "The limit is met"
+    if not happened:
+        return "pass", words
+    return ("fail" if any(one.severe for one in happened) else "open"), f"{words}, but {said}"
+
+
+def _broken(number: KeyNumber) -> str:
+    """A key number that is beyond its limit."""
+    assert number.limit is not None
+    return f"{number.name} {in_unit(number.value, number.unit)} (limit {in_unit(number.limit, number.unit)})"
+
+
+def _incidents(result: Result) -> tuple[Incident, ...]:
+    """Events of a run; empty for other results."""
+    if not isinstance(result, Run) or result.outputs == 0:
+        return ()
+    with result.recorded() as recorded:
+        return incidents(recorded, result.prepared)
+
+
+def limit_in_words(number: KeyNumber | None) -> str:
+    """Write the limit of a key number; a dash where there is none."""
+    if number is None or number.limit is None:
+        return "–"
+    return f"at {'most' if number.at_most else 'least'} {in_unit(number.limit, number.unit)}"
+
+
+def in_unit(value: float, unit: str, sign: str = "") -> str:
+    """Format a key number with four digits and its unit."""
+    if np.isnan(value):
+        return "–"
+    if unit == "%":
+        return f"{100.0 * value:{sign}.3g} %"
+    rounded = float(f"{value:.4g}")
+    number = f"{rounded:{sign}.0f}" if _WHOLE <= abs(rounded) < _HUGE else f"{value:{sign}.4g}"
+    return f"{number} {unit}".removesuffix(" 1")
+
+
+_SHADES = 48
+_SAYS_WHO_MADE_IT = f'<meta name="generator" content="{MARK} report">'
+
+
+def write_report(results: Result | Sequence[Result], path: Path | str, overwrite: bool = False) -> Path:
+    """Write a report of one or several results as a self-contained HTML page.
+
+    It shows the key numbers beside the limits of the drive file, warnings with remedies, the moving drive, interactive
+    figures, tables, the provenance, and the drive file. It can be printed and read without JavaScript; nothing is
+    loaded from a network.
+
+    Parameters
+    ----------
+    results : Result or sequence of Result
+        A run, or the result of another analysis; or several, to compare them.
+    path : Path or str
+        The HTML file; an existing report of beltdyn is replaced.
+    overwrite : bool
+        Replace any regular file.
+
+    Returns
+    -------
+    Path
+        The file.
+
+    Raises
+    ------
+    ModelError
+        If there is no result, a run holds no output, or the file cannot be written or would replace another one.
+
+    Examples
+    --------
+    >>> bd.write_report(run, "report.html").name
+    'report.html'
+    """
+    path, several = Path(path), [results] if isinstance(results, Result) else list(results)
+    require_report(path, overwrite)
+    if not several:
+        raise ModelError("a report needs at least one result.")
+    for one in several:
+        if isinstance(one, Run):
+            one.require_output()
+    text = _page(several)
+    with atomic_path(path, _is_report, overwrite) as temporary:
+        temporary.write_text(text, encoding="utf-8")
+    return path
+
+
+def require_report(path: Path, overwrite: bool = False) -> None:
+    """Make sure that a report would replace nothing but a report."""
+    require_replaceable(path, _is_report, overwrite)
+
+
+def report_file(files: Sequence[Path]) -> Path:
+    """The report of result files where none is named: beside the first, and named after it."""
+    first, *more = files
+    others = f"-and-{more[0].stem if len(more) == 1 else f'{len(more)}-more'}" if more else ""
+    return first.with_name(f"{first.stem}{others}.html")
+
+
+def _is_report(path: Path) -> bool:
+    return is_marked(path, _SAYS_WHO_MADE_IT)
+
+
+def environment() -> Environment:
+    """What fills the templates of this package."""
+    made = Environment(
+        loader=ChoiceLoader([FunctionLoader(read), PackageLoader("beltdyn")]),
+        autoescape=True,
+        undefined=StrictUndefined,
+        trim_blocks=True,
+        lstrip_blocks=True,
+    )
+    made.filters |= {"in_unit": in_unit, "limit_of": limit_in_words}
+    return made
+
+
+def _page(results: Sequence[Result]) -> str:
+    names = names_of_results(results) if len(results) > 1 else [name_of(results[0]) or results[0].drive.title]
+    drawn, charts = charted(results)
+    moving = {f"motion-{number}": found for number, one in enumerate(results) if (found := _moving(one, len(results)))}
+    return (
+        environment()
+        .get_template("page.html.jinja")
+        .render(
+            title=" and ".join(names) if len(names) <= 2 else f"{names[0]} and {len(names) - 1} more",
+            mark=_SAYS_WHO_MADE_IT,
+            compares=len(results) > 1,
+            kinds={one.kind for one in results},
+            verdict=verdict(results),
+            lead="" if len(results) > 1 else headlines(results).removeprefix(f"{names[0]}: "),
+            parts=[
+                _part(name, number, one, moving) for number, (name, one) in enumerate(zip(names, results, strict=True))
+            ],
+            numbers=compared(results),
+            differences=differing_keys(results),
+            names=names,
+            figures=drawn,
+            motions=embedded(moving),
+            colors=json.dumps([to_hex(shade) for shade in tension_colors()(np.linspace(0.0, 1.0, _SHADES))]),
+            charts=embedded(charts),
+            library=library() if charts else "",
+            style=read("page.css"),
+            script=script() if charts or moving else "",
+        )
+    )
+
+
+def _moving(result: Result, results: int) -> dict[str, Any]:
+    """What shows the drive moving: a run, if anything turns, or modes; nothing of other results."""
+    if result.kind == "modes":
+        return swinging(result)
+    if isinstance(result, Run) and bool((result.dataset["pulley_speed"] != 0.0).any()):
+        return motion(result, results)
+    return {}
+
+
+def _part(name: str, number: int, result: Result, moving: Mapping[str, Any]) -> dict[str, Any]:
+    """What the page shows of one result."""
+    tables = [part for part in sheet(result).parts if isinstance(part, Table)]
+    if isinstance(result, Run | StaticResult) and not result.drive.ends and is_given(result.drive):
+        tables.append(alignment_table(result.drive, result.drive.path))
+    facts = [fact for part in sheet(result).parts if not isinstance(part, Table) for fact in part.facts]
+    target = f"motion-{number}"
+    return {
+        "name": name,
+        "kind": result.kind.replace("_", " "),
+        "title": result.dataset.attrs["title"],
+        "status": result.status,
+        "description": result.drive.description or "",
+        "picture": picture(result.drive),
+        "motion": target if target in moving else "",
+        "swings": "modes" in moving.get(target, {}),
+        "findings": result.findings if isinstance(result, Run) else [],
+        "warnings": result.warnings,
+        "tables": tables,
+        "facts": facts,
+        "origin": origin(result),
+        "about": _about(result),
+        "tensioning": tensioning(result.drive, given_keys(result).get("belt.installed_tension"))
+        if isinstance(result, Run | StaticResult)
+        else None,
+        "drive": result.drive_as_given,
+    }
+
+
+def _about(result: Result) -> list[tuple[str, str]]:
+    """Project, author and date of a result."""
+    created = str(result.dataset.attrs.get("created", "")).partition("T")[0]
+    known = (("Project", result.drive.project), ("Author", result.drive.author), ("Date", created))
+    return [(name, words) for name, words in known if words]
+
+
+def script() -> str:
+    """The scripts of a page, one after the other."""
+    parts = "".join(str(read(f"{name}.js")) for name in ("motion", "swing", "charts", "start"))
+    return f'"use strict";\n(() => {{\n{parts}}})();\n'
+
+
+def read(name: str) -> str | None:
+    """Read a file of this package; None where there is none of this name."""
+    file = files("beltdyn.show.report").joinpath(name)
+    return file.read_text(encoding="utf-8") if file.is_file() else None
+
+
+_ROOM, _HEADING = 400, 90
+"""Height for a row of charts, and for the name above, pixels."""
+_HIGHEST = 900
+
+
+class InteractiveFigures:
+    """Interactive figures of results in a notebook: a self-contained page in a frame of a height in pixels."""
+
+    def __init__(self, page: str, names: tuple[str, ...], height: int) -> None:
+        self.page, self.names, self.height = page, names, height
+
+    def __repr__(self) -> str:
+        return f"InteractiveFigures({', '.join(self.names)})"
+
+    def _repr_html_(self) -> str:
+        """Show the page in a frame of its own, so that it meets no other script of the notebook."""
+        size = f"width:100%;height:{self.height}px;border:0"
+        return f'<iframe srcdoc="{escape(self.page)}" style="{size}" title="{escape(", ".join(self.names))}"></iframe>'
+
+
+def interactive(results: Result | Sequence[Result], *names: str) -> InteractiveFigures:
+    """Draw interactive figures for a notebook.
+
+    Parameters
+    ----------
+    results : Result or sequence of Result
+        A run, or the result of another analysis; or several, whose lines are laid over each other.
+    *names : str
+        Names of figures, such as "span_tensions", as `beltdyn plot --figures` has them; by default those of a report.
+
+    Returns
+    -------
+    InteractiveFigures
+        An object that Jupyter displays as charts, offline. It contains the charting library (1.3 MB), so show all
+        figures in one cell.
+
+    Raises
+    ------
+    ModelError
+        If there is no such figure, or it cannot be drawn of these results.
+
+    Examples
+    --------
+    >>> bd.interactive(run, "slip", "span_tensions")
+    InteractiveFigures(Slip, Span tensions)
+    """
+    several = [results] if isinstance(results, Result) else list(results)
+    shown, charts = charted(several, names or None)
+    if missing := [one.missing for one in shown if one.missing and names]:
+        raise ModelError(missing[0])
+    page = environment().get_template("interactive.html.jinja")
+    text = page.render(
+        figures=shown,
+        charts=embedded(charts),
+        colors=json.dumps([]),
+        library=library() if charts else "",
+        style=read("page.css"),
+        script=script(),
+    )
+    return InteractiveFigures(text, tuple(one.name for one in shown), _height(shown))
+
+
+def _height(shown: Sequence[Shown]) -> int:
+    """Height that figures take, at two charts beside each other."""
+    rows = sum(max(1, -(-len(one.charts) // 2)) * _ROOM + _HEADING for one in shown)
+    return min(rows, _HIGHEST)
