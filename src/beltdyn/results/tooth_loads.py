@@ -112,13 +112,16 @@ def loads_at(recorded: Recorded, prepared: Prepared, number: int) -> tuple[Tooth
         arc = _Arc(place, cell[here], pressing[here], traction[here])
         if "tooth_force" in recorded:
             ahead = np.mod(np.asarray(recorded["tooth_coordinate"]) - along[here[0]] + pitch, length) - pitch
-            one = _single(arc, ahead, np.asarray(recorded["tooth_force"][number]), pitch, flank)
+            one, length_in_mesh = (
+                _single(arc, ahead, np.asarray(recorded["tooth_force"][number]), pitch, flank),
+                arc.extent,
+            )
         else:
-            one = _spread(arc, pitch, flank)
+            one, length_in_mesh = _spread(arc, pitch, flank), arc.length
         found.append(
             ToothLoads(
                 name=pulley.name,
-                in_mesh=arc.length / pitch,
+                in_mesh=length_in_mesh / pitch,
                 largest=one.largest,
                 allowed=most,
                 jump_margin=one.margin,
@@ -146,6 +149,11 @@ class _Arc(NamedTuple):
         """Length of belt, m."""
         return float(self.share.sum())
 
+    @property
+    def extent(self) -> float:
+        """The same with what lies free between lands, m."""
+        return float(self.place[-1] + 0.5 * (self.share[0] + self.share[-1]))
+
 
 class _Found(NamedTuple):
     """Loads of the teeth on an arc."""
@@ -171,13 +179,14 @@ def _spread(arc: _Arc, pitch: float, flank: float) -> _Found:
 
 def _single(arc: _Arc, ahead: FloatArray, force: FloatArray, pitch: float, flank: float) -> _Found:
     """Loads of single teeth on an arc, or beside it in their grooves, from their places and forces."""
-    near = np.flatnonzero((ahead >= 0.0) & (ahead <= arc.length) | (ahead < arc.length + pitch) & (force != 0.0))
+    near = np.flatnonzero((ahead >= 0.0) & (ahead <= arc.extent) | (ahead < arc.extent + pitch) & (force != 0.0))
     near = near[np.argsort(ahead[near])]
     loads, off = force[near], np.abs(force[near]) * flank
     inside = np.abs(arc.place - ahead[near, None]) <= 0.5 * pitch
-    weight = inside @ arc.share
-    mean = np.divide(inside @ (arc.share * arc.pressing), weight, out=np.zeros(near.size), where=weight > 0.0)
-    seated = weight > 0.5 * pitch  # others enter or leave
+    start, end = ahead[near] - 0.5 * pitch, ahead[near] + 0.5 * pitch
+    on_arc = np.minimum(end, arc.extent) - np.maximum(start, 0.0)
+    mean = np.divide(inside @ (arc.share * arc.pressing), on_arc, out=np.zeros(near.size), where=on_arc > 0.0)
+    seated = on_arc > 0.5 * pitch  # others enter or leave
     if seated.any():
         margin = _margin((pitch * mean + off)[seated], off[seated])
     else:
