@@ -113,6 +113,7 @@ FIGURES: dict[str, list[Panel]] = {
     ],
     "toothed": [Panel("", "Place on the arc [mm]", "Load of a tooth [N]", "linear")],
     "web_draw": [Panel("", "Time [s]", "Tension [N]", "linear")],
+    "web_ripple": [Panel("", "Frequency [Hz]", "Amplitude of the tension [N]")],
     "web_control": [Panel("", "Time [s]", "Tension [N]", "linear")],
     "published_drive": [
         Panel("speed", "Time [s]", "Driven pulley [rad/s]", "linear"),
@@ -162,7 +163,7 @@ def draw_panel(ax: Axes, panel: Panel, curves: Curves) -> None:
 def draw(curves: dict[str, Curves]) -> None:
     """Draw all figures for which there are curves."""
     FOLDER.mkdir(parents=True, exist_ok=True)
-    mpl.rcParams.update({"svg.hashsalt": "beltdyn", "svg.fonttype": "none"})
+    mpl.rcParams.update({"svg.hashsalt": "beltdyn", "svg.fonttype": "none", "text.parse_math": True})
     for name, panels in FIGURES.items():
         source = name.split("_1e")[0]
         keys = [f"{source}/{panel.name}" if panel.name else source for panel in panels]

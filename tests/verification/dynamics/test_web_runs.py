@@ -137,6 +137,35 @@ def test_stretch_waves(stepped: Run) -> None:
     assert longitudinal[:3] == pytest.approx(np.sort(speed / free / np.array([2.0, 4.0, 4.0])), rel=5e-3)
 
 
+def test_a_varying_draw_varies_the_tension(curve: Callable[..., None]) -> None:
+    """Amplitude and phase to 1 % up to half of the span's wave frequency c / 2 L: dv / g over v / g^2 EA + i w C.
+
+    An eccentric roller varies its rim speed alike, with order 1.
+    """
+    orders, part, faster = np.array([0.02, 0.05, 0.2, 1.0, 3.0, 10.0, 25.0]), 1e-5, SPEED * (1.0 + DRAW)
+    waves = [{"order": one, "amplitude": part} for one in orders.tolist()]
+    drive = line(
+        [
+            {"name": "first", "center": [0.5, 0.0], "speed": SPEED / RADIUS},
+            {"name": "last", "center": [1.5, 0.0], "speed": faster / RADIUS, "harmonics": waves},
+        ],
+        2.0,
+        simulation={"duration": 1.0, "start": "steady"},
+    )
+    found = bd.response(drive, speed=[faster / RADIUS], pulley="last").dataset.isel(speed=0, span=0)
+    length, tension = float(drive.path.span_lengths[0]), float(found.span_tension)
+    before, stretch = 1.0 + np.array([TENSION, tension]) / STIFFNESS
+    thinner = 1.0 / STIFFNESS / stretch**2
+    content = length * thinner + RADIUS / FRICTION * (1.0 / before - 1.0 / stretch) / (tension - MASS * SPEED**2)
+    turning = orders * faster / RADIUS
+    assert turning.max() < 0.51 * np.pi * np.sqrt(STIFFNESS / MASS) * stretch / length
+    expected = part * faster / stretch / (faster * thinner + 1j * turning * content)
+    amplitude = found.span_tension_amplitude.values
+    curve("web_ripple", turning / 2.0 / np.pi, amplitude, "found", "o")
+    curve("web_ripple", turning / 2.0 / np.pi, np.abs(expected), "closed form", "-")
+    assert amplitude * np.exp(1j * found.span_tension_phase.values) == pytest.approx(expected, rel=0.01)
+
+
 def test_a_dancer() -> None:
     """To 0.5 %: frequency and damping by the equations of transport, with the inertia of the roller."""
     mass, rate, damping, inertia, span = 8.0, 500.0, 60.0, 1e-3, 2.0
