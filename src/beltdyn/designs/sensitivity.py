@@ -366,14 +366,21 @@ def _warnings(state: FoundState, names: Sequence[str]) -> list[str]:
 
 
 def _derivatives(changes: SmallChanges, state: FoundState, number: Number, names: Sequence[str]) -> FloatArray:
-    """Derivatives of results with respect to a number, by central differences of the states."""
+    """Derivatives of results with respect to a number, by central differences of the states; one-sided at a bound."""
     change = CHANGE * number.step / PART
-
-    def at(value: float) -> FloatArray:
-        beside = state.neighbour(changes.drive(number.path, value))
-        return np.array([beside.value(name) for name in names])
-
-    return np.asarray((at(number.value + change) - at(number.value - change)) / (2.0 * change))
+    drives, refused = dict[float, Drive](), list[ModelError]()
+    for value in (number.value + change, number.value - change):
+        try:
+            drives[value] = changes.drive(number.path, value)
+        except ModelError as error:
+            refused.append(error)
+    if not drives:
+        raise refused[0]
+    if refused:
+        drives[number.value] = changes.drive(number.path, number.value)
+    beside = {value: state.neighbour(drive) for value, drive in drives.items()}
+    (upper, above), (lower, below) = ((value, one) for value, one in sorted(beside.items(), reverse=True))
+    return np.array([above.value(name) - below.value(name) for name in names]) / (upper - lower)
 
 
 def _result(

@@ -53,6 +53,8 @@ def load(path: str | pathlib.Path) -> Drive:
     20
     """
     path = pathlib.Path(path)
+    if path.suffix == ".nc" and path.is_file():
+        raise ModelError(f"{path} is a result file, not a drive file. Give the TOML file of the drive.")
     return loads(_text_of(path, "A drive file is TOML; `beltdyn new` writes one."), base=path.parent)
 
 

@@ -84,11 +84,12 @@ class Balance:
 
     @property
     def efficiency(self) -> float:
-        """Power output over the sum of power output and losses; NaN without power input.
+        """Power output over the sum of power output and losses; NaN without power input, or power output (a conveyor).
 
         In steady running this is power output over power input; stored and returned energy is not counted.
         """
-        return self.power_out / (self.power_out + self.lost) if self.power_in > 0.0 else math.nan
+        delivers = self.power_in > 0.0 and self.power_out > 0.0
+        return self.power_out / (self.power_out + self.lost) if delivers else math.nan
 
     @property
     def lost(self) -> float:

@@ -23,6 +23,12 @@ def test_binary_file(refuse: Refuse, tmp_path: Path) -> None:
     assert "is not UTF-8 text" in refuse(["equilibrium", str(tmp_path / "drive.toml")])
 
 
+def test_result_file_in_place_of_a_drive(refuse: Refuse, tmp_path: Path) -> None:
+    (tmp_path / "drive-steady-state.nc").write_bytes(b"\x89HDF\r\n\x1a\n")
+    message = refuse(["life", str(tmp_path / "drive-steady-state.nc")])
+    assert "drive-steady-state.nc is a result file, not a drive file. Give the TOML file of the drive." in message
+
+
 def test_empty_file(refuse: Refuse, tmp_path: Path) -> None:
     (tmp_path / "drive.toml").write_text("")
     message = refuse(["check", str(tmp_path / "drive.toml")])

@@ -198,3 +198,22 @@ def test_the_radius_of_a_pulley_with_teeth_is_no_number_of_its_own() -> None:
     paths = {one.path for one in numbers_of(timing)}
     assert {"pulley[tensioner].radius", "belt.toothing.tooth_stiffness", "belt.toothing.pitch"} <= paths
     assert "pulley[crankshaft].radius" not in paths
+
+
+def test_a_number_at_its_bound_changes_on_one_side() -> None:
+    """A loss factor of 1 cannot rise; losses do not change a belt at rest."""
+    drive = better(loaded_two_pulley()).with_({"belt.stretch_loss_factor": 1.0})
+    found = sensitivity(drive, about="rest", numbers="belt.stretch_loss_factor")
+    np.testing.assert_allclose(found.dataset.derivative, 0.0, atol=1e-3)
+    assert not found.dataset.attrs.get("warnings")
+
+
+@pytest.mark.slow
+def test_a_conveyor_has_no_efficiency_and_its_resistances_change_as_friction_does() -> None:
+    """The coefficient C of DIN 22101, 1 by default, is a factor on the friction coefficient."""
+    drive = loads(files("beltdyn").joinpath("examples", "package_conveyor.toml").read_text(encoding="utf-8"))
+    found = sensitivity(drive, numbers="support[2].friction, support[2].secondary_factor").dataset
+    assert list(found.result.values) == ["least_slip_safety", "largest_tension"]
+    friction, factor = (found.effect.sel(number=f"support[2].{name}") for name in ("friction", "secondary_factor"))
+    np.testing.assert_allclose(factor, friction, rtol=1e-3)
+    assert float(friction.sel(result="largest_tension")) > 0.0

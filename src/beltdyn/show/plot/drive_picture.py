@@ -220,7 +220,7 @@ def write_pulley(ax: Axes, path: Path, number: int, text: str, extent: float, ti
         style |= {"horizontalalignment": "center", "verticalalignment": "center"}
         ax.text(place[0], place[1], text, **style)
         return
-    away = path.radii[number] < 0 and path.wrap_angles[number] < np.pi
+    away = path.ends is None and path.radii[number] < 0 and path.wrap_angles[number] < np.pi
     middle = float(np.mean(arc(path, number)[[0, -1]])) + (np.pi if away else 0.0)
     nip = next((pair for pair in path.nips if number in pair), None)
     if nip is not None:
@@ -233,10 +233,17 @@ def write_pulley(ax: Axes, path: Path, number: int, text: str, extent: float, ti
         tuple(path.centers[number] + radius * np.array([x, y])),
         xytext=(8.0 * x, 8.0 * y),
         textcoords="offset points",
-        horizontalalignment="left" if x > _STEEP else "right" if x < -_STEEP else "center",
-        verticalalignment="bottom" if y > _STEEP else "top" if y < -_STEEP else "center",
+        **aligned(x, y),
         **style,
     )
+
+
+def aligned(x: float, y: float) -> dict[str, Any]:
+    """Alignment of a text that lies in the direction (x, y) of its point, so that it keeps clear of it."""
+    return {
+        "horizontalalignment": "left" if x > _STEEP else "right" if x < -_STEEP else "center",
+        "verticalalignment": "bottom" if y > _STEEP else "top" if y < -_STEEP else "center",
+    }
 
 
 class _Body(NamedTuple):

@@ -20,6 +20,7 @@ from beltdyn.model.path import crossings
 from beltdyn.show.plot.drive_picture import (
     LINE,
     TENSIONER,
+    aligned,
     arc,
     draw_pivot,
     draw_rotation,
@@ -36,6 +37,8 @@ from beltdyn.show.plot.style import COLORS, INK, PALE, axes_or_new, color, new_f
 _BELT = COLORS[0]
 _WAY, _POINTS = 1.4, 20
 """Length of a way that is drawn, over the radius of the pulley, and its points."""
+_LONG = 0.06
+"""Share of the extent of a drive from which on a span has room for its length."""
 _ARROW = "-|>,head_length=5,head_width=2.4"
 
 
@@ -83,7 +86,7 @@ def layout(drive: Drive, installation: Installation | None = None, ax: Axes | No
     for number, pulley in enumerate(drive.pulleys):
         text = f"{number + 1} {pulley.name}\n{np.degrees(path.wrap_angles[number]):.0f}°"
         write_pulley(ax, path, number, text, float(np.ptp(extent, axis=0).max()))
-    _write_spans(ax, path)
+    _write_spans(ax, path, _LONG * float(np.ptp(extent, axis=0).max()))
     ax.set(xlabel="x [m]", ylabel="y [m]")
     name = f"{drive.name}\n" if drive.name else ""
     ax.set_title(
@@ -203,11 +206,10 @@ def _draw_end(ax: Axes, end: End, point: FloatArray, way: FloatArray) -> None:
     ax.annotate(
         end.name,
         tuple(point),
-        xytext=tuple((18.0 if end.held else 36.0) * way),
+        xytext=tuple((8.0 if end.held else 36.0) * way),
         textcoords="offset points",
         arrowprops=None if end.held else {"arrowstyle": "<|-", "color": TENSIONER, "linewidth": 1.6},
-        horizontalalignment="center",
-        verticalalignment="center",
+        **aligned(*way),
         color=INK,
         fontsize=9,
         weight="bold",
@@ -226,11 +228,13 @@ def _arrow(points: ArrayLike, paint: str, size: float) -> FancyArrowPatch:
     )
 
 
-def _write_spans(ax: Axes, path: Path) -> None:
-    """Write the length of each span beside its middle, on the belt's back."""
+def _write_spans(ax: Axes, path: Path, room: float) -> None:
+    """Write the length of each span that has room (m) for it beside its middle, on the belt's back."""
     crossing = set(chain(*crossings(path)))
     for number, (start, end) in enumerate(path.span_points):
         along, length = path.span_directions[number], path.span_lengths[number]
+        if length < room:
+            continue
         place = 0.22 if number in crossing else 0.42
         angle = np.degrees(np.arctan2(along[1], along[0]))
         x, y = along[1], -along[0]

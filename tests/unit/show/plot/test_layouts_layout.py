@@ -12,9 +12,11 @@ from matplotlib.patches import Circle, FancyArrowPatch, Wedge
 from matplotlib.text import Annotation
 
 from beltdyn.errors import ConvergenceError, ModelError
-from beltdyn.model import Drive, install, prepare
+from beltdyn.model import Drive, install, load, prepare
 from beltdyn.show import plot
 from beltdyn.state.installation import bring_to_rest
+
+TASKS = Path(__file__).parents[4] / "docs" / "tasks"
 
 
 @pytest.fixture(autouse=True)
@@ -191,3 +193,22 @@ def test_the_tension_is_that_of_equilibrium(drive: Drive, ax: Axes) -> None:
     with pytest.raises(ConvergenceError):
         bring_to_rest(soft)
     assert plot.layout(soft, ax=ax) is ax
+
+
+def test_names_of_a_web_line_stand_beyond_the_web(ax: Axes) -> None:
+    """No span runs there, whichever face of the web a roller touches."""
+    drive = load(TASKS / "coater.toml")
+    plot.layout(drive, install(drive), ax)
+    path = install(drive).path
+    ways = path.span_directions
+    names = [text for text in ax.texts if text.get_text().endswith("°")]
+    for number, text in enumerate(names):
+        middle = ax.transData.inverted().transform(text.get_window_extent())[:, 1].mean()
+        assert np.sign(middle - path.centers[number, 1]) == np.sign(ways[number - 1, 1] - ways[number, 1])
+    assert len(names) == path.count
+
+
+def test_a_span_without_room_has_no_length_written_on_it(ax: Axes) -> None:
+    drive = load(TASKS / "handrail.toml")
+    plot.layout(drive, install(drive), ax)
+    assert [text.get_text() for text in ax.texts if text.get_text().endswith(" m")] == ["6.972 m", "10 m", "4.118 m"]
