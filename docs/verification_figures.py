@@ -112,6 +112,10 @@ FIGURES: dict[str, list[Panel]] = {
         Panel("stop", "Time [s]", "Rim speed, stop [m/s]", "linear"),
     ],
     "toothed": [Panel("", "Place on the arc [mm]", "Load of a tooth [N]", "linear")],
+    "nip": [
+        Panel("pressure", "Distance from the line of centers [mm]", "Pressure [kPa]", "linear"),
+        Panel("shear", "Distance from the line of centers [mm]", "Shear on the belt [kPa]", "linear"),
+    ],
     "web_draw": [Panel("", "Time [s]", "Tension [N]", "linear")],
     "web_ripple": [Panel("", "Frequency [Hz]", "Amplitude of the tension [N]")],
     "web_control": [Panel("", "Time [s]", "Tension [N]", "linear")],

@@ -21,7 +21,21 @@ from beltdyn.cli import main
 from beltdyn.designs.calibrate import read_measured
 from beltdyn.designs.designs import free_number
 from beltdyn.machines import profiles
-from beltdyn.model import Belt, Contact, Limits, Pulley, Rating, Simulation, Steady, Toothing, dumps, loads
+from beltdyn.model import (
+    Belt,
+    Contact,
+    Limits,
+    Pulley,
+    Rating,
+    Simulation,
+    Steady,
+    Toothing,
+    advise,
+    dumps,
+    install,
+    load,
+    loads,
+)
 from beltdyn.model.belt_form import Nominal, Sold
 from beltdyn.model.catalogue import Entry, read_catalogue
 from beltdyn.model.parameter_study import CalibrationStudy, OptimizationStudy
@@ -255,6 +269,14 @@ def test_tasks_print_what_they_say(page: Path, tmp_path: Path, monkeypatch: pyte
         for one, other in zip(re.findall(number, said), re.findall(number, found), strict=True):
             digit = 10.0 ** -len(one.partition(".")[2])
             assert float(other) == pytest.approx(float(one), rel=0.02, abs=1.01 * digit)
+
+
+@pytest.mark.parametrize("file", sorted((ROOT / "docs" / "tasks").glob("*.toml")), ids=lambda file: file.stem)
+def test_drives_of_tasks_raise_no_doubts(file: Path) -> None:
+    """And a page shows or links each."""
+    drive = load(file)
+    assert advise(drive, install(drive)) == []
+    assert any(file.name in page.read_text(encoding="utf-8") for page in (ROOT / "docs").rglob("*.md"))
 
 
 def test_each_task_is_reached_from_the_first_page_and_the_guide() -> None:

@@ -1,5 +1,6 @@
 """A nip in steady running against the closed forms of an elastic foundation, rolling, Coulomb friction, and energy."""
 
+from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
@@ -81,11 +82,16 @@ def test_the_nip_is_that_of_a_foundation(idle: bd.Run) -> None:
     assert float(nip.peak_pressure) == pytest.approx(stiffness * depth / WIDTH, rel=PARABOLA)
 
 
-def test_pressure_is_a_parabola_on_the_covered_face(idle: bd.Run) -> None:
+def test_pressure_is_a_parabola_on_the_covered_face(idle: bd.Run, curve: Callable[..., None]) -> None:
     profile, (stiffness, radius) = bd.derived.nip_profile(idle, "press"), _foundation(idle)
     depth = float(bd.derived.nips(idle).indentation[0])
     parabola = stiffness * (depth - profile.distance.values**2 / (2.0 * radius)) / WIDTH
     misfit = profile.pressure.sel(face="press").values - np.maximum(parabola, 0.0)
+    place = 1e3 * profile.distance.values
+    for face, style in (("press", "-"), ("drum", "--")):
+        curve("nip/pressure", place, profile.pressure.sel(face=face).values / 1e3, f"on the {face}", style)
+        curve("nip/shear", place, profile.shear.sel(face=face).values / 1e3, f"on the {face}", style)
+    curve("nip/pressure", place[::8], np.maximum(parabola, 0.0)[::8] / 1e3, "parabola", ".")
     assert np.abs(misfit).max() < 2.0 * PARABOLA * parabola.max()
 
 
@@ -200,14 +206,22 @@ def test_the_nip_grips_up_to_coulomb_friction() -> None:
 
 
 @pytest.mark.slow
-def test_a_web_is_pressed_between_unwinder_and_winder() -> None:
-    """Tensions of both ends, pulls of the rollers and the loss of the cover balance along the web."""
-    web = bd.load(Path(__file__).parents[3] / "docs" / "tasks" / "calender.toml")
-    run = bd.steady_state(web)
+@pytest.mark.parametrize(
+    ("name", "forces", "ends"),
+    [("calender", [4e3, 8e3], (400.0, 450.0)), ("calender5", [9e3, 7e3, 5e3], (400.0, 500.0))],
+)
+def test_a_web_is_pressed_between_unwinder_and_winder(
+    name: str, forces: list[float], ends: tuple[float, float]
+) -> None:
+    """Tensions of both ends, pulls of the rollers and the loss of the covers balance along the web."""
+    run = bd.steady_state(bd.load(Path(__file__).parents[3] / "docs" / "tasks" / f"{name}.toml"))
+    assert run.warnings == []
     last, nips = run.dataset.isel(time=-1), bd.derived.nips(run)
-    assert nips.force.values.tolist() == pytest.approx([4e3, 8e3], rel=1e-6)
-    tension = last.span_tension.sel(span=["unwinder-middle", "middle-winder"]).values
-    assert tension.tolist() == pytest.approx([400.0, 450.0], rel=1e-4)
+    assert nips.force.values.tolist() == pytest.approx(forces, rel=1e-6)
+    spans = last.span.values.tolist()
+    before, after = (next(one for one in spans if end in one.split("-")) for end in ("unwinder", "winder"))
+    tension = last.span_tension.sel(span=[before, after]).values
+    assert tension.tolist() == pytest.approx(ends, rel=1e-4)
     speed = float(last.belt_speed.mean())
     power = float((last.shaft_torque * last.pulley_speed).sum()) + speed * float(tension[1] - tension[0])
     lost = float(last.friction_power.sum() + last.contact_damping_power.sum())
