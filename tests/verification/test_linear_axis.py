@@ -261,3 +261,13 @@ def test_a_belt_that_runs_straight_from_land_to_land_has_the_ripple_of_a_polygon
 @pytest.mark.slow
 def test_a_belt_on_a_circle_has_no_ripple_of_a_polygon() -> None:
     assert wave(*in_a_run(20, 1e10, None)) < 0.03 * wave(np.arange(1000) / 1000, on_a_polygon(20))
+
+
+@pytest.mark.slow
+def test_teeth_between_lands_are_in_mesh() -> None:
+    """Half of the twelve grooves, with the force of each."""
+    run = bd.simulate(on_lands(12, 1e10).with_({"simulation.duration": 0.12}))
+    motor = bd.results.tooth_loads(run)[0]
+    assert motor.in_mesh == pytest.approx(6.0, abs=0.6)  # an arc ends at lands
+    forces = run.fields_at().tooth_force.values
+    assert np.sort(motor.loads) == pytest.approx(np.sort(forces[forces != 0.0]))

@@ -112,16 +112,13 @@ def loads_at(recorded: Recorded, prepared: Prepared, number: int) -> tuple[Tooth
         arc = _Arc(place, cell[here], pressing[here], traction[here])
         if "tooth_force" in recorded:
             ahead = np.mod(np.asarray(recorded["tooth_coordinate"]) - along[here[0]] + pitch, length) - pitch
-            one, length_in_mesh = (
-                _single(arc, ahead, np.asarray(recorded["tooth_force"][number]), pitch, flank),
-                arc.extent,
-            )
+            one = _single(arc, ahead, np.asarray(recorded["tooth_force"][number]), pitch, flank)
         else:
-            one, length_in_mesh = _spread(arc, pitch, flank), arc.length
+            one = _spread(arc, pitch, flank)
         found.append(
             ToothLoads(
                 name=pulley.name,
-                in_mesh=length_in_mesh / pitch,
+                in_mesh=arc.extent / pitch,
                 largest=one.largest,
                 allowed=most,
                 jump_margin=one.margin,
