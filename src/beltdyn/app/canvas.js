@@ -58,28 +58,26 @@ export default {
         <circle v-if="one.drives" class="bd-drives" :cx="one.x" :cy="one.y" :r="Math.min(0.3 * one.r, 9 * px)" />
         <path v-else class="bd-hub" :d="cross(one)" />
         <path v-if="one.sense && one.r > 38 * px" class="bd-turns" :d="turning(one)" />
-        <text :x="one.x" :y="one.y - Math.min(0.35 * one.r, 12 * px)" :font-size="13 * px" text-anchor="middle">{{ one.name }}</text>
-        <text class="bd-small" :x="one.x" :y="one.y + Math.min(0.35 * one.r, 12 * px) + 9 * px" :font-size="11 * px"
-              text-anchor="middle">{{ one.wrap }}</text>
+        <text :transform="put(...named(one, -1))" font-size="13" :text-anchor="side(one)">{{ one.name }}</text>
+        <text class="bd-small" :transform="put(...named(one, 1))" font-size="11" :text-anchor="side(one)">{{ one.wrap }}</text>
       </g>
-      <text v-for="(one, i) in shown.spans || []" :key="'s' + i" class="bd-small bd-span"
-            :x="one.x + one.right * away(one)" :y="one.y + one.down * away(one) + 4 * px"
-            :font-size="11 * px" :text-anchor="anchor(one)">{{ written(one.length) }}</text>
+      <text v-for="(one, i) in roomy" :key="'s' + i" class="bd-small bd-span" font-size="11" :text-anchor="anchor(one)"
+            :transform="put(one.x + one.right * away(one), one.y + one.down * away(one) + 4 * px)">{{ written(one.length) }}</text>
       <text v-for="(one, i) in pulled" :key="'n' + i" :class="['bd-small', 'bd-span', 'bd-pull', { 'bd-side': one.side }]"
-            :x="one.x" :y="one.y" :font-size="11 * px" :text-anchor="one.anchor">{{ one.label }}</text>
+            :transform="put(one.x, one.y)" font-size="11" :text-anchor="one.anchor">{{ one.label }}</text>
       <rect v-for="(end, i) in shown.ends || []" :key="'e' + i" class="bd-end" :x="end[0] - 5 * px" :y="end[1] - 5 * px"
             :width="10 * px" :height="10 * px" />
       <circle v-if="chosen" class="bd-handle bd-size" :cx="chosen.x + 0.7071 * chosen.r" :cy="chosen.y + 0.7071 * chosen.r"
               :r="6 * px" @pointerdown.stop="down($event, { kind: 'size', number: chosen.number, from: null })">
         <title>drag to size</title>
       </circle>
-      <text v-for="(one, i) in numbers" :key="'gn' + i" class="bd-small bd-of-grid" :x="one.x" :y="one.y" :font-size="10 * px"
+      <text v-for="(one, i) in numbers" :key="'gn' + i" class="bd-small bd-of-grid" :transform="put(one.x, one.y)" font-size="10"
             :text-anchor="one.anchor" aria-hidden="true">{{ one.text }}</text>
       <g class="bd-scale" aria-hidden="true">
         <path :d="scale.line" />
-        <text :x="scale.x" :y="scale.y - 5 * px" :font-size="11 * px" text-anchor="middle">{{ scale.label }}</text>
+        <text :transform="put(scale.x, scale.y - 5 * px)" font-size="11" text-anchor="middle">{{ scale.label }}</text>
       </g>
-      <text v-if="pulleys.length === 0" class="bd-hint" :x="view.x + view.w / 2" :y="view.y + view.h / 2" :font-size="16 * px"
+      <text v-if="pulleys.length === 0" class="bd-hint" :transform="put(view.x + view.w / 2, view.y + view.h / 2)" font-size="16"
             text-anchor="middle">Double-click to place a pulley</text>
     </svg>
    </div>`,
@@ -151,9 +149,12 @@ export default {
         return {
           d: `M${x1} ${y1}L${x2} ${y2}`, width: (2 + 5 * share) * this.px, side,
           x: one.x + one.right * away, y: one.y + one.down * away + (one.down < -0.3 ? -9 : 17) * this.px,
-          anchor: this.anchor(one), label: `${side}${known[i].toPrecision(3)} N`,
+          anchor: this.anchor(one), label: `${side}${Number(known[i].toPrecision(3))} N`,
         };
       });
+    },
+    roomy() { // spans that are long enough for their lengths
+      return (this.shown.spans || []).filter((one) => one.length > 70 * this.px);
     },
     numbers() { // of the grid, along the lower and the left edge
       const step = niceStep(50 * this.px) * 2, found = [];
@@ -246,6 +247,27 @@ export default {
     arrow(one) {
       const [x, y] = this.tip(one);
       return `M${one.x} ${one.y}L${x} ${y}`;
+    },
+    put(x, y) { // texts keep their size: browsers draw no font larger than 10000, which the units of a long drive exceed
+      return `translate(${x} ${y}) scale(${this.px})`;
+    },
+    beside(one) { // where the name of a small pulley has room: beyond its belt, and beside the handle of a tensioner
+      if (!one.beyond || one.r > 22 * this.px) return null;
+      const pulled = (this.shown.tensioners || []).some((each) => each.direction && Math.hypot(each.x - one.x, each.y - one.y) < 1e-6);
+      const level = Math.abs(one.beyond[0]) > 0.7;
+      return { right: one.beyond[0], down: one.beyond[1], level, shift: pulled ? [level ? 0 : 12, level ? 18 : 0] : [0, 0] };
+    },
+    named(one, line) { // of its name (-1) and its wrap angle (1)
+      const found = this.beside(one), px = this.px;
+      if (!found) return [one.x, one.y + line * Math.min(0.35 * one.r, 12 * px) + (line > 0 ? 9 * px : 0)];
+      const far = one.r + (12 + 12 * Math.abs(found.down)) * px;
+      return [one.x + found.right * far + found.shift[0] * px, one.y + found.down * far + (found.shift[1] + (line > 0 ? 12 : -2)) * px];
+    },
+    side(one) {
+      const found = this.beside(one);
+      if (!found) return "middle";
+      if (found.level) return found.right > 0 ? "start" : "end";
+      return found.shift[0] ? "start" : "middle";
     },
     away(one) { // of a length from its span
       return (this.anchor(one) === "middle" ? 14 + 20 * Math.abs(one.right) : 12) * this.px;

@@ -60,7 +60,7 @@ def number_in(value: float, unit: str, system: System) -> tuple[str, str]:
 def _digits(value: float) -> str:
     """A number with three or four digits, and never as a power of ten where it is a usual one."""
     if abs(value) >= 1e3:
-        return f"{value:.0f}" if abs(value) < _BIG * 1e2 else f"{value:.3g}"
+        return f"{value:.0f}" if abs(value) < _BIG * 1e3 else f"{value:.3g}"
     return f"{value:.3g}"
 
 

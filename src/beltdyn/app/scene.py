@@ -19,6 +19,8 @@ _FEW = 2
 """Number of pulleys above which they alone set the extent."""
 _SMALLEST = 60.0
 """Least shorter side of the extent, mm."""
+_STRAIGHT = 1e-3
+"""Bend of a belt (rad) below which it passes a pulley straight."""
 _SEEN = 0.004
 """Travel of a tensioner over the size of the drive above which its rest position is drawn separately."""
 
@@ -134,8 +136,21 @@ def _pulley(one: Circle, drive: Drive | None, center: Sequence[float], draft: Dr
         "drives": drives,
         "sense": 0 if drive is None or pulley is None else drive.running_sense * pulley.turning,
         "wrap": "" if wrap is None else f"{wrap:.1f}°",
+        "beyond": None if drive is None else _beyond(drive.path, one.number),
         "wrong": bool(draft.told_below(("pulley", one.number))),
     }
+
+
+def _beyond(path: Path, number: int) -> list[float] | None:
+    """The direction from a pulley in which no span runs: beyond its arc, and in a loop within a pulley on the back."""
+    ways = path.span_directions
+    bend = ways[number - 1] - ways[number]
+    size = float(np.linalg.norm(bend))
+    if not size > _STRAIGHT:
+        return None
+    inward = path.ends is None and path.radii[number] < 0
+    right, up = (bend / (-size if inward else size)).tolist()
+    return [right, -up]
 
 
 def _spans(path: Path) -> list[dict[str, Any]]:

@@ -8,7 +8,7 @@ import pytest
 
 from beltdyn.app.draft import draft
 from beltdyn.app.scene import length_in, scene
-from beltdyn.model import Drive
+from beltdyn.model import Drive, load
 
 HERE = Path()
 
@@ -23,6 +23,15 @@ def test_two_equal_pulleys_are_drawn_to_scale(drive: Drive) -> None:
     assert drawn["belt"].startswith("M -191.44 81.25 L 191.44 81.25 A 81.25 81.25 0 ")
     assert drawn["extent"] == pytest.approx([-272.691, -81.25, 272.691, 81.25])
     json.dumps(drawn)
+
+
+def test_names_of_small_pulleys_have_room_beyond_the_belt(drive: Drive) -> None:
+    """To the left of the left pulley of a drive, and to the right of the right one; above and below a web."""
+    first, second = scene(draft(drive.data, HERE))["pulleys"]
+    assert (first["beyond"], second["beyond"]) == (pytest.approx([-1.0, 0.0]), pytest.approx([1.0, 0.0]))
+    line = load(Path(__file__).parents[3] / "docs" / "tasks" / "coater.toml")
+    below = {one["name"]: one["beyond"][1] > 0.0 for one in scene(draft(line.data, HERE), settled=False)["pulleys"]}
+    assert [name for name, down in below.items() if down] == ["dancer", "coater", "oven 2", "pull"]
 
 
 def test_an_empty_drive_file_shows_an_empty_canvas() -> None:

@@ -77,6 +77,9 @@ class Picture { // of the drive, on a canvas with a button to play
     }
     pen.stroke();
     pen.globalAlpha = 1;
+  }
+  named(pen, { name, radius }, x, y, ink, page) { // over the belt, which would hide the names of small pulleys
+    const r = this.scale * radius;
     pen.fillStyle = ink; pen.font = "600 12px system-ui, sans-serif"; pen.textAlign = "center"; pen.textBaseline = "middle";
     const wide = pen.measureText(name).width;
     pen.lineWidth = 4; pen.strokeStyle = page;
@@ -146,15 +149,17 @@ class Motion extends Picture {
     const between = (rows) => (one) => rows[now.frame][one] + now.part * (rows[now.next][one] - rows[now.frame][one]);
     const ink = style("--ink"), page = style("--page");
     const angles = between(data.angle);
-    data.pulleys.forEach((pulley, number) => {
+    const places = data.pulleys.map((pulley, number) => {
       const [a, b] = [data.center[now.frame][number], data.center[now.next][number]];
-      const [x, y] = this.to(a[0] + now.part * (b[0] - a[0]), a[1] + now.part * (b[1] - a[1]));
-      this.pulley(pen, pulley, x, y, angles(number) + now.passed * data.speed[number], ink, page);
+      return this.to(a[0] + now.part * (b[0] - a[0]), a[1] + now.part * (b[1] - a[1]));
     });
+    data.pulleys.forEach((pulley, number) =>
+      this.pulley(pen, pulley, ...places[number], angles(number) + now.passed * data.speed[number], ink, page));
     const points = this.belt(now);
     this.stroke(pen, points, now, ink);
     const travel = data.travel[now.frame] + now.part * (data.travel[now.next] - data.travel[now.frame]) + now.passed * data.pace;
     this.marks(pen, points, travel / data.length, page);
+    data.pulleys.forEach((pulley, number) => this.named(pen, pulley, ...places[number], ink, page));
     this.scrub.value = 1000 * this.share;
     this.clock.textContent = `${this.time.toPrecision(4)} s`;
   }
