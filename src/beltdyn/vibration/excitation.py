@@ -122,7 +122,9 @@ def own_excitations(drive: Drive) -> list[Excitation]:
             for order in torque_orders(load)
         ]
     found += [Excitation(f"turn of {one.name}", TURN, 1.0, RIM, number) for number, one in enumerate(drive.pulleys)]
-    return [*dict.fromkeys(found), Excitation("turn of the belt", TURN, 1.0, BELT)]
+    if not drive.ends:
+        found.append(Excitation("turn of the belt", TURN, 1.0, BELT))
+    return list(dict.fromkeys(found))
 
 
 def given_excitations(orders: Numbers, drive: Drive, number: int) -> list[Excitation]:

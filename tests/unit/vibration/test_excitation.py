@@ -1,12 +1,13 @@
 """What excites a drive, and at which frequencies."""
 
+from pathlib import Path
 from typing import Any
 
 import numpy as np
 import pytest
 
 from beltdyn.errors import ModelError
-from beltdyn.model import Drive
+from beltdyn.model import Drive, load
 from beltdyn.state.steady import steady_state
 from beltdyn.vibration.excitation import given_excitations, one_line_each, own_excitations
 from validation.published.cases import better, loaded_two_pulley
@@ -17,10 +18,13 @@ def loaded() -> Drive:
     """The paper's drive with waves in its speed, and in one of its loads; another one is shut off."""
     drive = better(loaded_two_pulley())
     driver, driven = drive.pulleys
-    load: dict[str, Any] = {"kind": "resistance", "constant": "10 N m"}
+    resistance: dict[str, Any] = {"kind": "resistance", "constant": "10 N m"}
     waves = [{"order": 3, "amplitude": 0.1}]
     off = {"kind": "constant", "value": 0.0}
-    loads = [load | {"harmonics": waves}, load | {"harmonics": [{"order": 7, "amplitude": 0.1}], "schedule": off}]
+    loads = [
+        resistance | {"harmonics": waves},
+        resistance | {"harmonics": [{"order": 7, "amplitude": 0.1}], "schedule": off},
+    ]
     return drive.replace(
         pulley=[driver.replace(harmonics=[{"order": 2, "amplitude": 0.02}]), driven.replace(load=loads)]
     )
@@ -41,6 +45,12 @@ def test_harmonics_turns_and_belt(loaded: Drive) -> None:
     frequencies = [one.frequency(run) for one in found]
     np.testing.assert_allclose(frequencies[:4], [2.0 * turns[0], 3.0 * turns[1], *turns], rtol=1e-12)
     assert frequencies[4] == pytest.approx(belt, rel=0.01)
+
+
+def test_the_web_of_a_line_does_not_turn() -> None:
+    """It passes once: flaws of the web come back with no turn of it."""
+    line = load(Path(__file__).parents[3] / "docs" / "tasks" / "coater.toml")
+    assert [one.name for one in own_excitations(line)] == [f"turn of {one.name}" for one in line.pulleys]
 
 
 def test_what_differs_by_less_than_a_per_cent_is_one_line(loaded: Drive) -> None:
