@@ -134,7 +134,9 @@ def _pulley(one: Circle, drive: Drive | None, center: Sequence[float], draft: Dr
         "r": MILLIMETRES * one.radius,
         "outside": one.side == "outside",
         "drives": drives,
-        "sense": 0 if drive is None or pulley is None else drive.running_sense * pulley.turning,
+        "sense": 0
+        if drive is None or pulley is None or drive.guides[one.number]
+        else drive.running_sense * pulley.turning,
         "wrap": "" if wrap is None else f"{wrap:.1f}°",
         "beyond": None if drive is None else _beyond(drive.path, one.number),
         "wrong": bool(draft.told_below(("pulley", one.number))),

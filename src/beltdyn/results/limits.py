@@ -91,7 +91,8 @@ def _of_run(run: Result) -> Iterator[Found]:
         loads = list(loads_over_time(recorded, run.prepared))
         time = [""] * len(hub_load) if lasts else [f"at {one:.4g} s" for one in np.asarray(recorded["time"])]
     over = "" if lasts else "mean at the end"
-    yield _worst("largest_slip", np.abs([[one.slip for one in means]]), "%", [over], pulleys)
+    slips = np.array([[one.slip for one in means]])
+    yield _worst("largest_slip", _of_turning(run, slips), "%", [over], pulleys)
     yield _worst("largest_hub_load", hub_load, "N", time, pulleys)
     yield _worst("largest_tension", tension, "N", time, spans)
     yield _worst("least_tension", tension, "N", time, spans)
@@ -103,6 +104,11 @@ def _of_run(run: Result) -> Iterator[Found]:
         yield _worst(key, values, "N" if field == "largest" else "1", when, pulleys)
     if run.drive.rated_belt is not None:
         yield _worst("largest_utilization", np.array([[one.utilization for one in means]]), "%", [over], pulleys)
+
+
+def _of_turning(result: Result, slips: FloatArray) -> FloatArray:
+    """Magnitudes of slip on pulleys that turn: a belt always slips over guides that stand still."""
+    return np.where(result.drive.guides, np.nan, np.abs(slips))
 
 
 _OF_TABLES = {
@@ -125,7 +131,7 @@ def _of_table(
         if name in dataset:
             variable = dataset[name].transpose(..., of)
             values = variable.values.reshape(len(places), -1)
-            values = np.abs(values) if key == "largest_slip" else values
+            values = _of_turning(result, values) if key == "largest_slip" else values
             yield _worst(key, values, unit, places, list(map(str, dataset[of].values)))
 
 

@@ -12,6 +12,7 @@ from beltdyn.model import (
     Drive,
     Installation,
     Path,
+    Pulley,
     advise,
     alignment,
     describe_time,
@@ -328,20 +329,34 @@ def _origin(drive: Drive, installation: Installation, asked_for: bool) -> str:
 def _pulleys(drive: Drive, installation: Installation) -> list[tuple[str, ...]]:
     """Pulley rows; the speed ratio is that without creep, negative for the opposite sense."""
     path, loads = installation.path, installation.hub_loads.tolist()
+    sense, guides = drive.running_sense, drive.guides
+    guided = list(zip(drive.pulleys, guides, strict=True))
     return list(
         zip(
             (pulley.name for pulley in drive.pulleys),
-            ("prescribed" if pulley.prescribed else "free" for pulley in drive.pulleys),
-            ("ccw" if drive.running_sense * pulley.turning > 0 else "cw" for pulley in drive.pulleys),
+            (_shaft(pulley, stands) for pulley, stands in guided),
+            (_NO_TURN if stands else "ccw" if sense * pulley.turning > 0 else "cw" for pulley, stands in guided),
             (f"{math.degrees(wrap):.1f}°" for wrap in path.wrap_angles),
             aligned([1e3 * abs(radius) for radius in path.radii], 5),
-            (f"{path.radii[0] / radius:.4f}" for radius in path.radii),
+            (
+                _NO_TURN if guide else f"{path.radii[0] / radius:.4f}"
+                for radius, guide in zip(path.radii, guides, strict=True)
+            ),
             aligned([1e3 * depth for depth in installation.penetrations], 2),
             aligned([math.hypot(*load) for load in loads]),
             (f"{_angle(load):z.1f}°" for load in loads),
             strict=True,
         )
     )
+
+
+_NO_TURN = "–"
+"""The sense and the speed ratio of a guide that stands still."""
+
+
+def _shaft(pulley: Pulley, stands: bool) -> str:
+    """Whether a shaft stands, has a prescribed speed, or is free."""
+    return "stands" if stands else "prescribed" if pulley.prescribed else "free"
 
 
 def _angle(force: list[float]) -> float:

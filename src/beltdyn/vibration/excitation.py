@@ -121,7 +121,11 @@ def own_excitations(drive: Drive) -> list[Excitation]:
             if load.schedule is None or load.schedule.at([0.0])[0] != 0.0
             for order in torque_orders(load)
         ]
-    found += [Excitation(f"turn of {one.name}", TURN, 1.0, RIM, number) for number, one in enumerate(drive.pulleys)]
+    found += [
+        Excitation(f"turn of {one.name}", TURN, 1.0, RIM, number)
+        for number, (one, stands) in enumerate(zip(drive.pulleys, drive.guides, strict=True))
+        if not stands
+    ]
     if not drive.ends:
         found.append(Excitation("turn of the belt", TURN, 1.0, BELT))
     return list(dict.fromkeys(found))

@@ -29,6 +29,13 @@ def test_a_drive_is_checked_at_rest() -> None:
     assert "crank to tensioner" in checked._repr_html_()
 
 
+def test_guides_that_stand_still_have_no_sense_and_no_speed_ratio() -> None:
+    handrail = bd.load(Path(__file__).parents[3] / "docs" / "tasks" / "handrail.toml")
+    lines = str(bd.check(handrail, equilibrium=False)).splitlines()
+    rows = [line.split() for line in lines if line.startswith(("drive ", "lower newel ")) and "°" in line]
+    assert [(row[-8], row[-7], row[-4]) for row in rows] == [("prescribed", "ccw", "1.0000"), ("stands", "–", "–")]
+
+
 def test_what_is_probably_not_meant_is_said(drive: Drive) -> None:
     thick = bd.check(drive.with_({"belt.elements": 12}))
     assert thick.warnings

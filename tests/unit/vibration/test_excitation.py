@@ -12,6 +12,8 @@ from beltdyn.state.steady import steady_state
 from beltdyn.vibration.excitation import given_excitations, one_line_each, own_excitations
 from validation.published.cases import better, loaded_two_pulley
 
+TASKS = Path(__file__).parents[3] / "docs" / "tasks"
+
 
 @pytest.fixture(scope="module")
 def loaded() -> Drive:
@@ -49,8 +51,13 @@ def test_harmonics_turns_and_belt(loaded: Drive) -> None:
 
 def test_the_web_of_a_line_does_not_turn() -> None:
     """It passes once: flaws of the web come back with no turn of it."""
-    line = load(Path(__file__).parents[3] / "docs" / "tasks" / "coater.toml")
+    line = load(TASKS / "coater.toml")
     assert [one.name for one in own_excitations(line)] == [f"turn of {one.name}" for one in line.pulleys]
+
+
+def test_guides_that_stand_still_have_no_turn() -> None:
+    found = own_excitations(load(TASKS / "handrail.toml"))
+    assert [one.name for one in found] == ["turn of drive", "turn of roller", "turn of the belt"]
 
 
 def test_what_differs_by_less_than_a_per_cent_is_one_line(loaded: Drive) -> None:

@@ -187,6 +187,8 @@ def test_a_handrail_is_pulled_through_its_guides(gravity: float) -> None:
     safeties = [one.slip_safety for one in bd.summarize(run).pulleys]
     assert np.isnan(safeties[2:]).all()
     assert safeties[0] > 1.5
+    slip = bd.results.key_numbers(run)[0]
+    assert (slip.name, slip.where) == ("largest slip", "roller")
 
 
 @pytest.mark.slow

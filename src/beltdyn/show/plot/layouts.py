@@ -156,7 +156,8 @@ def _draw_pulley(ax: Axes, drive: Drive, path: Path, number: int) -> None:
     ax.add_patch(Wedge(tuple(center), radius, min(start, end), max(start, end), **tint))
     ax.add_patch(Circle(tuple(center), radius, facecolor="none", edgecolor=INK, linewidth=0.9, zorder=1.2))
     ax.add_patch(Circle(tuple(center), 0.05 * radius, color=INK, zorder=2))
-    draw_rotation(ax, center, radius, drive.running_sense * drive.pulleys[number].turning)
+    if not drive.guides[number]:
+        draw_rotation(ax, center, radius, drive.running_sense * drive.pulleys[number].turning)
 
 
 def _draw_belt(ax: Axes, path: Path) -> None:
