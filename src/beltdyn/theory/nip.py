@@ -138,13 +138,13 @@ def hertz_half_width(load: float, modulus: float, radius: float) -> float:
     return sqrt(4.0 * load * radius / (pi * modulus))
 
 
-def line_force(overlap: FloatArray, stiffness: float, hertz: float = 0.0) -> FloatArray:
+def line_force(overlap: float | FloatArray, stiffness: float, hertz: float = 0.0) -> FloatArray:
     """Line force f that compresses a foundation and solid rollers in series by f / K + A f^2, N/m.
 
     Examples
     --------
-    >>> bd.theory.nip.line_force(np.array([2e-3]), 1e9, 1e-15).tolist()
-    [1000000.0]
+    >>> float(bd.theory.nip.line_force(2e-3, 1e9, 1e-15))
+    1000000.0
     """
     return np.asarray(2.0 * stiffness * overlap / (1.0 + np.sqrt(1.0 + 4.0 * hertz * stiffness**2 * overlap)))
 

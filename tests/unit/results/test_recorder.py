@@ -46,7 +46,7 @@ def test_dataset_keeps_to_the_schema(result: FileRecorder) -> None:
         kept = {
             name: variable
             for name, variable in KNOWN.items()
-            if not {"tensioner", "carriage", "tooth", "nip"} & {*variable.dims}
+            if not {"tensioner", "carriage", "tooth", "nip", "roll"} & {*variable.dims}
         }
         assert set(dataset.variables) == set(kept)
         for name, variable in kept.items():
@@ -67,7 +67,7 @@ def test_tensioners_are_recorded_where_there_are_any(
     with file.dataset() as dataset:
         xr.testing.assert_identical(dataset, memory.dataset())
         assert set(dataset.variables) == {
-            name for name, one in KNOWN.items() if not {"carriage", "tooth", "nip"} & {*one.dims}
+            name for name, one in KNOWN.items() if not {"carriage", "tooth", "nip", "roll"} & {*one.dims}
         }
         assert dataset["tensioner"].values.tolist() == ["driven"]
     with pytest.raises(ValueError, match=r"missing or unknown variables.*tensioner_position, tensioner_speed"):

@@ -58,7 +58,7 @@ def test_resistance_is_against_motion_and_zero_at_rest() -> None:
 
 
 def test_kinds_are_registered() -> None:
-    assert list(SUPPORTS) == ["guide", "idlers"]
+    assert list(SUPPORTS) == ["idlers", "guide"]
 
 
 @pytest.mark.parametrize(

@@ -2,6 +2,7 @@
 
 from collections.abc import Callable
 from dataclasses import replace
+from importlib import import_module
 from typing import Any
 
 import numpy as np
@@ -11,7 +12,6 @@ from matplotlib.axes import Axes
 from beltdyn.errors import ModelError
 from beltdyn.results import Run, ToothLoads
 from beltdyn.show import plot
-from beltdyn.show.plot import contact_pressure
 from tests.unit.model.test_toothing import drive
 from tests.unit.results.derived.test_tooth_variables import RIPPLE
 from tests.unit.results.derived.test_tooth_variables import run as toothed
@@ -20,7 +20,8 @@ LOADS = ToothLoads("driver", 2.0, 30.0, np.nan, 5.0, np.array([0.5, 1.5]), np.ar
 
 
 def test_loads_are_drawn_over_the_arc(run: Run, ax: Axes, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(contact_pressure, "tooth_loads", lambda *_: (LOADS, replace(LOADS, name="driven")))
+    module = import_module("beltdyn.show.plot.contact_pressure")
+    monkeypatch.setattr(module, "tooth_loads", lambda *_: (LOADS, replace(LOADS, name="driven")))
     plot.load_sharing(run, ax=ax)
     np.testing.assert_allclose(np.asarray(ax.lines[0].get_ydata()), LOADS.loads)
     assert [line.get_label() for line in ax.lines[:2]] == ["driver", "driven"]
