@@ -106,9 +106,19 @@ def refuse_nips(nips: Sequence[Nip], what: str) -> None:
     """Make sure that what knows no nips is not asked of a drive that has some."""
     if nips:
         raise ModelError(
-            f'{what} has a belt without thickness, which knows no nip, such as that of "{nips[0].roller}". Compute '
-            "steady running with "
-            "`beltdyn steady-state`, its modes, or a run over time."
+            f'{what} has a belt without thickness, which knows no nip, such as that of "{nips[0].roller}". Use '
+            "`beltdyn steady-state`, `beltdyn modes`, `beltdyn operating-map` or `beltdyn simulate`, or remove "
+            "its [[nip]]."
+        )
+
+
+def refuse_web_nips(nips: Sequence[Nip], what: str) -> None:
+    """Make sure that a web line with nips is only asked for rest and steady running."""
+    if nips:
+        raise ModelError(
+            f"{what} of a web line with nips cannot be computed: its mesh stays by the arcs of rollers, of which "
+            f'"{nips[0].roller}" in a nip has none. Use `beltdyn steady-state` or `beltdyn operating-map`, or remove '
+            "its [[nip]]."
         )
 
 

@@ -209,11 +209,14 @@ def _sliding_nips(drive: Drive) -> Iterator[Finding]:
         roller, pulley = (drive.pulleys[one] for one in pair)
         if roller.speed is None or pulley.speed is None or ratio is None:
             continue
-        speeds = [one.driven_speed() for one in (roller, pulley)] * drive.rolling_radii[list(pair)]
-        fastest, apart = float(np.max(speeds)), abs(float(speeds[0] - speeds[1]))
+        ends = [float(one.at([drive.simulation.duration])[0]) for one in (roller.speed, pulley.speed)]
+        together = -1.0 if ends[0] * ends[1] > 0.0 else 1.0  # rollers of a nip turn against each other
+        radii = drive.rolling_radii[list(pair)]
+        speeds = np.array([together * roller.driven_speed(), pulley.driven_speed()]) * radii
+        fastest, apart = float(np.abs(speeds).max()), abs(float(speeds[0] - speeds[1]))
         if apart <= _FACES * ratio * fastest:
             continue
-        right = roller.driven_speed() * float(speeds[1] / speeds[0]) if speeds[0] else 0.0
+        right = -math.copysign(float(speeds[1] / radii[0]), ends[1])
         yield Finding(
             f"the surface of {roller.name} is to run at {speeds[0]:.5g} m/s and that of {pulley.name} at "
             f"{speeds[1]:.5g} m/s; creep on both faces takes up {_FACES * ratio:.2%}, and they differ by "

@@ -430,7 +430,7 @@ class Recording:
             ends = slice(frame.place - winds, frame.place + 1)  # the shift at the winder, and what has passed
             return 1.0 if winds else -1.0, position[:, ends].sum(axis=1), velocity[:, ends].sum(axis=1)
         still = np.zeros(len(position))
-        return 0.0, still, still + frame.speed[0]
+        return 0.0, still, still + np.ravel(frame.speed)[0]  # a number at rest
 
     def _nodes(self, states: Chunk, instants: FloatArray) -> Arrays:
         """Coordinates and velocities of nodes, and of bodies at the same instants."""

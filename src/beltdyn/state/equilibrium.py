@@ -66,7 +66,7 @@ def equilibrium(drive: Drive, *, force_tolerance: float | None = None, progress:
 def _refined(drive: Drive, tolerance: float, progress: Report | None) -> StaticResult:
     """The equilibrium on a graded mesh, as fine as contact forces need it."""
     require_tolerance(tolerance)
-    if drive.ends:
+    if drive.ends and not drive.is_web:
         raise ModelError(
             "force_tolerance does not apply to an open belt, whose elements are equally long. Omit it, and "
             "increase belt.elements."

@@ -7,7 +7,7 @@ import numpy as np
 from beltdyn.arrays import IntArray
 from beltdyn.errors import ModelError
 from beltdyn.model import Drive, Prepared, prepare
-from beltdyn.model.nip import refuse_set
+from beltdyn.model.nip import refuse_set, refuse_web_nips
 from beltdyn.results import Run
 from beltdyn.state.linearized import DRY_FRICTION, SmallMotions, in_motion, linearised
 from beltdyn.state.settling import DIRECTION
@@ -75,11 +75,11 @@ def about_rest(drive: Drive) -> SmallMotions:
 
 def require_closed(drive: Drive, *, web: bool = False) -> None:
     """Refuse belts with ends, and web lines where they are not told to serve."""
+    if drive.is_web:
+        refuse_web_nips(drive.nips, "vibration")
     if drive.is_web and not web:
         raise ModelError('a web line has modes about steady running alone. Set about = "steady", or omit it.')
     refuse_set(drive.belt, drive.nips, "a small motion")
-    if drive.is_web and drive.nips:
-        raise ModelError("a web line with nips has no modes. Use `beltdyn steady-state`, or remove its [[nip]].")
     if drive.ends and not drive.is_web:
         other = "Use `beltdyn stroke`" if drive.carriage else "Simulate the drive with `beltdyn simulate`"
         raise ModelError(f"the belt is open, but modes need a closed belt. {other}.")

@@ -194,7 +194,13 @@ def test_speeds_that_differ_by_more_than_creep_are_told() -> None:
     (finding,) = told(-12.5)
     assert "press is to run at 0.99021 m/s and that of drum at 0.9999 m/s" in finding
     assert "differ by 0.97%" in finding
-    assert f"a speed of {6.6 * 0.153 / 0.08 * 30.0 / np.pi:.5g} rpm" in finding
+    right = f"a speed of {-6.6 * 0.153 / 0.08 * 30.0 / np.pi:.5g} rpm"
+    assert right in finding
+    (backwards,) = told(6.6 * 0.153 / 0.08)
+    assert "differ by 200.00%" in backwards
+    assert right in backwards
+    (held,) = told(0.0)
+    assert right in held
 
 
 def test_lumped_models_know_no_nips() -> None:
