@@ -48,7 +48,9 @@ class DutyPoint(Part):
         description='the power that pulleys take, { alternator = "1.2 kW" }, in W; in place of their torque and loads',
     )
     load: Ratio | None = Field(
-        None, ge=0, description="the factor on all torques and loads of the drive file but those of motors"
+        None,
+        ge=0,
+        description="the factor on goods, and on all torques and loads of the drive file but for motors",
     )
     temperature: Temperature | None = Field(None, description="the temperature of the belt, in °C")
 

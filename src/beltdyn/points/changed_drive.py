@@ -45,15 +45,15 @@ def is_motor(load: Load) -> bool:
 
 def at_speed(drive: Drive, number: int, speed: float) -> Drive:
     """Prescribe the speed of a pulley, in place of its motor, torque and loads; a web line keeps its draws."""
-    return drive.replace(pulley=_turned(drive, list(drive.pulleys), number, speed))
+    return drive.replace(pulley=turned(drive, list(drive.pulleys), number, speed))
 
 
 def at_speed_under(drive: Drive, number: int, speed: float, factor: float) -> Drive:
     """Multiply all torques and loads, as `with_load`, and prescribe the speed of a pulley, as `at_speed`."""
-    return drive.replace(pulley=_turned(drive, under_load(drive, factor), number, speed), goods=_under(drive, factor))
+    return drive.replace(pulley=turned(drive, under_load(drive, factor), number, speed), goods=_under(drive, factor))
 
 
-def _turned(drive: Drive, pulleys: list[Pulley], number: int, speed: float) -> list[Pulley]:
+def turned(drive: Drive, pulleys: list[Pulley], number: int, speed: float) -> list[Pulley]:
     """The pulleys with the speed of one; other prescribed speeds of a web line change in proportion."""
     given = drive.pulleys[number].speed
     before = 0.0 if given is None else float(given.at([0.0])[0])

@@ -18,10 +18,11 @@ from beltdyn.points.changed_drive import (
     driver_of,
     held_at,
     sense_of,
+    turned,
     turned_at,
-    under_load,
     under_power,
     under_torque,
+    with_load,
 )
 from beltdyn.points.operating_points import VARIABLES, Axes, OperatingPoints
 from beltdyn.results import Result, Variable
@@ -74,8 +75,8 @@ def duty(
     The table is that of the drive file, its groups ``[[duty]]``, or a CSV file with a line of headings: "duration [s]"
     or "share [%]" of time, "speed [rpm]" of the driver in its sense of rotation, "NAME power [kW]", the power that a
     pulley takes, or "NAME torque [N m]" and "NAME speed [rpm]", counter-clockwise positive, "load", the factor on all
-    torques and loads of the drive file but those of motors, and "temperature [°C]" of the belt, on which its life
-    depends. Each line is an operating point. Quantities without a column are those of the drive file.
+    torques and loads of the drive file but those of motors, and on goods, and "temperature [°C]" of the belt, on which
+    its life depends. Each line is an operating point. Quantities without a column are those of the drive file.
 
     Parameters
     ----------
@@ -179,11 +180,12 @@ def at_row(held: Drive, columns: list[Column], row: int) -> Drive:
     load = next((value for one, value in given if one.what == "load"), 1.0)
     if load < 0.0:
         raise ModelError(f"row {row + 1}: load = {load:g} is negative, with which loads would drive.")
-    pulleys, belt = under_load(held, load), held.belt
+    held = with_load(held, load)
+    pulleys, belt = list(held.pulleys), held.belt
     for one, value in sorted(given, key=lambda column: column[0].what != "speed"):
         if one.what == "speed" and not one.pulley:
             driver = driver_of(held)
-            pulleys[driver] = turned_at(pulleys[driver], sense_of(held, driver) * value)
+            pulleys = turned(held, pulleys, driver, sense_of(held, driver) * value)
         elif one.what in _OF_PULLEYS:
             number = held.number_of(one.pulley)
             pulleys[number] = _CHANGES[one.what](held, number, value, pulleys)
@@ -215,7 +217,7 @@ def _mean_of(
     put_in, taken = (np.average(arrays[name][found], axis=0, weights=weights) for name in ("power_in", "power_out"))
     yield "mean_power_in", (Variable((), "W", "Mean power input"), put_in)
     yield "mean_power_out", (Variable((), "W", "Mean power output"), taken)
-    yield "mean_efficiency", (Variable((), "1", "Energy efficiency"), taken / put_in if put_in else np.nan)
+    yield "mean_efficiency", (Variable((), "1", "Energy efficiency"), taken / put_in if put_in and taken else np.nan)
     for name in _MEANS:
         if name in arrays:
             one = VARIABLES[name]

@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 
 from beltdyn.errors import ModelError
-from beltdyn.model import Drive
-from beltdyn.points.duty import duty, read_duty
+from beltdyn.model import Drive, example, load
+from beltdyn.points.duty import at_row, duty, read_duty
 from validation.published.cases import better, loaded_two_pulley
 
 TABLE = "duration [min], driver speed [rpm], load, driven torque [N m]\n# comment\n2, 1000, 1, -20\n1, 600, 1, -40\n"
@@ -30,6 +30,22 @@ def test_columns_in_si_units(table: Path) -> None:
     ]
     assert columns[0].values == [120.0, 60.0]
     np.testing.assert_allclose(columns[1].values, np.array([1000.0, 600.0]) * np.pi / 30.0)
+
+
+def test_the_load_of_a_conveyor_is_its_goods(tmp_path: Path) -> None:
+    (tmp_path / "duty.csv").write_text("share [%], load\n30, 0\n70, 0.5\n", encoding="utf-8")
+    drive, columns = example("conveyor_1km"), read_duty(tmp_path / "duty.csv")
+    assert at_row(drive, columns, 0).goods == ()
+    (half,) = at_row(drive, columns, 1).goods
+    assert half.mass_per_length == 0.5 * drive.goods[0].mass_per_length
+
+
+def test_rollers_of_a_web_line_keep_their_draws(tmp_path: Path) -> None:
+    (tmp_path / "duty.csv").write_text("share [%], speed [rad/s]\n100, 25\n", encoding="utf-8")
+    line = load(Path(__file__).parents[3] / "docs" / "tasks" / "coater.toml")
+    slower = at_row(line, read_duty(tmp_path / "duty.csv"), 0)
+    speeds = [float(one.speed.at([0.0])[0]) for one in slower.pulleys if one.speed is not None]
+    assert speeds == pytest.approx([-25.0, 25.005])
 
 
 def test_means(table: Path) -> None:
