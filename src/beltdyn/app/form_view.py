@@ -34,6 +34,8 @@ def beginning(
     example = {key: value for key, value in _example(data, location).items() if key in listed}
     found = {key: example[key] for key in listed if key in example}
     for one in listed.values():
+        if one.form == "choice" and one.choices and one.key in found and found[one.key] not in one.choices:
+            found[one.key] = one.choices[0]  # a name in the drive of the example
         if one.key not in found and (one.required or one.key in ("times", "values", "angles")):
             value = _usual(one, data, drive)
             if value is not None:

@@ -107,6 +107,8 @@ _SHORT_OF: Mapping[str, tuple[str, ...]] = {
 """Keys of each group shown by default, in this order; others are shown if given."""
 _APART: Mapping[str, tuple[str, ...]] = {"speed": ("torque", "load"), "torque": ("speed",), "load": ("speed",)}
 """Keys of a pulley that exclude others: the torque of a shaft with prescribed speed is a result."""
+_OF_SENSORS = ("speed_trim", "torque_trim")
+"""Loads that a dancer or a load cell controls."""
 _OF_TEETH = ("toothing", "pitch_error")
 """Keys that go with a number of teeth of the belt."""
 
@@ -283,6 +285,10 @@ def _field(
         form, choices = "choice", _profiles()
     elif location[-1] == "pulley" and location[0] == "tensioner":
         form, choices = "choice", tuple(str(one.get("name")) for one in groups(data, "pulley"))
+    elif location[-1] == "sensor":
+        form, choices = "choice", _carried(data)
+    elif location[-1] == "load" and not _carried(data):
+        choices = tuple(kind for kind in choices if kind not in _OF_SENSORS)
     default = "" if form in ("group", "groups") else as_text(schema.get("default"))
     numeric = form in ("number", "point", "numbers")
     hint = hint if form in ("group", "groups") else hint[:1].upper() + hint[1:]
@@ -329,6 +335,11 @@ def _form(schema: Mapping[str, Any]) -> Form:
     if types & _NUMERIC:
         return "number"
     return "flag" if "boolean" in types else "text"
+
+
+def _carried(data: Mapping[str, Any]) -> tuple[str, ...]:
+    """Pulleys on moving tensioners: dancers and load cells."""
+    return tuple(str(one.get("pulley")) for one in groups(data, "tensioner") if one.get("kind") != "fixed")
 
 
 def _entries(schema: Mapping[str, Any]) -> Mapping[str, Any]:

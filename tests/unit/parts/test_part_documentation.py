@@ -10,7 +10,7 @@ from beltdyn.model import Belt, Contact, Drive, Harmonic, Pulley
 from beltdyn.parts.part import Part
 
 PARTS = [one for one in vars(model).values() if isinstance(one, type) and issubclass(one, Part)]
-_UNIT = re.compile(r"\bin (m|s|N|W|Hz|K|°C|kg|rad|Pa|N\*m|m/s|N/m)")
+_UNIT = re.compile(r"\bin (m|s|N|W|Hz|K|°C|kg|rad|Pa|N\*m|m/s|N/m|1/m|1/N)")
 
 
 def entries(part: type[Part]) -> dict[str, tuple[str, str]]:

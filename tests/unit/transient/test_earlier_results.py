@@ -37,7 +37,7 @@ OPTIONS: dict[str, dict[str, Any]] = {
     "tensioner_sheet": {"tolerance": "1 mm", "wear": "2 mm"},
     "sheet": {"table": "duty.csv", "points": 2},
     "rating": {"service_factor": 1.2},
-    "sensitivity": {"of": "efficiency", "numbers": "belt.length"},
+    "sensitivity": {"of": "largest_tension", "numbers": "belt.length"},
     "modes": {"count": 2},
     "optimize": {"study": OptimizationStudy(number=[LENGTH], goal={"result": "hub_load"}), "most": 2},
     "calibrate": {"study": CalibrationStudy(number=[LENGTH], measurement=[{"table": "slip.csv"}])},

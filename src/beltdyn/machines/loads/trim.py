@@ -218,11 +218,11 @@ class TorqueTrim(Trim):
     Examples
     --------
     >>> load = bd.model.TorqueTrim(
-    ...     kind="torque_trim", torque={"kind": "constant", "value": -30.0}, sensor="cell",
-    ...     set_force="300 N", force_gain="0.002 1/N", integral_time="0.5 s"
+    ...     kind="torque_trim", torque={"kind": "constant", "value": -30.0}, sensor="dancer",
+    ...     position_gain="2 1/m", integral_time="0.5 s"
     ... )
-    >>> load.set_force
-    300.0
+    >>> load.largest_trim
+    1.0
     """
 
     torque_at = trimmed_torque
