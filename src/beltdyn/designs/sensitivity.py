@@ -277,7 +277,7 @@ def sensitivity(
 
     Examples
     --------
-    >>> found = bd.sensitivity(drive, of="efficiency", numbers="belt.length, pulley[driven].radius")
+    >>> found = bd.sensitivity(drive, of="largest_tension", numbers="belt.length, pulley[driven].radius")
     >>> found.dataset.effect.dims
     ('result', 'number')
     """
