@@ -28,6 +28,15 @@ _SECTION = re.compile(r"(?:^|\n\n)(?=[A-Z]\w+\n---)")
 """Start of a section of a docstring."""
 
 
+def _is_hdf5(path: pathlib.Path) -> bool:
+    """Whether a file begins as those of results; one that cannot be read does not."""
+    try:
+        with path.open("rb") as file:
+            return file.read(4) == b"\x89HDF"
+    except OSError:
+        return False
+
+
 def load(path: str | pathlib.Path) -> Drive:
     """Read a drive file.
 
@@ -53,7 +62,7 @@ def load(path: str | pathlib.Path) -> Drive:
     20
     """
     path = pathlib.Path(path)
-    if path.suffix == ".nc" and path.is_file():
+    if _is_hdf5(path):
         raise ModelError(f"{path} is a result file, not a drive file. Give the TOML file of the drive.")
     return loads(_text_of(path, "A drive file is TOML; `beltdyn new` writes one."), base=path.parent)
 
