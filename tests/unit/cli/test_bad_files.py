@@ -19,7 +19,7 @@ def test_folder(refuse: Refuse, tmp_path: Path) -> None:
 
 
 def test_binary_file(refuse: Refuse, tmp_path: Path) -> None:
-    (tmp_path / "drive.toml").write_bytes(b"\x89HDF\r\n\x1a\n")
+    (tmp_path / "drive.toml").write_bytes(b"\x89PNG\r\n\x1a\n")
     assert "is not UTF-8 text" in refuse(["equilibrium", str(tmp_path / "drive.toml")])
 
 
