@@ -8,6 +8,7 @@ from types import MappingProxyType
 from typing import Any, Literal, NamedTuple
 
 from beltdyn.app.scene import groups
+from beltdyn.machines.loads.load import LOADS
 from beltdyn.model import Drive, read_catalogue
 from beltdyn.parts.quantity import to_si
 from beltdyn.parts.text_file import ErrorLocation, option_names
@@ -107,8 +108,6 @@ _SHORT_OF: Mapping[str, tuple[str, ...]] = {
 """Keys of each group shown by default, in this order; others are shown if given."""
 _APART: Mapping[str, tuple[str, ...]] = {"speed": ("torque", "load"), "torque": ("speed",), "load": ("speed",)}
 """Keys of a pulley that exclude others: the torque of a shaft with prescribed speed is a result."""
-_OF_SENSORS = ("speed_trim", "torque_trim")
-"""Loads that a dancer or a load cell controls."""
 _OF_TEETH = ("toothing", "pitch_error")
 """Keys that go with a number of teeth of the belt."""
 
@@ -288,7 +287,7 @@ def _field(
     elif location[-1] == "sensor":
         form, choices = "choice", _carried(data)
     elif location[-1] == "load" and not _carried(data):
-        choices = tuple(kind for kind in choices if kind not in _OF_SENSORS)
+        choices = tuple(kind for kind in choices if "sensor" not in LOADS[kind].model_fields)
     default = "" if form in ("group", "groups") else as_text(schema.get("default"))
     numeric = form in ("number", "point", "numbers")
     hint = hint if form in ("group", "groups") else hint[:1].upper() + hint[1:]

@@ -386,7 +386,7 @@ class Drive(Part):
         """Number of the reference pulley of slip: the driver, or the first pulley without a driver."""
         return self.driver or 0
 
-    @property
+    @cached_property
     def guides(self) -> BoolArray:
         """Whether each pulley stands still and the belt slides over it, shape (n,)."""
         driver = self.driver

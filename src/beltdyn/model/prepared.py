@@ -240,7 +240,7 @@ class Prepared:
             )
         return layer_length(*layer_lengths(self, tension))
 
-    @property
+    @cached_property
     def gripping(self) -> BoolArray:
         """Whether friction is to carry the load of each pulley: not by teeth, and no guide, shape (n,)."""
         return ~(self.toothed | self.drive.guides)

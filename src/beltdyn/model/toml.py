@@ -17,7 +17,7 @@ from beltdyn.parts.change import unit_at
 from beltdyn.parts.messages import explain, reason
 from beltdyn.parts.part import Part
 from beltdyn.parts.quantity import written_like
-from beltdyn.parts.text_file import LONGEST_TOML, parse_toml, read_text, shorten
+from beltdyn.parts.text_file import LONGEST_TOML, open_file, parse_toml, read_text, shorten
 from beltdyn.parts.tolerances import location_of, tolerances_of, with_tolerances
 from beltdyn.parts.toml_edits import Edit, changed_data, changed_text
 
@@ -31,9 +31,9 @@ _SECTION = re.compile(r"(?:^|\n\n)(?=[A-Z]\w+\n---)")
 def _is_hdf5(path: pathlib.Path) -> bool:
     """Whether a file begins as those of results; one that cannot be read does not."""
     try:
-        with path.open("rb") as file:
+        with open_file(path) as file:
             return file.read(4) == b"\x89HDF"
-    except OSError:
+    except (OSError, ValueError):
         return False
 
 
@@ -62,15 +62,13 @@ def load(path: str | pathlib.Path) -> Drive:
     20
     """
     path = pathlib.Path(path)
-    if _is_hdf5(path):
-        raise ModelError(f"{path} is a result file, not a drive file. Give the TOML file of the drive.")
-    return loads(_text_of(path, "A drive file is TOML; `beltdyn new` writes one."), base=path.parent)
+    return loads(_text_of(path, "drive", "A drive file is TOML; `beltdyn new` writes one."), base=path.parent)
 
 
 def read_study(path: str | pathlib.Path, kind: type[Study]) -> Study:
     """Read a study file."""
     path = pathlib.Path(path)
-    text = _text_of(path, "A study file is TOML.")
+    text = _text_of(path, "study", "A study file is TOML.")
     try:
         data = _parse(text, "the study file")
         return kind.model_validate(data)
@@ -81,14 +79,18 @@ def read_study(path: str | pathlib.Path, kind: type[Study]) -> Study:
     raise ModelError("\n".join(f"{path}: {line}" for line in lines))
 
 
-def _text_of(path: pathlib.Path, remedy: str) -> str:
-    """The text of a file."""
+def _text_of(path: pathlib.Path, what: str, remedy: str) -> str:
+    """The text of a file of a drive or a study."""
     try:
         return read_text(path, LONGEST_TOML)
-    except UnicodeDecodeError as error:
-        raise ModelError(f"{path} is not UTF-8 text. {remedy}") from error
     except (OSError, ValueError) as error:
-        raise ModelError(f"{path} cannot be read: {reason(error)}. Check the path.") from error
+        if _is_hdf5(path):
+            message = f"{path} is a result file, not a {what} file. Give the TOML file of the {what}."
+        elif isinstance(error, UnicodeDecodeError):
+            message = f"{path} is not UTF-8 text. {remedy}"
+        else:
+            message = f"{path} cannot be read: {reason(error)}. Check the path."
+        raise ModelError(message) from error
 
 
 def loads(text: str, base: pathlib.Path | None = None) -> Drive:

@@ -49,7 +49,6 @@ _SPANS = ("span_tension", "belt_speed", "mid_span_displacement")
 _ENERGY = (*(name for name, variable in VARIABLES.items() if variable.dims == ("time",)),)
 _TENSIONERS = ("tensioner_position", "tensioner_speed")
 _CARRIAGE = ("carriage_position", "carriage_speed", "carriage_error")
-_ROLLS = ("roll_length", "roll_radius", "roll_inertia", "roll_speed", "roll_torque")
 _CONTACT = ("contact_position", "contact_pulley", "normal_force", "friction_force", "slip_velocity")
 
 _PULLEY_SUMMARY = (
@@ -158,7 +157,7 @@ def _tables_of_run(run: Run) -> dict[str, Table]:
         "energy": _ENERGY,
         "tensioners": _with_others(_TENSIONERS, "tensioner"),
         "carriage": _CARRIAGE,
-        "rolls": _with_others(_ROLLS, "roll"),
+        "rolls": _with_others((), "roll"),
     }
     tables: dict[str, Table] = {
         name: list(_columns(dataset, ("time", *variables)))

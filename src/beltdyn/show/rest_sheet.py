@@ -329,7 +329,7 @@ def _origin(drive: Drive, installation: Installation, asked_for: bool) -> str:
 def _pulleys(drive: Drive, installation: Installation) -> list[tuple[str, ...]]:
     """Pulley rows; the speed ratio is that without creep, negative for the opposite sense."""
     path, loads = installation.path, installation.hub_loads.tolist()
-    sense, guides = drive.running_sense, drive.guides
+    sense, guides, ratios = drive.running_sense, drive.guides, path.radii[0] / path.radii
     guided = list(zip(drive.pulleys, guides, strict=True))
     return list(
         zip(
@@ -338,10 +338,7 @@ def _pulleys(drive: Drive, installation: Installation) -> list[tuple[str, ...]]:
             (_NO_TURN if stands else "ccw" if sense * pulley.turning > 0 else "cw" for pulley, stands in guided),
             (f"{math.degrees(wrap):.1f}°" for wrap in path.wrap_angles),
             aligned([1e3 * abs(radius) for radius in path.radii], 5),
-            (
-                _NO_TURN if guide else f"{path.radii[0] / radius:.4f}"
-                for radius, guide in zip(path.radii, guides, strict=True)
-            ),
+            (_NO_TURN if stands else f"{ratio:.4f}" for ratio, stands in zip(ratios, guides, strict=True)),
             aligned([1e3 * depth for depth in installation.penetrations], 2),
             aligned([math.hypot(*load) for load in loads]),
             (f"{_angle(load):z.1f}°" for load in loads),

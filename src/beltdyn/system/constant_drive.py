@@ -13,6 +13,7 @@ from beltdyn.machines.profiles.functions import PROFILE, profile_value
 from beltdyn.machines.profiles.profile import SEGMENT
 from beltdyn.records import Records, records
 from beltdyn.system.arrays import Carrying, System
+from beltdyn.system.body_forces import controls
 from beltdyn.system.state import State
 
 # The speed at which motors and loads balance where nothing slips: the start of a search for steady running
@@ -189,7 +190,7 @@ def own_torque(system: System, state: State, pulley: int, speed: float) -> float
 
 def controllers(system: System) -> IntArray:
     """Numbers of the bodies that are states of controllers."""
-    return np.flatnonzero((system.bodies.inertia > 0.0) & (system.bodies.kinetic == 0.0))
+    return np.flatnonzero([interpreted(controls)(body) for body in system.bodies])
 
 
 def twists(system: System, moments: FloatArray, state: State) -> FloatArray:

@@ -48,29 +48,14 @@ def pulley_state(system: System, pulley: int, position: FloatArray, velocity: Fl
     item, body = system.pulleys[pulley], system.first_body + pulley
     carrier, speed = item.carrier, velocity[body]
     surface = surface_at(system.rims, pulley, position[body], passed_length(system.frame, position))
-    if carrier < 0:
-        return PulleyState(
-            item.center[0],
-            item.center[1],
-            surface,
-            speed,
-            item.friction,
-            0.0,
-            0.0,
-            item.rolling,
-            item.foundation,
-            item.damping,
-            item.rim_ratio,
-            item.hertz,
-            item.lasting,
-            item.unloading,
-        )
-    at = tensioner_coordinate(system, carrier)
-    center = tensioner_center(system.tensioners[carrier], position[at])
-    vx, vy = velocity[at] * center.dx, velocity[at] * center.dy
+    x, y, vx, vy = item.center[0], item.center[1], 0.0, 0.0
+    if carrier >= 0:
+        at = tensioner_coordinate(system, carrier)
+        center = tensioner_center(system.tensioners[carrier], position[at])
+        x, y, vx, vy = center.x, center.y, velocity[at] * center.dx, velocity[at] * center.dy
     return PulleyState(
-        center.x,
-        center.y,
+        x,
+        y,
         surface,
         speed,
         item.friction,

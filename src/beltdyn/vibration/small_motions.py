@@ -1,7 +1,5 @@
 """A drive linearized at rest, in steady running, or at an instant of a run."""
 
-from typing import TYPE_CHECKING
-
 import numpy as np
 
 from beltdyn.arrays import IntArray
@@ -22,10 +20,6 @@ from beltdyn.system.constant_drive import constant_drive, dry_friction_of, witho
 from beltdyn.system.meshing import stopped
 from beltdyn.system.state import State
 from beltdyn.transient.beginning import recorded_state, staying_mesh
-
-if TYPE_CHECKING:
-    pass
-
 
 # The state of a run over time, at an instant at which its belt was recorded, on the staying mesh
 

@@ -5,7 +5,7 @@ from collections.abc import Iterator
 import numpy as np
 
 from beltdyn.arrays import BoolArray, FloatArray, IntArray
-from beltdyn.machines import Goods, Support
+from beltdyn.machines import Support
 from beltdyn.model import off_the_stop, unstable_balance
 from beltdyn.model.carrying import in_batch, lies_on, upper_side
 from beltdyn.parts.messages import Finding, listing
@@ -109,19 +109,20 @@ def _on_support(evidence: Evidence, support: Support, fields: FloatArray) -> tup
     for one in prepared.goods:
         share = np.ones(fields.size) if one.schedule is None else one.schedule.at(fields)
         on_it = lies_on(prepared.laid, prepared.stretch(one), place[on])
-        mass += one.mass_per_length * share[:, None] * (on_it & _in_batch(evidence, one, place[on], fields))
+        if one.batch is not None:
+            passed = _passed(evidence, fields)[:, None]
+            on_it = on_it & in_batch(prepared.laid, prepared.stretch(one), one, place[on], passed)
+        mass += one.mass_per_length * share[:, None] * on_it
     normal = upper_side(stretch.direction, prepared.gravity)
     return on, mass * abs(float(normal @ np.array(prepared.gravity)))
 
 
-def _in_batch(evidence: Evidence, goods: Goods, place: FloatArray, fields: FloatArray) -> BoolArray:
-    """Whether places along the belt (m) are those of a batch that moves with the belt, shape (t, e)."""
-    if goods.batch is None:
-        return np.ones((fields.size, place.size), dtype=bool)
-    prepared, time = evidence.prepared, evidence.time
-    speed = np.nanmean(evidence.recorded["belt_speed"], axis=1) / prepared.laid.stretch
+def _passed(evidence: Evidence, fields: FloatArray) -> FloatArray:
+    """Unstretched lengths of belt that have passed at instants (s), m, shape (t,)."""
+    time = evidence.time
+    speed = np.nanmean(evidence.recorded["belt_speed"], axis=1) / evidence.prepared.laid.stretch
     passed = np.append(0.0, np.cumsum(0.5 * (speed[1:] + speed[:-1]) * np.diff(time)))
-    return in_batch(prepared.laid, prepared.stretch(goods), goods, place, np.interp(fields, time, passed)[:, None])
+    return np.asarray(np.interp(fields, time, passed))
 
 
 _LIFTS = 1.01

@@ -104,8 +104,7 @@ def nips(run: Run, time: float | None = None) -> xr.Dataset:
         covers and belt on both rollers), ``tension_before`` and ``tension_after`` (N) where the running belt enters and
         leaves, and ``speed_ratio``, surface speed of the roller over that of the pulley. By ``nip`` and ``side``
         (roller, pulley): ``pull`` (N, on the belt in the nip, positive in the direction in which it runs), ``torque``
-        (N m, on the shaft), ``grip_limit``
-        (N, mu F), and ``grip``, the pull over it.
+        (N m, on the shaft), ``grip_limit`` (N, mu F), and ``grip``, the pull over it.
 
     Raises
     ------
