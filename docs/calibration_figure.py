@@ -22,8 +22,9 @@ from scipy import stats
 import beltdyn as bd
 from beltdyn.arrays import FloatArray
 from beltdyn.cli.output import show_result
-from beltdyn.designs.calibrate import Residuals, fit
+from beltdyn.designs.calibrate import fit
 from beltdyn.designs.designs import free_number
+from beltdyn.designs.residuals import Residuals
 from beltdyn.model.parameter_study import CalibrationStudy
 from beltdyn.model.toml import read_study
 from beltdyn.show.plot.style import INK, new_figure, styled

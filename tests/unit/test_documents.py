@@ -18,8 +18,8 @@ import tomli_w
 
 from beltdyn.analyses import ANALYSES, EQUILIBRIUM, RUN
 from beltdyn.cli import main
-from beltdyn.designs.calibrate import read_measured
 from beltdyn.designs.designs import free_number
+from beltdyn.designs.residuals import read_measured
 from beltdyn.machines import profiles
 from beltdyn.model import (
     Belt,

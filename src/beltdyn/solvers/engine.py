@@ -11,7 +11,7 @@ import numpy as np
 from beltdyn.arrays import FloatArray
 from beltdyn.errors import ConvergenceError
 from beltdyn.kernel import kernel
-from beltdyn.solvers import alpha_step
+from beltdyn.solvers import alpha_advance
 from beltdyn.solvers.integrator_state import (
     IntegratorState,
     Settings,
@@ -64,18 +64,18 @@ def dispatch(
     request
         What to do.
     settings, state, steps
-        As for `alpha_step.advance`.
+        As for `alpha_advance.advance`.
     equations
         Arrays to work in.
 
     Returns
     -------
     status, filled : int
-        Those of `alpha_step.advance`; of others 1, or 0 where the tangent is singular, and 0.
+        Those of `alpha_advance.advance`; of others 1, or 0 where the tangent is singular, and 0.
     """
     kind, trial = request.kind, state.trial
     if kind == ADVANCE:
-        return alpha_step.advance(system, settings, state, equations, request.time, request.budget, steps)
+        return alpha_advance.advance(system, settings, state, equations, request.time, request.budget, steps)
     motion = trial_motion(state, request.time)
     if kind == ACCELERATE:
         prescribe(system, motion)
@@ -100,7 +100,7 @@ def advance(
     budget: int,
     steps: Steps,
 ) -> tuple[int, int]:
-    """Integrate; see `alpha_step.advance`."""
+    """Integrate; see `alpha_advance.advance`."""
     return dispatch(system, Request(ADVANCE, stop, budget), settings, state, equations, steps)
 
 

@@ -8,7 +8,7 @@ from typing import Any, ClassVar
 import numpy as np
 
 from beltdyn.errors import ConvergenceError
-from beltdyn.solvers.alpha_step import REACHED, SMALLEST_STEP
+from beltdyn.solvers.alpha_advance import REACHED, SMALLEST_STEP
 from beltdyn.solvers.engine import advance, restart
 from beltdyn.solvers.integrator_state import IntegratorState, Settings, Steps, empty_steps, new_state
 from beltdyn.solvers.trajectory import Chunk, Task

@@ -7,9 +7,9 @@ import pytest
 
 from beltdyn.model import Drive, Path, install, loads, prepare
 from beltdyn.solvers.flutter import Vibrations
-from beltdyn.solvers.standard import FirstOrder
 from beltdyn.system.arrays import System
 from beltdyn.system.build import drive_system
+from beltdyn.system.first_order import FirstOrder
 from beltdyn.system.state import State, laid
 
 TIME = 1.0

@@ -6,7 +6,8 @@ import pytest
 from beltdyn.arrays import FloatArray
 from beltdyn.errors import ConvergenceError
 from beltdyn.model import Drive
-from beltdyn.solvers.standard import ErrorControl, FirstOrder, FixedSteps, StepError, Stepwise
+from beltdyn.solvers.standard import ErrorControl, FixedSteps, StepError, Stepwise
+from beltdyn.system.first_order import FirstOrder
 from beltdyn.transient.simulate import simulate
 
 

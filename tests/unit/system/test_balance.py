@@ -7,9 +7,9 @@ import pytest
 
 from beltdyn.arrays import FloatArray
 from beltdyn.model import Drive, Path, prepare
-from beltdyn.solvers.standard import FirstOrder, mass_matrix
 from beltdyn.system.arrays import POWERS, System
 from beltdyn.system.build import drive_system
+from beltdyn.system.first_order import FirstOrder, mass_matrix
 from beltdyn.system.observations import OBSERVED, Observations
 from beltdyn.system.observe import observe, observe_motion
 from beltdyn.system.state import State, laid

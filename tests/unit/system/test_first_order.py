@@ -8,9 +8,9 @@ import pytest
 from beltdyn.arrays import FloatArray
 from beltdyn.model import Drive, Path, Pulley, prepare
 from beltdyn.solvers.engine import accelerate
-from beltdyn.solvers.standard import FirstOrder
 from beltdyn.system.arrays import POWERS, Motion, System
 from beltdyn.system.build import drive_system
+from beltdyn.system.first_order import FirstOrder
 from beltdyn.system.motion import new_equations, no_multipliers
 from beltdyn.system.state import State, laid
 

@@ -5,9 +5,9 @@ import pytest
 
 from beltdyn.errors import ModelError
 from beltdyn.model import Drive
-from beltdyn.solvers.standard import joint_constraint, mass_matrix
 from beltdyn.system.arrays import System
 from beltdyn.system.build import belt_system
+from beltdyn.system.first_order import joint_constraint, mass_matrix
 
 ROUNDING = 1e-9
 """Relative; the mass matrix has a condition number near 1e6."""

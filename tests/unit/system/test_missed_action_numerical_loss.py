@@ -7,10 +7,10 @@ import pytest
 
 from beltdyn.arrays import FloatArray
 from beltdyn.model import Drive, prepare
-from beltdyn.solvers.standard import mass_matrix
 from beltdyn.system.arrays import Motion, System
 from beltdyn.system.build import drive_system
 from beltdyn.system.element_state import element_workspace
+from beltdyn.system.first_order import mass_matrix
 from beltdyn.system.missed_action import numerical_loss
 from beltdyn.system.state import State
 

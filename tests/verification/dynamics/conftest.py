@@ -9,7 +9,7 @@ import pytest
 from beltdyn.arrays import FloatArray
 from beltdyn.model import Belt, Drive, Pulley
 from beltdyn.model.simulation import Instants
-from beltdyn.solvers.alpha_step import REACHED
+from beltdyn.solvers.alpha_advance import REACHED
 from beltdyn.solvers.engine import advance, restart
 from beltdyn.solvers.generalized_alpha import GeneralizedAlpha
 from beltdyn.solvers.integrator_state import Settings, empty_steps, new_state

@@ -14,7 +14,7 @@ import xarray as xr
 from beltdyn import simulate
 from beltdyn.arrays import FloatArray
 from beltdyn.model import Belt, Drive
-from beltdyn.solvers.alpha_step import REACHED
+from beltdyn.solvers.alpha_advance import REACHED
 from beltdyn.solvers.engine import advance
 from beltdyn.solvers.integrator_state import Settings, empty_steps, new_state
 from beltdyn.system.arrays import System

@@ -9,10 +9,10 @@ from beltdyn import simulate
 from beltdyn.arrays import FloatArray
 from beltdyn.model import Drive, prepare
 from beltdyn.solvers.engine import accelerate
-from beltdyn.solvers.standard import joint_constraint
 from beltdyn.state.static import find_equilibrium
 from beltdyn.system.arrays import NO_TANGENT, Motion, System
 from beltdyn.system.build import drive_system
+from beltdyn.system.first_order import joint_constraint
 from beltdyn.system.motion import new_equations, no_multipliers
 from beltdyn.system.state import laid
 from beltdyn.system.steady_assembly import assemble

@@ -9,10 +9,10 @@ import xarray as xr
 
 from beltdyn.arrays import ComplexArray, FloatArray
 from beltdyn.model import Drive, prepare
-from beltdyn.solvers.standard import FirstOrder, mass_matrix
 from beltdyn.state.static import find_equilibrium
 from beltdyn.system.arrays import System
 from beltdyn.system.build import drive_system
+from beltdyn.system.first_order import FirstOrder, mass_matrix
 from beltdyn.system.state import State, laid
 
 Changes = Mapping[str, Any]

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from beltdyn.errors import ConvergenceError
-from beltdyn.solvers.alpha_step import REACHED, STEP_TOO_SMALL
+from beltdyn.solvers.alpha_advance import REACHED, STEP_TOO_SMALL
 from beltdyn.solvers.engine import advance, restart
 from beltdyn.solvers.integrator_state import IntegratorState, Settings, empty_steps, new_state
 from beltdyn.solvers.trajectory import Chunk
