@@ -10,7 +10,7 @@ SOURCE = UNIT.parents[1] / "src" / "beltdyn"
 
 FAMILIES = {
     "elements/*.py": "unit/elements/test_kind.py",
-    "show/plot/*.py": "unit/show/plot/test_figures_registry_figures.py",
+    "show/plot/*.py": "unit/show/plot/test_figures_all.py",
 }
 """Where a kind is tested with all of its family, if it has no test of its own."""
 
