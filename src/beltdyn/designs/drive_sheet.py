@@ -4,7 +4,7 @@ All states are those of the balance of tensions about the equilibrium at rest, w
 `beltdyn.points.quasi_steady` and `beltdyn.vibration.peaks`. So a sheet of many operating points takes a second.
 """
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from pathlib import Path
 from typing import Any, NamedTuple
 
@@ -12,6 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from beltdyn.arrays import FloatArray
+from beltdyn.designs.line_sheet import line_sheet
 from beltdyn.errors import ModelError
 from beltdyn.model import Drive, FixedTensioner, Prepared, alignment, prepare
 from beltdyn.model.alignment import judge_alignment
@@ -19,7 +20,7 @@ from beltdyn.model.installation import Installation
 from beltdyn.model.parameter_study import PASS
 from beltdyn.model.tensioning import DEFLECTION, tension_checks
 from beltdyn.parts.quantity import Number, Numbers, number_in, numbers_in
-from beltdyn.points.changed_drive import at_instant, require_belt
+from beltdyn.points.changed_drive import at_instant, held_at
 from beltdyn.points.duty import Column, at_row, durations_of, duty, duty_of
 from beltdyn.points.quasi_steady import QuasiSteady, Running, Torques, torques_between, torques_of
 from beltdyn.points.tensioner_sheet import length_of
@@ -74,7 +75,8 @@ def sheet(
     Parameters
     ----------
     drive
-        The drive, with a closed belt and one driver.
+        The drive, with a closed belt and one driver; or a web line, a conveyor or a guided belt, whose sheet has
+        tensions, resistances, slack tensions by Euler's formula, sag and power at each operating point instead.
     table
         The duty table, a CSV file as for `duty`; by default the groups ``[[duty]]`` of the drive file, and without
         these the drive as it is.
@@ -88,7 +90,7 @@ def sheet(
     light_load
         Factor on all loads for light load, such as 0.1.
     friction
-        Factors on all coefficients of friction: the lowest, and others up to the highest.
+        Factors on all coefficients of friction of pulleys: the lowest, and others up to the highest.
     tolerance
         Tolerance of the belt length, as for `tensioner_sheet`.
     wear
@@ -110,7 +112,7 @@ def sheet(
     Raises
     ------
     ModelError
-        If the belt is open, options are invalid, or the drive has no driver.
+        If the belt has ends, options are invalid, or the drive has no driver.
     ConvergenceError
         If the drive has no equilibrium at rest.
 
@@ -120,20 +122,24 @@ def sheet(
     >>> found.slip_safety.dims, bool(found.mode_frequency[0] > 0.0)
     (('row', 'pulley'), True)
     """
-    require_belt(drive, "a drive sheet", "`beltdyn steady-state` with --report")
-    if drive.ends:
+    if drive.ends and not drive.is_web:
         raise ModelError("a drive sheet needs a closed belt. Use `beltdyn simulate` for a belt with ends.")
-    if drive.carries or drive.guides.any():
-        raise ModelError(
-            "a drive sheet knows neither supports and goods nor guides that stand still, whose friction sets the "
-            "tensions. Use `beltdyn steady-state`, `beltdyn modes` and `beltdyn tensioner-sheet`."
-        )
+    options: dict[str, object] = {
+        "speed": speed,
+        "acceleration": acceleration,
+        "light_load": light_load,
+        "tolerance": tolerance,
+        "wear": wear,
+        "full": full,
+    }
+    if drive.is_web or drive.carries or drive.guides.any():
+        return _sheet_of_line(drive, table, friction, at, options)
     columns = duty_of(drive, table)
     tell = progress or (lambda _: None)
     tell(Progress(0.0, 1.0, 0.0, 0, "equilibrium"))
     given = at_instant(drive, at)
     rest = bring_to_stand(prepare(averaged(given)))
-    options = _Options(
+    chosen = _Options(
         factors=numbers_in("friction", friction, "", 3),
         light=_light(light_load),
         acceleration=number_in(
@@ -144,7 +150,7 @@ def sheet(
             length_of("wear", wear, rest.prepared.belt_length),
         ),
     )
-    made = _DriveSheet(given, rest.prepared, looked_at(rest.prepared, rest.system, rest.state).installation, options)
+    made = _DriveSheet(given, rest.prepared, looked_at(rest.prepared, rest.system, rest.state).installation, chosen)
     made.add_rows(columns)
     made.add_speeds(columns, speed, points)
     made.add_geometry()
@@ -155,6 +161,34 @@ def sheet(
     if full:
         made.add_full(drive, table, at, progress)
     result = build_result("sheet", rest.drive, made.variables, made.coordinates, list(made.warnings()))
+    result.dataset.attrs |= {"drive_as_given": drive.text, "axes": _ROW, "title": f"Drive sheet of {drive.title}"}
+    return result
+
+
+_OF_BELTS = {
+    "speed": None,
+    "acceleration": "0 rpm/s",
+    "light_load": 0.1,
+    "tolerance": "0.5 %",
+    "wear": "1 %",
+    "full": False,
+}
+"""Options of sheets of closed belts alone, with their defaults."""
+
+
+def _sheet_of_line(
+    drive: Drive, table: Path | str | None, friction: Numbers, at: float | str | None, options: Mapping[str, object]
+) -> Result:
+    """The sheet of a web line, or of a belt that carries or slides over guides."""
+    for name, value in options.items():
+        if value != _OF_BELTS[name]:
+            raise ModelError(
+                f"{name} = {value} is an option for belts between pulleys alone. A sheet of a web line, a conveyor or "
+                "a guided belt has operating points: give them as groups [[duty]], or as a CSV file with table."
+            )
+    columns, factors = duty_of(drive, table), numbers_in("friction", friction, "", 3)
+    made = line_sheet(held_at(drive, at), columns, factors)
+    result = build_result("sheet", drive, made.variables, made.coordinates, made.warnings)
     result.dataset.attrs |= {"drive_as_given": drive.text, "axes": _ROW, "title": f"Drive sheet of {drive.title}"}
     return result
 

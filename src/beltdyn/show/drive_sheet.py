@@ -9,13 +9,13 @@ from beltdyn.arrays import FloatArray
 from beltdyn.parts.messages import aligned
 from beltdyn.parts.quantity import RPM
 from beltdyn.results import Result
+from beltdyn.show.line_sheet import line_sheet, safeties
 from beltdyn.show.sheet import Facts, Sheet, Table
 
 if TYPE_CHECKING:
     import xarray as xr
 
 _DEGREES = 180.0 / np.pi
-_LARGEST_SAFETY = 100.0
 _STATES = {
     "free": "free arm",
     "replace": "replace (worn)",
@@ -29,6 +29,8 @@ _STATES = {
 def drive_sheet(result: Result) -> Sheet:
     """Give the sheet of a drive."""
     dataset = result.dataset
+    if "tension_before" in dataset:
+        return line_sheet(result)
     parts: list[Table | Facts] = [Facts(tuple(_facts(dataset))), _pulleys(dataset)]
     if "state" in dataset.dims:
         parts.append(_states(dataset))
@@ -152,8 +154,8 @@ def _points(dataset: "xr.Dataset") -> Table:
         aligned(dataset["span_tension"].max("span").values.tolist(), 4),
         aligned(dataset["peak_tension"].max("span").values.tolist(), 4),
         aligned(dataset["peak_hub_load"].max("pulley").values.tolist(), 4),
-        _safeties(np.fmin.reduce(safety, axis=1)),
-        _safeties(np.fmin.reduce(least, axis=1)),
+        safeties(np.fmin.reduce(safety, axis=1)),
+        safeties(np.fmin.reduce(least, axis=1)),
     ]
     headings: tuple[str, ...] = (
         *("", "time", "speed\nrpm", "power\nkW", "belt\nm/s", "tension\nmin N", "max N", "peak N"),
@@ -177,10 +179,10 @@ def _by_name(dataset: "xr.Dataset", dim: str) -> Table:
         at = dataset.isel(row=number)
         if dim == "pulley":
             loads, peaks, angles = (at[one].values for one in ("hub_load", "peak_hub_load", "hub_direction"))
-            safeties = _safeties(at["slip_safety"].values)
+            shown = safeties(at["slip_safety"].values)
             cells = [
                 f"{load:.0f} ({peak:.0f}) {_DEGREES * angle:z.0f}° {safety}"
-                for load, peak, angle, safety in zip(loads, peaks, angles, safeties, strict=True)
+                for load, peak, angle, safety in zip(loads, peaks, angles, shown, strict=True)
             ]
         else:
             tensions, peaks = at["span_tension"].values, at["peak_tension"].values
@@ -221,14 +223,6 @@ def _belts(dataset: "xr.Dataset") -> Table:
         columns.append(_or_dash(1e3 * dataset["standard_take_up"].values, 3))
         headings = (*headings, "take-up for the\nsame tension mm")
     return Table("Belts of standard length", headings, tuple(zip(*columns, strict=True)))
-
-
-def _safeties(values: FloatArray) -> list[str]:
-    """Slip safeties; a dash without load."""
-    return [
-        "–" if np.isnan(one) else f"{one:.2f}" if one < _LARGEST_SAFETY else f"> {_LARGEST_SAFETY:.0f}"
-        for one in values
-    ]
 
 
 def _angle(radians: float) -> str:

@@ -13,6 +13,7 @@ from beltdyn.show.plot.contact_pressure import wear_by_arc as wear_by_arc
 from beltdyn.show.plot.contact_pressure import wear_by_belt as wear_by_belt
 from beltdyn.show.plot.design_history import belt_history as belt_history
 from beltdyn.show.plot.design_history import damage_shares as damage_shares
+from beltdyn.show.plot.design_history import line_tensions as line_tensions
 from beltdyn.show.plot.design_history import optimization as optimization
 from beltdyn.show.plot.design_history import sensitivity as sensitivity
 from beltdyn.show.plot.design_history import sheet_slip_safety as sheet_slip_safety

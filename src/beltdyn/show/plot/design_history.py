@@ -205,12 +205,22 @@ def _numbers(result: Result, *, ax: Axes) -> Axes:
     return ax
 
 
+def _over_speed(result: Result) -> bool:
+    """Whether a sheet has curves over speed: those of lines have operating points alone."""
+    return "speed" in result.dataset.dims
+
+
+def _has_ends_of_spans(result: Result) -> bool:
+    """Whether a sheet is one of a line, whose tensions vary along spans."""
+    return "tension_at_start" in result.dataset
+
+
 _HIGHEST_SAFETY = 10.0
 _MOST_SPANS = 6
 """Pulleys or spans that are drawn: those nearest to a limit."""
 
 
-@figure(always, of=("sheet",))
+@figure(_over_speed, of=("sheet",))
 def sheet_slip_safety(result: Result, ax: Axes | None = None) -> Axes:
     """Draw the slip safety of pulleys over the speed: at full load, and down to the least of all cases and frictions.
 
@@ -250,7 +260,7 @@ def sheet_slip_safety(result: Result, ax: Axes | None = None) -> Axes:
     return ax
 
 
-@figure(always, of=("sheet",))
+@figure(_over_speed, of=("sheet",))
 def sheet_tensions(result: Result, ax: Axes | None = None) -> Axes:
     """Draw the tensions of the slackest and the tightest span over the speed: at full load, and in bands all cases.
 
@@ -285,6 +295,50 @@ def sheet_tensions(result: Result, ax: Axes | None = None) -> Axes:
         ax.fill_between(speed, low[:, span], high[:, span], color=tint, alpha=0.12, linewidth=0.0)
     ax.set(xlabel=_speed_label(result), ylabel="Span tension [N]")
     name_lines(ax)
+    return ax
+
+
+@figure(_has_ends_of_spans, of=("sheet",))
+def line_tensions(result: Result, ax: Axes | None = None) -> Axes:
+    """Draw the tension along a web line or a conveyor, in running direction, at each operating point.
+
+    Names of spans stand below their middles.
+
+    Parameters
+    ----------
+    result : Result
+        Of `sheet`.
+    ax : Axes, optional
+        Where to draw; a new figure by default.
+
+    Returns
+    -------
+    Axes
+        The axes.
+
+    Examples
+    --------
+    >>> found = bd.sheet(bd.example("package_conveyor"))
+    >>> bd.plot.line_tensions(found).get_ylabel()
+    'Tension [N]'
+    """
+    dataset, ax = result.dataset, axes_or_new(ax)
+    spans, count = list(map(str, dataset["span"].values)), dataset.sizes["span"]
+    order = np.roll(np.arange(count), 1) if result.drive.ends else np.arange(count)
+    order = order[:: int(dataset["running_sense"])]
+    lengths = dataset["span_length"].values[order]
+    ends = np.concatenate([[0.0], np.cumsum(lengths)])
+    place = np.stack([ends[:-1], ends[1:]], axis=1).ravel()
+    for number, row in enumerate(dataset["row"].values):
+        at = dataset.isel(row=number)
+        sides = [at[name].values[order] for name in ("tension_at_start", "tension_at_end")]
+        ax.plot(place, np.stack(sides, axis=1).ravel(), color=color(number), linestyle=dash(number), label=str(row))
+    for end in ends:
+        ax.axvline(end, color=INK, linewidth=0.5, alpha=0.3)
+    ax.set_xticks(0.5 * (ends[:-1] + ends[1:]), [spans[one] for one in order], rotation=30, ha="right")
+    ax.set(ylabel="Tension [N]", ylim=(0.0, None))
+    if dataset.sizes["row"] > 1:
+        name_lines(ax)
     return ax
 
 

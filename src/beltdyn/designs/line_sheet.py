@@ -1,0 +1,293 @@
+"""The sheet of a line: web lines, and belts that carry or slide over guides, from steady running at operating points.
+
+Friction of guides, idlers and bearings sets the tensions, so each operating point is computed by finite elements. The
+resistances of the strands of a conveyor are those of DIN 22101, by hand, beside the pull that is found.
+"""
+
+from collections.abc import Iterator
+from dataclasses import replace
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from beltdyn.arrays import FloatArray
+from beltdyn.kernel import interpreted
+from beltdyn.machines import Idlers
+from beltdyn.machines.carrying.support import Support
+from beltdyn.model import Drive, Prepared
+from beltdyn.model.carrying import stretch_of, upper_side
+from beltdyn.points.duty import Column, at_row, durations_of
+from beltdyn.results import Run, Variable
+from beltdyn.results.mechanics import tensions_at_arcs
+from beltdyn.results.schema import COORDINATES
+from beltdyn.results.summary import Means, means_of
+from beltdyn.state.steady import steady_state
+
+LARGEST_SAG = 0.01
+"""Sag between idlers over their spacing to which the least tension belongs (DIN 22101)."""
+
+Values = dict[str, tuple[Variable, Any]]
+_ROW, _PULLEY, _SPAN, _TENSIONER, _ROLL = "row", "pulley", "span", "tensioner", "roll"
+
+RESISTANCES = {
+    "main_resistance": "Main resistance of idlers, and friction of guides",
+    "secondary_resistance": "Secondary resistance, (C - 1) of the main one",
+    "slope_resistance": "Slope resistance of the belt",
+    "goods_resistance": "Slope resistance of the goods",
+}
+"""Resistances of a span against the running belt, N, by hand."""
+
+
+class LineSheet(NamedTuple):
+    """Variables and coordinates of a sheet, and what a designer has to look after."""
+
+    variables: Values
+    coordinates: Values
+    warnings: list[str]
+
+
+def line_sheet(given: Drive, columns: list[Column] | None, factors: FloatArray) -> LineSheet:
+    """The sheet of a line, whose speeds and loads are those of an instant.
+
+    Parameters
+    ----------
+    given
+        A web line, or a belt that carries or slides over guides.
+    columns
+        The duty; none for the drive as it is.
+    factors
+        On friction, ascending.
+    """
+    durations = durations_of(columns) if columns else np.ones(1)
+    drives = [at_row(given, columns, row) for row in range(durations.size)] if columns else [given]
+    names = [one.name or f"{number}" for number, one in enumerate(given.duty, 1)]
+    rows, run = list[_Row](), None
+    for one in drives:
+        run = steady_state(one, start=run)
+        rows.append(_Row(run, factors))
+    first = rows[0]
+    coordinates: Values = {
+        _ROW: (
+            Variable((_ROW,), "1", "Operating point", "str"),
+            names if len(names) == durations.size else list(map(str, range(1, durations.size + 1))),
+        ),
+        _PULLEY: (COORDINATES[_PULLEY], [one.name for one in given.pulleys]),
+        _SPAN: (COORDINATES[_SPAN], ["-".join(one) for one in given.spans]),
+        "friction": (Variable(("friction",), "1", "Factor on friction"), factors),
+    }
+    if given.moving_tensioners:
+        coordinates[_TENSIONER] = (COORDINATES[_TENSIONER], [one.pulley for one in given.moving_tensioners])
+    if given.rolls:
+        coordinates[_ROLL] = (COORDINATES[_ROLL], [one.name for one in given.rolls])
+    found = [dict(one.values()) for one in rows]
+    variables = {
+        name: (replace(variable, dims=(_ROW, *variable.dims)), np.array([one[name][1] for one in found]))
+        for name, (variable, _) in found[0].items()
+    }
+    variables["duration"] = Variable((_ROW,), "s", "Duration"), durations
+    variables |= _geometry(first.prepared)
+    meaning = "Running direction: 1 in the order of the pulleys, -1 against it"
+    variables["running_sense"] = Variable((), "1", meaning), np.array(first.sense)
+    warnings = list(dict.fromkeys(text for one in rows for text in one.run.warnings))
+    for name, row in zip(coordinates[_ROW][1], rows, strict=True):
+        warnings += _row_warnings(name, row, factors)
+    return LineSheet(variables, coordinates, warnings)
+
+
+def _geometry(prepared: Prepared) -> Values:
+    """What is alike at all operating points."""
+    drive, path = prepared.drive, prepared.installation.path
+    return {
+        "belt_length": (Variable((), "m", "Belt length, unstretched"), prepared.belt_length),
+        "tension_at_rest": (Variable((), "N", "Tension at rest"), prepared.installation.tension),
+        "pitch_diameter": (Variable((_PULLEY,), "m", "Diameter of the tension line"), 2.0 * np.abs(path.radii)),
+        "friction_coefficient": (Variable((_PULLEY,), "1", "Friction with the wedge effect"), prepared.frictions),
+        "span_length": (Variable((_SPAN,), "m", "Span length"), path.span_lengths),
+        "largest_idler_spacing": (
+            Variable((_SPAN,), "m", "Spacing of idlers"),
+            [
+                max((one.free_length for one in drive.supports if one.span == span), default=np.nan) or np.nan
+                for span in drive.spans
+            ],
+        ),
+    }
+
+
+class _Row:
+    """An operating point."""
+
+    def __init__(self, run: Run, factors: FloatArray) -> None:
+        self.run, self.prepared, self.factors = run, run.prepared, factors
+        self.drive: Drive = run.drive
+        self.at = run.dataset.isel(time=-1, field_time=-1)
+        self.means: Means = means_of(run)
+        self.before, self.after = tensions_at_arcs(lambda name: self.at[name].values, self.prepared)
+        speeds = self.at["belt_speed"].values
+        self.sense = 1.0 if float(speeds.mean()) >= 0.0 else -1.0
+
+    def values(self) -> Iterator[tuple[str, tuple[Variable, Any]]]:
+        """Its variables, without the dimension of operating points."""
+        yield from self._of_pulleys()
+        yield from self._of_spans()
+        if self.drive.moving_tensioners:
+            yield from self._of_tensioners()
+        if self.drive.rolls:
+            for name in ("roll_radius", "roll_inertia", "roll_speed", "roll_torque"):
+                one = self.at[name]
+                yield name, (Variable((_ROLL,), one.attrs["units"], one.attrs["long_name"]), one.values)
+        balance = self.means.balance
+        yield "power_in", (Variable((), "W", "Power input"), balance.power_in)
+        yield "power_out", (Variable((), "W", "Power output"), balance.power_out)
+        yield "loss", (Variable((), "W", "Losses"), balance.lost)
+
+    def _of_pulleys(self) -> Iterator[tuple[str, tuple[Variable, Any]]]:
+        pulleys = self.means.pulleys
+        columns = {
+            "pulley_speed": ("rad/s", "Pulley speed", "speed"),
+            "shaft_torque": ("N m", "Shaft torque", "shaft_torque"),
+            "power": ("W", "Power into the drive", "power"),
+            "pulley_slip": ("1", "Slip", "slip"),
+            "slip_safety": ("1", "Slip safety", "slip_safety"),
+            "wrap_angle": ("rad", "Wrap angle", "wrap_angle"),
+            "hub_load": ("N", "Hub load", "hub_load"),
+        }
+        for name, (unit, meaning, field) in columns.items():
+            yield name, (Variable((_PULLEY,), unit, meaning), [getattr(one, field) for one in pulleys])
+        force = self.at["hub_force"].values
+        yield (
+            "hub_direction",
+            (Variable((_PULLEY,), "rad", "Direction of the hub load"), np.arctan2(force[:, 1], force[:, 0])),
+        )
+        reached, left = (self.before, self.after)[:: int(self.sense)]
+        yield "tension_before", (Variable((_PULLEY,), "N", "Tension where the belt reaches the pulley"), reached)
+        yield "tension_after", (Variable((_PULLEY,), "N", "Tension where the belt leaves the pulley"), left)
+        meaning = "Least tension on the slack side without gross slip (Euler)"
+        yield "least_slack_tension", (Variable((_PULLEY, "friction"), "N", meaning), self.least_slack_tension())
+
+    def least_slack_tension(self) -> FloatArray:
+        """Slack tension that Euler's formula needs for the pull of each pulley, shape (pulleys, factors), N."""
+        prepared, speed = self.prepared, self.at["belt_speed"].values
+        wrap = self.at["wrap_angle"].values
+        pull = np.abs(self.after - self.before)
+        ratio = np.exp(self.factors * (prepared.frictions * wrap)[:, None])
+        return np.asarray(pull[:, None] / (ratio - 1.0) + prepared.belt.mass_per_length * float(speed.mean()) ** 2)
+
+    def _of_spans(self) -> Iterator[tuple[str, tuple[Variable, Any]]]:
+        """Tensions at the ends of spans in running direction, stretch and, of what carries, resistances."""
+        speed, law = np.abs(self.at["belt_speed"].values), self.prepared.belt.stretch_parameters
+        first, last = self.span_ends()
+        mean = self.at["span_tension"].values
+        yield "span_tension", (Variable((_SPAN,), "N", "Span tension"), mean)
+        yield "tension_at_start", (Variable((_SPAN,), "N", "Tension at the start of the span"), first)
+        yield "tension_at_end", (Variable((_SPAN,), "N", "Tension at the end of the span"), last)
+        yield "belt_speed", (Variable((_SPAN,), "m/s", "Belt speed"), speed)
+        yield "span_strain", (Variable((_SPAN,), "1", "Strain"), law.stretch(mean) - 1.0)
+        # stretch and speed of gripped belt go together, so draws against the first span are those of strains
+        yield "draw", (Variable((_SPAN,), "1", "Belt speed above that where it enters"), speed / speed[self._entry] - 1)
+        if not self.drive.carries:
+            return
+        for name, values in self.resistances().items():
+            yield name, (Variable((_SPAN,), "N", RESISTANCES[name]), values)
+        yield "span_pull", (Variable((_SPAN,), "N", "Rise of the tension along the span"), last - first)
+        yield "goods_mass", (Variable((_SPAN,), "kg/m", "Mass of goods"), self.goods_mass())
+        needed, sag = self.sag(np.minimum(first, last))
+        meaning = f"Least tension for a sag of {LARGEST_SAG:.0%} between idlers"
+        yield "least_tension_for_sag", (Variable((_SPAN,), "N", meaning), needed)
+        yield "sag", (Variable((_SPAN,), "1", "Largest sag between idlers, over their spacing"), sag)
+
+    @property
+    def _entry(self) -> int:
+        """The span where a web enters; of a closed belt that behind the driver."""
+        return len(self.drive.spans) - 1 if self.drive.ends else self.drive.reference
+
+    def span_ends(self) -> tuple[FloatArray, FloatArray]:
+        """Tensions at start and end of each span in running direction, shape (spans,), N."""
+        starts, ends = self.at["span_tension"].values.copy(), self.at["span_tension"].values.copy()
+        pulleys = len(self.before)
+        starts[:pulleys] = self.after
+        reached = np.arange(pulleys) - 1
+        ends[reached] = self.before
+        return (starts, ends) if self.sense > 0.0 else (ends, starts)
+
+    def _of_tensioners(self) -> Iterator[tuple[str, tuple[Variable, Any]]]:
+        places, ones = [one.position for one in self.means.tensioners], self.drive.moving_tensioners
+        units = "rad" if all(one.turns for one in ones) else "m or rad"
+        yield "tensioner_position", (Variable((_TENSIONER,), units, "Tensioner position"), places)
+        forces = [one.preload - one.rate * place for one, place in zip(ones, places, strict=True)]
+        yield "tensioner_force", (Variable((_TENSIONER,), "N or N m", "Force of the tensioner"), forces)
+
+    def goods_mass(self) -> FloatArray:
+        """Mass of goods on each span, kg/m."""
+        spans = self.drive.spans
+        return np.array([sum(one.mass_per_length for one in self.drive.goods if one.span == span) for span in spans])
+
+    def resistances(self) -> dict[str, FloatArray]:
+        """Resistances of each span against the running belt by the equations of DIN 22101, N."""
+        drive, path, belt = self.drive, self.prepared.installation.path, self.prepared.belt
+        gravity = np.array(drive.gravity)
+        found = {name: np.zeros(len(drive.spans)) for name in RESISTANCES}
+        against = -self.sense * path.span_directions @ gravity
+        found["slope_resistance"] += belt.mass_per_length * against * path.span_lengths
+        for one in drive.goods:
+            place = stretch_of(one, drive.spans, path)
+            found["goods_resistance"][place.span] += one.mass_per_length * against[place.span] * place.length
+        for support in drive.supports:
+            place = stretch_of(support, drive.spans, path)
+            down = abs(float(upper_side(place.direction, drive.gravity) @ gravity))
+            main, secondary = self._friction_of(support, place.start, place.end, down)
+            found["main_resistance"][place.span] += main
+            found["secondary_resistance"][place.span] += secondary
+        return found
+
+    def _friction_of(self, support: Support, start: float, end: float, down: float) -> tuple[float, float]:
+        """Main and secondary resistance of a support, N, with the acceleration normal to its span, m/s^2."""
+        length, path = end - start, self.prepared.installation.path
+        weight = self.prepared.belt.mass_per_length * length
+        for one in self.drive.goods:
+            if one.span == support.span:
+                place = stretch_of(one, self.drive.spans, path)
+                weight += one.mass_per_length * max(0.0, min(end, place.end) - max(start, place.start))
+        normal, speed = weight * down / length, float(np.abs(self.at["belt_speed"].values).mean())
+        values = support.values(float(np.linalg.norm(self.drive.gravity)))
+        row = np.zeros(1, dtype=support.constants)
+        for name, value in values.items():
+            row[name] = value
+        force = length * interpreted(type(support).resistance_at)(row.view(np.recarray)[0], normal, speed).force
+        if not isinstance(support, Idlers):
+            return force, 0.0
+        further = length * (support.resistance + support.linear * speed)
+        main = (force - further) / support.secondary_factor
+        return main + further, force - further - main
+
+    def sag(self, least: FloatArray) -> tuple[FloatArray, FloatArray]:
+        """Least tension of each span for the largest sag between idlers, and the sag that is found."""
+        drive, path, goods = self.drive, self.prepared.installation.path, self.goods_mass()
+        needed = np.full(len(drive.spans), np.nan)
+        for support in drive.supports:
+            place = stretch_of(support, drive.spans, path)
+            if support.free_length > 0.0:
+                down = abs(float(upper_side(place.direction, drive.gravity) @ np.array(drive.gravity)))
+                load = down * (self.prepared.belt.mass_per_length + goods[place.span])
+                needed[place.span] = np.fmax(needed[place.span], load * support.free_length / (8.0 * LARGEST_SAG))
+        return needed, LARGEST_SAG * needed / least
+
+
+def _row_warnings(name: str, row: _Row, factors: FloatArray) -> Iterator[str]:
+    """What a designer has to look after at an operating point."""
+    slack = np.minimum(row.before, row.after)
+    needed = row.least_slack_tension()[:, 0]
+    for number in np.flatnonzero((slack < needed) & ~row.drive.guides):
+        yield (
+            f"{row.drive.pulleys[number].name} slips at operating point {name} with {factors[0]:.3g} times the "
+            f"friction: its slack tension is {slack[number]:.4g} N, Euler's formula needs {needed[number]:.4g} N. "
+            "Raise the tension or the wrap angle, or share the pull with another drive."
+        )
+    if row.drive.carries:
+        first, last = row.span_ends()
+        needed, sag = row.sag(np.minimum(first, last))
+        for number in np.flatnonzero(sag > LARGEST_SAG):
+            yield (
+                f"the belt sags by {sag[number]:.2%} of the idler spacing in the span "
+                f"{'-'.join(row.drive.spans[number])} at operating point {name}: {LARGEST_SAG:.0%} needs "
+                f"{needed[number]:.4g} N. Raise the tension, or place idlers closer."
+            )

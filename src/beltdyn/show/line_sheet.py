@@ -1,0 +1,218 @@
+"""The tables of a sheet of a line: a web line, a conveyor, or a guided belt."""
+
+from collections.abc import Iterator, Sequence
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from beltdyn.arrays import BoolArray, FloatArray
+from beltdyn.designs.line_sheet import LARGEST_SAG, RESISTANCES
+from beltdyn.parts.messages import aligned
+from beltdyn.parts.quantity import RPM
+from beltdyn.results import Result
+from beltdyn.show.sheet import Facts, Sheet, Table
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+_DEGREES = 180.0 / np.pi
+_LARGEST_SAFETY = 100.0
+_KILOWATTS = 1e4
+"""Power from which powers are shown in kW, W."""
+_HOUR = 3.6
+"""kg/s in t/h."""
+_NOTHING = 1e-9
+"""Of the largest power, below which power is rounding."""
+
+
+def line_sheet(result: Result) -> Sheet:
+    """Give the sheet of a line."""
+    dataset, parts = result.dataset, list[Table | Facts]()
+    parts += [Facts(tuple(_facts(dataset))), _points(dataset)]
+    for number, name in enumerate(dataset["row"].values):
+        at, where = dataset.isel(row=number), f", operating point {name}" if dataset.sizes["row"] > 1 else ""
+        stands = np.array(result.drive.guides, dtype=bool)
+        parts += [_pulleys(at, where, stands), _grip(at, where, stands), _spans(at, where)]
+        if "main_resistance" in at:
+            parts.append(_resistances(at, where))
+            if at["sag"].notnull().any():
+                parts.append(_sag(at, where))
+        if "tensioner_position" in at:
+            parts.append(_tensioners(at, where, result))
+        if "roll_radius" in at:
+            parts.append(_rolls(at, where))
+    return Sheet(str(dataset.attrs["title"]), tuple(parts))
+
+
+def _facts(dataset: "xr.Dataset") -> Iterator[tuple[str, str]]:
+    yield "belt length", f"{float(dataset['belt_length']):.5g} m unstretched"
+    yield "tension at rest", f"{float(dataset['tension_at_rest']):.4g} N"
+    factors = ", ".join(f"{one:.3g}" for one in dataset["friction"].values)
+    yield "slack tension needed", f"by Euler's formula, with {factors} times the friction of the pulleys"
+    if "main_resistance" in dataset:
+        yield "resistances", "by the equations of DIN 22101, beside the pull of the computed steady running"
+
+
+def _points(dataset: "xr.Dataset") -> Table:
+    """A line for each operating point, with the worst of pulleys and spans."""
+    durations = dataset["duration"].values
+    powers, (factor, unit) = dataset["power_in"].values, _power_unit(dataset["power"].values)
+    ends = np.stack([dataset["tension_at_start"].values, dataset["tension_at_end"].values])
+    columns: list[Sequence[str]] = [
+        [str(one) for one in dataset["row"].values],
+        [f"{one:.1%}" for one in durations / durations.sum()],
+        aligned(dataset["belt_speed"].mean("span").values.tolist(), 4),
+        aligned((factor * powers).tolist(), 4),
+        aligned((factor * dataset["power_out"].values).tolist(), 4),
+        aligned((factor * dataset["loss"].values).tolist(), 4),
+        [
+            f"{out / given:.1%}" if given > 0.0 and out > 0.0 else "none"
+            for out, given in zip(dataset["power_out"].values, powers, strict=True)
+        ],
+        aligned(ends.min(axis=(0, 2)).tolist(), 4),
+        aligned(ends.max(axis=(0, 2)).tolist(), 4),
+        safeties(np.fmin.reduce(dataset["slip_safety"].values, axis=1)),
+    ]
+    headings: tuple[str, ...] = (
+        *("", "time", "belt\nm/s", f"power in\n{unit}", f"out\n{unit}", f"losses\n{unit}", "efficiency"),
+        *("tension\nmin N", "max N", "slip\nsafety"),
+    )
+    if "goods_mass" in dataset:
+        flow = _HOUR * (dataset["goods_mass"] * dataset["belt_speed"]).max("span").values
+        columns.append(aligned(flow.tolist(), 4))
+        headings = (*headings, "goods\nt/h")
+    return Table("Operating points", headings, tuple(zip(*columns, strict=True)))
+
+
+def _power_unit(powers: FloatArray) -> tuple[float, str]:
+    return (1e-3, "kW") if np.nanmax(np.abs(powers)) >= _KILOWATTS else (1.0, "W")
+
+
+def _pulleys(at: "xr.Dataset", where: str, stands: BoolArray) -> Table:
+    """Diameter, speed, torque, power and hub load of each pulley."""
+    power, (factor, unit) = at["power"].values, _power_unit(at["power"].values)
+    power = np.where(np.abs(power) > _NOTHING * np.max(np.abs(power), initial=1.0), power, 0.0)
+    columns = (
+        map(str, at["pulley"].values),
+        aligned((1e3 * at["pitch_diameter"].values).tolist(), 5),
+        [f"{_DEGREES * one:.1f}°" for one in at["wrap_angle"].values],
+        _but(stands, aligned((RPM * at["pulley_speed"].values).tolist(), 5)),
+        _but(stands, aligned(at["shaft_torque"].values.tolist(), 4)),
+        _but(stands, aligned((factor * power).tolist(), 4)),
+        aligned(at["hub_load"].values.tolist(), 4),
+        [f"{_DEGREES * one:z.0f}°" for one in at["hub_direction"].values],
+    )
+    headings = ("", "diameter\nmm", "wrap", "speed\nrpm", "torque\nN m", f"power\n{unit}", "hub load\nN", "direction")
+    return Table(f"Pulleys{where}", headings, tuple(zip(*columns, strict=True)))
+
+
+def _grip(at: "xr.Dataset", where: str, stands: BoolArray) -> Table:
+    """Tensions before and behind each pulley, slip, and the slack tension needed."""
+    before, after, needed = (at[name].values for name in ("tension_before", "tension_after", "least_slack_tension"))
+    tensions = aligned([*before, *after, *needed.ravel()], 5)
+    count = len(before)
+    columns: list[Sequence[str]] = [
+        [str(one) for one in at["pulley"].values],
+        tensions[:count],
+        tensions[count : 2 * count],
+        aligned((before - after).tolist(), 4),
+        _but(stands, [f"{one:z.3%}" for one in at["pulley_slip"].values]),
+        [f"{one:.3g}" for one in at["friction_coefficient"].values],
+        _but(stands, safeties(at["slip_safety"].values)),
+    ]
+    grid = np.array(tensions[2 * count :]).reshape(needed.shape)
+    columns += [_but(stands, list(map(str, grid[:, number]))) for number in range(needed.shape[1])]
+    factors = [f"× {one:.3g}" for one in at["friction"].values]
+    headings = (
+        *("", "tension\nbefore N", "behind N", "pull\nN", "slip", "friction", "slip\nsafety"),
+        *(f"slack needed\nN {one}" if number == 0 else f"\nN {one}" for number, one in enumerate(factors)),
+    )
+    return Table(f"Grip{where}", headings, tuple(zip(*columns, strict=True)))
+
+
+def _spans(at: "xr.Dataset", where: str) -> Table:
+    """Tensions at both ends of each span, strain and draw."""
+    first, last = (at[name].values for name in ("tension_at_start", "tension_at_end"))
+    tensions, count = aligned([*first, *last], 5), len(first)
+    columns: list[Sequence[str]] = [
+        [str(one) for one in at["span"].values],
+        aligned(at["span_length"].values.tolist(), 4),
+        tensions[:count],
+        tensions[count:],
+        [f"{one:z.4%}" for one in at["span_strain"].values],
+        aligned(at["belt_speed"].values.tolist(), 5),
+        [f"{one:+z.4%}" for one in at["draw"].values],
+    ]
+    headings = ("", "length\nm", "tension at\nstart N", "end N", "strain", "belt\nm/s", "draw")
+    return Table(f"Spans{where}", headings, tuple(zip(*columns, strict=True)))
+
+
+def _resistances(at: "xr.Dataset", where: str) -> Table:
+    """Sum of resistances by DIN 22101, beside the pull that is found."""
+    parts = np.array([at[name].values for name in RESISTANCES])
+    cells = np.vstack([parts, parts.sum(axis=0), at["span_pull"].values])
+    cells = np.hstack([cells, cells.sum(axis=1, keepdims=True)])
+    lengths, goods = at["span_length"].values.tolist(), at["goods_mass"].values.tolist()
+    columns: list[Sequence[str]] = [
+        [*map(str, at["span"].values), "sum"],
+        [*aligned(lengths, 4), ""],
+        [*aligned(goods, 4), ""],
+        *(aligned(one.tolist(), 4) for one in cells),
+    ]
+    headings = (
+        *("", "length\nm", "goods\nkg/m", "main\nN", "secondary\nN", "slope,\nbelt N", "slope,\ngoods N"),
+        *("sum\nN", "found\nN"),
+    )
+    return Table(f"Resistances (DIN 22101){where}", headings, tuple(zip(*columns, strict=True)))
+
+
+def _sag(at: "xr.Dataset", where: str) -> Table:
+    """Sag between idlers."""
+    carried = np.flatnonzero(at["sag"].notnull().values)
+    there = at.isel(span=carried)
+    least = np.minimum(there["tension_at_start"].values, there["tension_at_end"].values)
+    columns = (
+        map(str, there["span"].values),
+        aligned(there["largest_idler_spacing"].values.tolist(), 3),
+        aligned(there["least_tension_for_sag"].values.tolist(), 4),
+        aligned(least.tolist(), 4),
+        [f"{one:.2%}" for one in there["sag"].values],
+    )
+    headings = ("", "spacing\nm", f"tension for {LARGEST_SAG:.0%}\nN", "least tension\nN", "sag")
+    return Table(f"Sag between idlers{where}", headings, tuple(zip(*columns, strict=True)))
+
+
+def _tensioners(at: "xr.Dataset", where: str, result: Result) -> Table:
+    rows = []
+    for one, place, force in zip(
+        result.drive.moving_tensioners, at["tensioner_position"].values, at["tensioner_force"].values, strict=True
+    ):
+        unit = "N m" if one.turns else "N"
+        stops = " to ".join(one.written(stop) for stop in one.stops or ()) or "none"
+        rows.append((one.pulley, one.written(float(place)), f"{force:.4g} {unit}", stops))
+    return Table(f"Tensioners{where}", ("", "position", "force", "stops"), tuple(rows))
+
+
+def _rolls(at: "xr.Dataset", where: str) -> Table:
+    columns = (
+        map(str, at["roll"].values),
+        aligned((1e3 * at["roll_radius"].values).tolist(), 5),
+        aligned(at["roll_inertia"].values.tolist(), 4),
+        aligned((RPM * at["roll_speed"].values).tolist(), 4),
+        aligned(at["roll_torque"].values.tolist(), 4),
+    )
+    headings = ("", "radius\nmm", "inertia\nkg m²", "speed\nrpm", "torque\nN m")
+    return Table(f"Rolls{where}", headings, tuple(zip(*columns, strict=True)))
+
+
+def _but(stands: BoolArray, texts: Sequence[str]) -> list[str]:
+    """Texts, with a dash for guides that stand still."""
+    return ["–" if still else text for still, text in zip(stands, texts, strict=True)]
+
+
+def safeties(values: FloatArray) -> list[str]:
+    """Slip safeties; a dash without load."""
+    return [
+        "–" if np.isnan(one) else f"{one:.2f}" if one < _LARGEST_SAFETY else f"> {_LARGEST_SAFETY:.0f}"
+        for one in values
+    ]
