@@ -132,7 +132,7 @@ def sheet(
         "wear": wear,
         "full": full,
     }
-    if drive.is_web or drive.carries or drive.guides.any():
+    if drive.is_web or drive.carries or drive.nips or drive.guides.any():
         return _sheet_of_line(drive, table, friction, at, options)
     columns = duty_of(drive, table)
     tell = progress or (lambda _: None)

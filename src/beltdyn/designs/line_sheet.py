@@ -169,8 +169,10 @@ class _Row:
         prepared, speed = self.prepared, self.at["belt_speed"].values
         wrap = self.at["wrap_angle"].values
         pull = np.abs(self.after - self.before)
-        ratio = np.exp(self.factors * (prepared.frictions * wrap)[:, None])
-        return np.asarray(pull[:, None] / (ratio - 1.0) + prepared.belt.mass_per_length * float(speed.mean()) ** 2)
+        grown = np.expm1(self.factors * (prepared.frictions * wrap)[:, None])
+        none = np.full_like(grown, np.nan)  # where the belt does not wrap, as on the roller of a nip
+        needed = np.divide(pull[:, None], grown, out=none, where=grown > 0.0)
+        return np.asarray(needed + prepared.belt.mass_per_length * float(speed.mean()) ** 2)
 
     def _of_spans(self) -> Iterator[tuple[str, tuple[Variable, Any]]]:
         """Tensions at the ends of spans in running direction, stretch and, of what carries, resistances."""

@@ -22,7 +22,7 @@ _KILOWATTS = 1e4
 _HOUR = 3.6
 """kg/s in t/h."""
 _NOTHING = 1e-9
-"""Of the largest power, below which power is rounding."""
+"""Of the largest power, or m and rad of a position, below which it is rounding."""
 
 
 def line_sheet(result: Result) -> Sheet:
@@ -50,7 +50,8 @@ def _facts(dataset: "xr.Dataset") -> Iterator[tuple[str, str]]:
     factors = ", ".join(f"{one:.3g}" for one in dataset["friction"].values)
     yield "slack tension needed", f"by Euler's formula, with {factors} times the friction of the pulleys"
     if "main_resistance" in dataset:
-        yield "resistances", "by the equations of DIN 22101, beside the pull of the computed steady running"
+        named = " of DIN 22101" if dataset["sag"].notnull().any() else ""
+        yield "resistances", f"by the equations{named}, beside the rise of tension in computed steady running"
 
 
 def _points(dataset: "xr.Dataset") -> Table:
@@ -77,7 +78,7 @@ def _points(dataset: "xr.Dataset") -> Table:
         *("", "time", "belt\nm/s", f"power in\n{unit}", f"out\n{unit}", f"losses\n{unit}", "efficiency"),
         *("tension\nmin N", "max N", "slip\nsafety"),
     )
-    if "goods_mass" in dataset:
+    if "goods_mass" in dataset and dataset["goods_mass"].values.any():
         flow = _HOUR * (dataset["goods_mass"] * dataset["belt_speed"]).max("span").values
         columns.append(aligned(flow.tolist(), 4))
         headings = (*headings, "goods\nt/h")
@@ -121,7 +122,8 @@ def _grip(at: "xr.Dataset", where: str, stands: BoolArray) -> Table:
         _but(stands, safeties(at["slip_safety"].values)),
     ]
     grid = np.array(tensions[2 * count :]).reshape(needed.shape)
-    columns += [_but(stands, list(map(str, grid[:, number]))) for number in range(needed.shape[1])]
+    idle = stands | np.isnan(at["slip_safety"].values)
+    columns += [_but(idle, list(map(str, grid[:, number]))) for number in range(needed.shape[1])]
     factors = [f"× {one:.3g}" for one in at["friction"].values]
     headings = (
         *("", "tension\nbefore N", "behind N", "pull\nN", "slip", "friction", "slip\nsafety"),
@@ -148,7 +150,7 @@ def _spans(at: "xr.Dataset", where: str) -> Table:
 
 
 def _resistances(at: "xr.Dataset", where: str) -> Table:
-    """Sum of resistances by DIN 22101, beside the pull that is found."""
+    """Sum of resistances by hand, beside the pull that is found."""
     parts = np.array([at[name].values for name in RESISTANCES])
     cells = np.vstack([parts, parts.sum(axis=0), at["span_pull"].values])
     cells = np.hstack([cells, cells.sum(axis=1, keepdims=True)])
@@ -163,7 +165,7 @@ def _resistances(at: "xr.Dataset", where: str) -> Table:
         *("", "length\nm", "goods\nkg/m", "main\nN", "secondary\nN", "slope,\nbelt N", "slope,\ngoods N"),
         *("sum\nN", "found\nN"),
     )
-    return Table(f"Resistances (DIN 22101){where}", headings, tuple(zip(*columns, strict=True)))
+    return Table(f"Resistances of spans{where}", headings, tuple(zip(*columns, strict=True)))
 
 
 def _sag(at: "xr.Dataset", where: str) -> Table:
@@ -189,6 +191,7 @@ def _tensioners(at: "xr.Dataset", where: str, result: Result) -> Table:
     ):
         unit = "N m" if one.turns else "N"
         stops = " to ".join(one.written(stop) for stop in one.stops or ()) or "none"
+        place = place if abs(place) > _NOTHING else 0.0
         rows.append((one.pulley, one.written(float(place)), f"{force:.4g} {unit}", stops))
     return Table(f"Tensioners{where}", ("", "position", "force", "stops"), tuple(rows))
 
@@ -206,7 +209,7 @@ def _rolls(at: "xr.Dataset", where: str) -> Table:
 
 
 def _but(stands: BoolArray, texts: Sequence[str]) -> list[str]:
-    """Texts, with a dash for guides that stand still."""
+    """Texts, with a dash in some places, such as guides that stand still."""
     return ["–" if still else text for still, text in zip(stands, texts, strict=True)]
 
 

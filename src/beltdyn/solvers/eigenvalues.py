@@ -179,13 +179,8 @@ def all_eigenvalues(given: Pencil) -> tuple[ComplexArray, ComplexArray]:
 
 def nearest(given: Pencil, shift: complex, count: int) -> tuple[ComplexArray, ComplexArray]:
     """Eigenvalues nearest to a shift, and eigenvectors in columns, by the Arnoldi method on the shifted inverse."""
-    from scipy.sparse.linalg import splu
-
-    def inverse(vector: ComplexArray) -> ComplexArray:
-        return np.asarray(factors.solve(np.asarray(given.by_rate @ vector)), complex)
-
     try:
-        factors = splu((given.by_state - shift * given.by_rate).tocsc())
+        inverse = _inverse(given, shift)
         for ritz in arnoldi(inverse, given.size, _BATCHES):
             found = int(np.argmin(np.append(ritz.residuals < _TOLERANCE, False)))
             if found >= min(count, given.size):
@@ -196,6 +191,24 @@ def nearest(given: Pencil, shift: complex, count: int) -> tuple[ComplexArray, Co
     raise ConvergenceError(
         f"{count} vibrations near {abs(shift) / (2.0 * np.pi):.4g} Hz were not found. Reduce the number of modes."
     )
+
+
+def _inverse(given: Pencil, shift: complex) -> Callable[[ComplexArray], ComplexArray]:
+    """(A - s B)^-1 B on vectors: rates follow from coordinates, so a matrix of half the order is factorized."""
+    from scipy.sparse import hstack
+    from scipy.sparse.linalg import splu
+
+    placed = given.placed.size
+    forces = (given.by_state - shift * given.by_rate).tocsc()[placed:]
+    by_place, by_rate, by_free = forces[:, :placed], forces[:, placed : 2 * placed] / _RATE, forces[:, 2 * placed :]
+    factors = splu(hstack([by_place + shift * by_rate, by_free], format="csc"))
+
+    def inverse(vector: ComplexArray) -> ComplexArray:
+        right = np.asarray(given.by_rate @ vector, complex)
+        found = factors.solve(right[placed:] - by_rate @ right[:placed])
+        return np.concatenate([found[:placed], (right[:placed] + shift * found[:placed]) / _RATE, found[placed:]])
+
+    return inverse
 
 
 def swings(values: ComplexArray) -> BoolArray:

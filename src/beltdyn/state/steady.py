@@ -198,7 +198,7 @@ class Beside(NamedTuple):
     prepared: Prepared
     search: SteadySearch
     start: Run
-    """Of the other drive; the errors of its mesh are taken over."""
+    """Of the other drive; the errors of its mesh, and whether it is stable, are taken over."""
     change: FloatArray
     """By how much its unknowns differ from those that were carried over."""
     seconds: float
@@ -208,7 +208,8 @@ class Beside(NamedTuple):
         """Its results; `bands` as for `steady_from`."""
         errors = {name: error for name, error in self.start.resolution.errors.items() if np.isfinite(error)}
         band = self.search.friction_band(self.start.dataset.attrs) if bands else {}
-        found = _Found(self.search, band, errors, _rule_of(self.start), self.seconds)
+        grows = {name: value for name, value in self.start.dataset.attrs.items() if name == GROWTH}
+        found = _Found(self.search, band, errors, _rule_of(self.start), self.seconds, grows)
         return _as_run(self.prepared, self.prepared.simulation.end, found)
 
 
@@ -260,6 +261,8 @@ class _Found(NamedTuple):
     rule: MeshRule
     seconds: float
     """Of the search, s."""
+    growth: Mapping[str, FloatArray] | None = None
+    """Of a controlled drive, if it is known; see `_growth`."""
 
 
 def _from_rest(
@@ -309,6 +312,9 @@ def _as_run(prepared: Prepared, instant: float, found: _Found) -> Run:
     """What was found, as the results of a run of two turns of the belt."""
     search, drive = found.search, prepared.drive
     _require_trims(search)
+    growth = found.growth
+    if growth is None:
+        growth = _growth(search) if drive.is_controlled else {}
     duration = _TURNS * search.prepared.belt_length / abs(search.belt_parameter)
     turns = drive.simulation.replace(
         duration=duration, output_interval=duration, field_interval=None, start="equilibrium", start_at=None
@@ -326,7 +332,7 @@ def _as_run(prepared: Prepared, instant: float, found: _Found) -> Run:
             belt_parameter=search.belt_parameter,
             **({TOOTH_PHASES: phases(search.constant)} if has_teeth(search.constant) else {}),
             **({WEB_LINE: 1} if drive.is_web else {}),
-            **(_growth(search) if drive.is_controlled else {}),
+            **growth,
             **mesh_attributes(search.constant),
             newton_iterations_of_search=search.iterations,
             mesh_rule=np.array(found.rule),
