@@ -36,6 +36,7 @@ ELSEWHERE = {
     "system/element_state.py": "unit/system/test_discretization.py",
     "system/observations.py": "unit/system/test_observe.py",
     "solvers/engine.py": "unit/solvers/test_alpha_advance.py",
+    "show/line_sheet.py": "unit/designs/test_line_sheet.py",
     "designs/designs.py": "unit/designs/test_optimize.py",
     "designs/optimization_history.py": "unit/designs/test_optimize.py",
     "designs/goals.py": "unit/designs/test_optimize.py",

@@ -18,6 +18,7 @@ from beltdyn.model import Drive, Prepared
 from beltdyn.model.carrying import stretch_of, upper_side
 from beltdyn.points.duty import Column, at_row, durations_of
 from beltdyn.results import Run, Variable
+from beltdyn.results.derived import nips
 from beltdyn.results.mechanics import tensions_at_arcs
 from beltdyn.results.schema import COORDINATES
 from beltdyn.results.summary import Means, means_of
@@ -27,7 +28,7 @@ LARGEST_SAG = 0.01
 """Sag between idlers over their spacing to which the least tension belongs (DIN 22101)."""
 
 Values = dict[str, tuple[Variable, Any]]
-_ROW, _PULLEY, _SPAN, _TENSIONER, _ROLL = "row", "pulley", "span", "tensioner", "roll"
+_ROW, _PULLEY, _SPAN, _TENSIONER, _ROLL, _NIP = "row", "pulley", "span", "tensioner", "roll", "nip"
 
 RESISTANCES = {
     "main_resistance": "Main resistance of idlers, and friction of guides",
@@ -36,6 +37,13 @@ RESISTANCES = {
     "goods_resistance": "Slope resistance of the goods",
 }
 """Resistances of a span against the running belt, N, by hand."""
+
+
+NIPS = (
+    *("force", "width", "peak_pressure", "gap", "thickness_after", "speed_ratio", "tension_before", "tension_after"),
+    "compression_loss",
+)
+"""What a sheet has of `beltdyn.derived.nips`."""
 
 
 class LineSheet(NamedTuple):
@@ -79,6 +87,9 @@ def line_sheet(given: Drive, columns: list[Column] | None, factors: FloatArray) 
         coordinates[_TENSIONER] = (COORDINATES[_TENSIONER], [one.pulley for one in given.moving_tensioners])
     if given.rolls:
         coordinates[_ROLL] = (COORDINATES[_ROLL], [one.name for one in given.rolls])
+    if given.nips:
+        rollers = [given.pulleys[roller].name for roller, _ in first.prepared.path.nips_by_roller]
+        coordinates[_NIP] = (COORDINATES[_NIP], rollers)
     found = [dict(one.values()) for one in rows]
     variables = {
         name: (replace(variable, dims=(_ROW, *variable.dims)), np.array([one[name][1] for one in found]))
@@ -135,6 +146,11 @@ class _Row:
             for name in ("roll_radius", "roll_inertia", "roll_speed", "roll_torque"):
                 one = self.at[name]
                 yield name, (Variable((_ROLL,), one.attrs["units"], one.attrs["long_name"]), one.values)
+        if self.drive.nips:
+            found = nips(self.run)
+            for name in NIPS:
+                one = found[name]
+                yield f"nip_{name}", (Variable((_NIP,), one.attrs["units"], one.attrs["long_name"]), one.values)
         balance = self.means.balance
         yield "power_in", (Variable((), "W", "Power input"), balance.power_in)
         yield "power_out", (Variable((), "W", "Power output"), balance.power_out)
@@ -182,6 +198,8 @@ class _Row:
         yield "span_tension", (Variable((_SPAN,), "N", "Span tension"), mean)
         yield "tension_at_start", (Variable((_SPAN,), "N", "Tension at the start of the span"), first)
         yield "tension_at_end", (Variable((_SPAN,), "N", "Tension at the end of the span"), last)
+        yield "largest_tension", (Variable((_SPAN,), "N", "Largest tension"), np.maximum(first, last))
+        yield "least_tension", (Variable((_SPAN,), "N", "Least tension"), np.minimum(first, last))
         yield "belt_speed", (Variable((_SPAN,), "m/s", "Belt speed"), speed)
         yield "span_strain", (Variable((_SPAN,), "1", "Strain"), law.stretch(mean) - 1.0)
         # stretch and speed of gripped belt go together, so draws against the first span are those of strains

@@ -151,10 +151,15 @@ _OF_SHEETS = _OF_TABLES | {
     "least_slip_safety": ("least_slip_safety", "pulley", "1"),
 }
 """Of sheets, whose operating points have peaks."""
+_OF_LINES = _OF_TABLES | {
+    "largest_tension": ("largest_tension", "span", "N"),
+    "least_tension": ("least_tension", "span", "N"),
+}
+"""Of sheets of lines, whose tensions vary along spans."""
 
 
 def _of_sheet(result: Result) -> Iterator[Found]:
-    yield from _of_table(result, _OF_SHEETS)
+    yield from _of_table(result, _OF_LINES if "tension_at_start" in result.dataset else _OF_SHEETS)
 
 
 def _places(dataset: "xr.Dataset") -> list[str]:

@@ -41,6 +41,8 @@ def line_sheet(result: Result) -> Sheet:
             parts.append(_tensioners(at, where, result))
         if "roll_radius" in at:
             parts.append(_rolls(at, where))
+        if "nip_force" in at:
+            parts.append(_nips(at, where))
     return Sheet(str(dataset.attrs["title"]), tuple(parts))
 
 
@@ -206,6 +208,23 @@ def _rolls(at: "xr.Dataset", where: str) -> Table:
     )
     headings = ("", "radius\nmm", "inertia\nkg m²", "speed\nrpm", "torque\nN m")
     return Table(f"Rolls{where}", headings, tuple(zip(*columns, strict=True)))
+
+
+def _nips(at: "xr.Dataset", where: str) -> Table:
+    """Force, pressure and thickness of each nip, and the tensions on its sides."""
+    factors = (("force", 1.0), ("width", 1e3), ("peak_pressure", 1e-6), ("gap", 1e6), ("thickness_after", 1e6))
+    columns: list[Sequence[str]] = [[str(one) for one in at["nip"].values]]
+    columns += [aligned((factor * at[f"nip_{name}"].values).tolist(), 4) for name, factor in factors]
+    columns.append([f"{one:.5f}" for one in at["nip_speed_ratio"].values])
+    columns += [
+        aligned(at[f"nip_{name}"].values.tolist(), 5)
+        for name in ("tension_before", "tension_after", "compression_loss")
+    ]
+    headings = (
+        *("", "force\nN", "width\nmm", "peak pressure\nMPa", "gap\nµm", "thickness\nafter µm", "speed\nratio"),
+        *("tension\nbefore N", "behind N", "loss by\ncompression W"),
+    )
+    return Table(f"Nips{where}", headings, tuple(zip(*columns, strict=True)))
 
 
 def _but(stands: BoolArray, texts: Sequence[str]) -> list[str]:
