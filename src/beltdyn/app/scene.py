@@ -19,8 +19,6 @@ _FEW = 2
 """Number of pulleys above which they alone set the extent."""
 _SMALLEST = 60.0
 """Least shorter side of the extent, mm."""
-_STRAIGHT = 1e-3
-"""Bend of a belt (rad) below which it passes a pulley straight."""
 _SEEN = 0.004
 """Travel of a tensioner over the size of the drive above which its rest position is drawn separately."""
 
@@ -144,15 +142,9 @@ def _pulley(one: Circle, drive: Drive | None, center: Sequence[float], draft: Dr
 
 
 def _beyond(path: Path, number: int) -> list[float] | None:
-    """The direction from a pulley in which no span runs: beyond its arc, and in a loop within a pulley on the back."""
-    ways = path.span_directions
-    bend = ways[number - 1] - ways[number]
-    size = float(np.linalg.norm(bend))
-    if not size > _STRAIGHT:
-        return None
-    inward = path.ends is None and path.radii[number] < 0
-    right, up = (bend / (-size if inward else size)).tolist()
-    return [right, -up]
+    """The clear way from a pulley, downwards positive."""
+    way = path.clear_way(number)
+    return None if way is None else [way[0], -way[1]]
 
 
 def _spans(path: Path) -> list[dict[str, Any]]:

@@ -11,6 +11,8 @@ from numpy.typing import ArrayLike, NDArray
 from beltdyn.arrays import BoolArray, FloatArray, IntArray
 
 _ROUNDING = 1e-12  # rad: a turning angle this far below zero is zero
+_STRAIGHT = 1e-3
+"""Bend of the path, rad, below which no side of a pulley is beyond its arc."""
 _EQUAL = 1e-6  # difference of spans, relative, up to which they count as equally long
 
 
@@ -186,6 +188,20 @@ class Path:
     def span_start(self, span: int) -> float:
         """Arc length at the start of a span, m."""
         return float(self._starts[2 * int(np.flatnonzero(self.order == span)[0])])
+
+    def clear_way(self, number: int) -> tuple[float, float] | None:
+        """The direction from a pulley in which no span runs, where its name has room; None where the path is straight.
+
+        It is that beyond its arc, and in a loop within a pulley on the back.
+        """
+        ways = self.span_directions
+        bend = ways[number - 1] - ways[number]
+        size = float(np.linalg.norm(bend))
+        if not size > _STRAIGHT:
+            return None
+        inward = self.ends is None and self.radii[number] < 0
+        right, up = (bend / (-size if inward else size)).tolist()
+        return right, up
 
     @property
     def longest_span(self) -> int:

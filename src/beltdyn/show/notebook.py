@@ -12,6 +12,7 @@ from beltdyn.model.advice import advise
 from beltdyn.model.drive import Drive
 from beltdyn.model.path import Path
 from beltdyn.model.prepared import install
+from beltdyn.model.pulley import Pulley
 from beltdyn.results.result import Result
 from beltdyn.results.schema import runs_steadily
 from beltdyn.show.sheet import sheet
@@ -22,6 +23,8 @@ _SIZE = 360.0
 """Longer side of the picture, pixels."""
 _MARGIN = 0.06
 """Room around the drive, over its longer side."""
+_LETTER, _GAP = 6.0, 5.0
+"""Width of a letter of names, and their distance from a pulley, pixels."""
 
 
 @dataclass(frozen=True)
@@ -33,6 +36,8 @@ class Circle:
     y: float
     radius: float
     prescribed: bool
+    label: tuple[float, float]
+    """The middle of its name: beyond its arc where the circle is too small."""
 
 
 @dataclass(frozen=True)
@@ -62,10 +67,15 @@ def picture(drive: Drive) -> Picture:
     def place(x: float, y: float) -> tuple[float, float]:
         return room + scale * (x - low[0]), room + scale * (high[1] - y)
 
-    circles = tuple(
-        Circle(pulley.name, *place(*center), scale * pulley.radius, pulley.prescribed)
-        for pulley, center in zip(drive.pulleys, path.centers.tolist(), strict=True)
-    )
+    def circle(number: int, pulley: Pulley) -> Circle:
+        (x, y), radius = place(*path.centers[number].tolist()), scale * pulley.radius
+        right, up = path.clear_way(number) or (0.0, -1.0)
+        half = _LETTER * len(pulley.name) / 2.0
+        outside = float(half > radius)
+        label = x + outside * right * (radius + _GAP + half), y - outside * up * (radius + 2.0 * _GAP)
+        return Circle(pulley.name, x, y, radius, pulley.prescribed, label)
+
+    circles = tuple(circle(number, pulley) for number, pulley in enumerate(drive.pulleys))
     return Picture(width, height, circles, outline(path, place, scale))
 
 

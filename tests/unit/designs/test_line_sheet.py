@@ -1,6 +1,7 @@
 """Sheets of conveyors and web lines, against resistances, draws, and Euler's formula by hand."""
 
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
@@ -28,7 +29,7 @@ def test_a_conveyor_has_the_pull_of_din_22101() -> None:
     np.testing.assert_allclose(upper.main_resistance + upper.secondary_resistance, friction, rtol=2e-3)
     np.testing.assert_allclose(upper.goods_resistance, [15.0 * 9.81 * 104.0, 0.0], rtol=0.02)  # rims add to the height
     parts = ("main_resistance", "secondary_resistance", "slope_resistance", "goods_resistance")
-    total = sum(found[name] for name in parts)
+    total = found[list(parts)].to_dataarray().sum("variable")
     for one in (upper, lower):
         np.testing.assert_allclose(one.span_pull, total.sel(span=str(one.span.values)), rtol=0.01)
     pull = found.shaft_torque.sel(pulley="head") / 0.5
@@ -43,6 +44,8 @@ def test_a_conveyor_has_the_pull_of_din_22101() -> None:
     text = as_text(sheet(result))
     assert "Resistances of spans, operating point empty" in text
     assert "none" in text
+    with pytest.raises(ModelError, match="no curves over speed"):
+        bd.plot.sheet_tensions(result)
     assert bd.plot.line_tensions(result).get_legend_handles_labels()[1] == ["full", "empty"]
 
 
@@ -68,9 +71,10 @@ def test_a_nip_is_on_the_sheet() -> None:
 
 
 def test_options_of_closed_belts_are_refused() -> None:
-    for options, said in (
+    refused: tuple[tuple[dict[str, Any], str], ...] = (
         ({"speed": "1..2 rad/s"}, "speed = 1..2 rad/s is an option for belts between pulleys alone"),
         ({"full": True}, "full = True is an option"),
-    ):
+    )
+    for options, said in refused:
         with pytest.raises(ModelError, match=said):
-            bd.sheet(example("package_conveyor"), **options)  # type: ignore[arg-type]
+            bd.sheet(example("package_conveyor"), **options)

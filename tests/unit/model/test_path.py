@@ -245,3 +245,10 @@ def test_gradient_of_an_open_path(pulley: int) -> None:
         change[pulley, axis] = step
         ahead, behind = (Path(laid.centers + sign * change, laid.radii, laid.ends).length for sign in (1, -1))
         assert laid.gradient(pulley)[axis] == pytest.approx((ahead - behind) / (2 * step), abs=1e-9)
+
+
+def test_names_have_room_where_no_span_runs() -> None:
+    """Beyond the arc of a pulley; a path that does not bend has no such side."""
+    line = Path(np.array([[0.0, 0.0], [1.0, 0.0]]), np.array([0.1, 0.1]))
+    assert line.clear_way(0) == pytest.approx((-1.0, 0.0))
+    assert line.clear_way(1) == pytest.approx((1.0, 0.0))

@@ -210,9 +210,18 @@ def _over_speed(result: Result) -> bool:
     return "speed" in result.dataset.dims
 
 
-def _has_ends_of_spans(result: Result) -> bool:
+def _of_line(result: Result) -> bool:
     """Whether a sheet is one of a line, whose tensions vary along spans."""
-    return "tension_at_start" in result.dataset
+    return not _over_speed(result)
+
+
+def _require_curves(result: Result) -> None:
+    """Refuse the sheet of a line."""
+    if not _over_speed(result):
+        raise ModelError(
+            "the sheet of a web line, a conveyor or a guided belt has operating points, and no curves over speed. "
+            'Draw "line_tensions".'
+        )
 
 
 _HIGHEST_SAFETY = 10.0
@@ -236,12 +245,18 @@ def sheet_slip_safety(result: Result, ax: Axes | None = None) -> Axes:
     Axes
         The axes.
 
+    Raises
+    ------
+    ModelError
+        If the sheet is one of a line.
+
     Examples
     --------
     >>> found = bd.sheet(bd.example("alternator_drive"), points=4)
     >>> bd.plot.sheet_slip_safety(found).get_ylabel()
     'Slip safety'
     """
+    _require_curves(result)
     dataset, ax = result.dataset, axes_or_new(ax)
     speed = RPM * dataset["speed"].values
     nominal, least = (dataset[f"{name}_over_speed"].values for name in ("slip_safety", "least_slip_safety"))
@@ -278,12 +293,18 @@ def sheet_tensions(result: Result, ax: Axes | None = None) -> Axes:
     Axes
         The axes.
 
+    Raises
+    ------
+    ModelError
+        If the sheet is one of a line.
+
     Examples
     --------
     >>> found = bd.sheet(bd.example("alternator_drive"), points=4)
     >>> bd.plot.sheet_tensions(found).get_ylabel()
     'Span tension [N]'
     """
+    _require_curves(result)
     dataset, ax = result.dataset, axes_or_new(ax)
     speed, cases = RPM * dataset["speed"].values, dataset["tension_of_case_over_speed"].values
     mean, swing = dataset["span_tension_over_speed"].values, dataset["tension_amplitude_over_speed"].values
@@ -298,11 +319,11 @@ def sheet_tensions(result: Result, ax: Axes | None = None) -> Axes:
     return ax
 
 
-@figure(_has_ends_of_spans, of=("sheet",))
+@figure(_of_line, of=("sheet",))
 def line_tensions(result: Result, ax: Axes | None = None) -> Axes:
     """Draw the tension along a web line or a conveyor, in running direction, at each operating point.
 
-    Names of spans stand below their middles.
+    Lines across stand for pulleys, whose names are above them.
 
     Parameters
     ----------
@@ -316,16 +337,23 @@ def line_tensions(result: Result, ax: Axes | None = None) -> Axes:
     Axes
         The axes.
 
+    Raises
+    ------
+    ModelError
+        If the drive is another one.
+
     Examples
     --------
-    >>> found = bd.sheet(bd.example("package_conveyor"))
-    >>> bd.plot.line_tensions(found).get_ylabel()
-    'Tension [N]'
+    >>> bd.plot.line_tensions(bd.sheet(bd.example("alternator_drive"), points=2))
+    Traceback (most recent call last):
+    ...
+    beltdyn.errors.ModelError: the drive is no web line, conveyor or guided belt. Draw "sheet_tensions".
     """
+    if not _of_line(result):
+        raise ModelError('the drive is no web line, conveyor or guided belt. Draw "sheet_tensions".')
     dataset, ax = result.dataset, axes_or_new(ax)
-    spans, count = list(map(str, dataset["span"].values)), dataset.sizes["span"]
-    order = np.roll(np.arange(count), 1) if result.drive.ends else np.arange(count)
-    order = order[:: int(dataset["running_sense"])]
+    order = result.drive.path.order[:: int(dataset["running_sense"])]
+    order = order[dataset["span_length"].values[order] > 0.0]  # those of nips have no length
     lengths = dataset["span_length"].values[order]
     ends = np.concatenate([[0.0], np.cumsum(lengths)])
     place = np.stack([ends[:-1], ends[1:]], axis=1).ravel()
@@ -335,8 +363,10 @@ def line_tensions(result: Result, ax: Axes | None = None) -> Axes:
         ax.plot(place, np.stack(sides, axis=1).ravel(), color=color(number), linestyle=dash(number), label=str(row))
     for end in ends:
         ax.axvline(end, color=INK, linewidth=0.5, alpha=0.3)
-    ax.set_xticks(0.5 * (ends[:-1] + ends[1:]), [spans[one] for one in order], rotation=30, ha="right")
-    ax.set(ylabel="Tension [N]", ylim=(0.0, None))
+    names = [pair[:: int(dataset["running_sense"])] for pair in (result.drive.spans[one] for one in order)]
+    above = ax.secondary_xaxis("top")
+    above.set_xticks(ends, [names[0][0], *(pair[1] for pair in names)], rotation=30, ha="left")
+    ax.set(xlabel="Length along the line [m]", ylabel="Tension [N]", ylim=(0.0, None))
     if dataset.sizes["row"] > 1:
         name_lines(ax)
     return ax

@@ -78,13 +78,17 @@ class Picture { // of the drive, on a canvas with a button to play
     pen.stroke();
     pen.globalAlpha = 1;
   }
-  named(pen, { name, radius }, x, y, ink, page) { // over the belt, which would hide the names of small pulleys
+  named(pen, { name, radius, clear }, x, y, ink, page) { // over the belt, which would hide the names of small pulleys
     const r = this.scale * radius;
     pen.fillStyle = ink; pen.font = "600 12px system-ui, sans-serif"; pen.textAlign = "center"; pen.textBaseline = "middle";
     const wide = pen.measureText(name).width;
     pen.lineWidth = 4; pen.strokeStyle = page;
-    const below = wide > 1.7 * r ? r + 14 : 0;
-    pen.strokeText(name, x, y + below); pen.fillText(name, x, y + below);
+    const [right, up] = clear || [0, -1], outside = wide > 1.7 * r; // beyond the arc, where no span runs
+    const at = (place, room, most) => clamp(place, room + 2, most / this.ratio - room - 2);
+    const across = at(x + (outside ? right * (r + 9 + wide / 2) : 0), wide / 2, this.canvas.width);
+    const beside = Math.abs(across - x) > r + wide / 2; // or above or below, where the picture ends
+    const to = [across, at(y - (outside ? (beside ? up : Math.sign(up) || 1) * (r + 12) : 0), 6, this.canvas.height)];
+    pen.strokeText(name, ...to); pen.fillText(name, ...to);
   }
 }
 

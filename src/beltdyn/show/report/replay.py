@@ -7,6 +7,7 @@ import numpy as np
 import xarray as xr
 
 from beltdyn.arrays import ComplexArray, FloatArray
+from beltdyn.model import Drive
 from beltdyn.results import Result, Run
 from beltdyn.results.mechanics import centerline, element_lengths, recorded_kind
 from beltdyn.show.plot.drive_picture import extent_of
@@ -55,8 +56,16 @@ def motion(run: Run, runs: int = 1) -> dict[str, Any]:
         "travel": _travel(run, chosen).round(6).tolist(),
         "pace": float(np.nan_to_num(run.dataset["belt_speed"].values[-1, 0])),
         "length": run.drive.belt_length,
-        "pulleys": [{"name": pulley.name, "radius": pulley.radius} for pulley in run.drive.pulleys],
+        "pulleys": _pulleys(run.drive),
     }
+
+
+def _pulleys(drive: Drive) -> list[dict[str, object]]:
+    """Name and radius of each pulley, and the way in which its name has room."""
+    return [
+        {"name": pulley.name, "radius": pulley.radius, "clear": drive.path.clear_way(number)}
+        for number, pulley in enumerate(drive.pulleys)
+    ]
 
 
 def along_belt(run: Run, instant: xr.Dataset) -> tuple[FloatArray, FloatArray, FloatArray]:
@@ -127,7 +136,7 @@ def swinging(result: Result) -> dict[str, Any]:
         "size": size,
         "place": result.dataset["point_position"].values.round(6).tolist(),
         "center": drive.path.centers.tolist(),
-        "pulleys": [{"name": pulley.name, "radius": pulley.radius} for pulley in drive.pulleys],
+        "pulleys": _pulleys(drive),
         "arms": [[*anchor, pulley] for anchor, pulley in anchors if anchor is not None],
         "modes": [
             {
