@@ -16,6 +16,7 @@ from beltdyn.contact.contact_zone import (
     fill_bernstein,
     fill_bernstein_rates,
     fill_shape_functions,
+    lifted_intervals,
     touching_intervals,
     zone_record,
 )
@@ -43,6 +44,7 @@ from beltdyn.contact.teeth import (
     tangent_with,
     tooth_at,
     tooth_of,
+    tooth_reach,
     tooth_traction,
     turn_with,
 )
@@ -152,17 +154,20 @@ def contact_force(
         Moment, hub force, energy and losses.
     """
     _clear(work)
-    intervals = work.zone.intervals
+    intervals, lifted, above = work.zone.intervals, work.zone.lifted, 0
+    lowest = -tooth_reach(pulley.surface)
     if law.follow_zone:
         count = touching_intervals(curve.control, pulley, work.zone)
+        above = lifted_intervals(pulley.surface, curve.control, pulley, count, work.zone)
     else:
         count, intervals[0, 0], intervals[0, 1] = 1, 0.0, 1.0
     totals = ContactTotals(0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
     wanted = factors.by_position != 0.0 or factors.by_velocity != 0.0
     flowing = wanted and (factors.by_slope != 0.0 or factors.by_flow != 0.0)
     totals = _add_single(pulley.surface, totals, curve, pulley, factors, work)
-    for interval in range(count):
-        start, stop = intervals[interval, 0], intervals[interval, 1]
+    for interval in range(count + above):
+        row = intervals[interval] if interval < count else lifted[interval - count]
+        start, stop = row[0], row[1]
         moving = wanted and (start > 0.0 or stop < 1.0)
         work.force_by_end[:] = 0.0
         work.moment_by_end[:] = 0.0
@@ -173,10 +178,11 @@ def contact_force(
             x, y = combine(curve.control, work.weights)
             vx, vy = combine(curve.velocity, work.weights)
             here = approach(x, y, vx, vy, pulley)
-            if here.penetration < 0.0:
+            if here.penetration < lowest:
                 continue
             tooth = tooth_at(pulley.surface, here, pulley.speed, curve.start + xi * curve.length)
-            force = force_with(tooth, point_force(here, pulley, law, factors.secant), here)
+            pressed = point_force(here, pulley, law, factors.secant) if here.penetration >= 0.0 else NO_FORCE
+            force = force_with(tooth, pressed, here)
             fill_shape_functions(curve.basis, work.weights, work.functions)
             _add_pairs(work.force, work.functions, weight * force.x, weight * force.y)
             totals = _add_point(totals, weight, here, force, power_taken(tooth), pulley)

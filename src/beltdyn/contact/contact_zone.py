@@ -15,6 +15,7 @@ keep weights.  Where these are fields of a record the compiler knows their lengt
 own.
 """
 
+from collections.abc import Callable
 from math import comb
 from typing import Any, NamedTuple
 
@@ -137,6 +138,7 @@ def zone_record(count: int) -> np.dtype[np.void]:
     return record(
         pieces=f"({_HALVINGS + 1},{2 * count})f8",
         intervals=f"({most},2)f8",
+        lifted=f"({2 * most},2)f8",
         weights=f"({count},)f8",
         rates=f"({count},)f8",
     )
@@ -198,10 +200,16 @@ def touching_intervals(control: FloatArray, pulley: PulleyState, zone: np.record
     return _intervals(pulley.surface, control, pulley.center_x, pulley.center_y, zone)
 
 
-@kernel
+@kernel(inline=True)
 def _on_circle(surface: Any, control: FloatArray, center_x: float, center_y: float, zone: np.record) -> int:
     """Exact intervals on a smooth circle."""
-    circle, pieces, intervals = Circle(center_x, center_y, surface.radius), zone.pieces, zone.intervals
+    return _inside(control, Circle(center_x, center_y, surface.radius), zone.intervals, zone)
+
+
+@kernel
+def _inside(control: FloatArray, circle: Circle, intervals: FloatArray, zone: np.record) -> int:
+    """Fill in the intervals inside a circle; returns their number."""
+    pieces = zone.pieces
     end = pieces.shape[1] - 1
     _fill_overlap(control, circle, pieces)
     inside = pieces[0, 0] >= 0.0
@@ -328,3 +336,45 @@ def _depth(surface: Any, control: FloatArray, center_x: float, center_y: float, 
 _intervals = by_type(
     {Round: _on_circle, Shaped: _on_shape, Toothed: _on_circle, Polygon: _on_shape}, "touching_intervals"
 )
+"""Touching intervals by the kind of the surface; see `touching_intervals`."""
+
+
+@kernel(inline=True)
+def _none_lifted(surface: Any, control: FloatArray, pulley: PulleyState, touching: int, zone: np.record) -> int:
+    return 0
+
+
+@kernel
+def _lifted(surface: Toothed, control: FloatArray, pulley: PulleyState, touching: int, zone: np.record) -> int:
+    """What the circle through the tops of teeth encloses beside the touching intervals, the first of `intervals`."""
+    touched, found = zone.intervals, zone.lifted
+    if surface.spacing > 0.0 or surface.height == 0.0 or surface.stiffness == 0.0:
+        return 0
+    if touching == 1 and touched[0, 0] == 0.0 and touched[0, 1] == 1.0:
+        return 0
+    circle = Circle(pulley.center_x, pulley.center_y, surface.radius + surface.height)
+    most = touched.shape[0]
+    reached = _inside(control, circle, found[most:], zone)
+    count = 0
+    for k in range(reached):
+        start, end = found[most + k, 0], found[most + k, 1]
+        for i in range(touching):
+            if start <= touched[i, 0] <= end:
+                if touched[i, 0] > start:
+                    found[count, 0], found[count, 1] = start, touched[i, 0]
+                    count += 1
+                start = touched[i, 1]
+        if end > start:
+            found[count, 0], found[count, 1] = start, end
+            count += 1
+    return count
+
+
+lifted_intervals: Callable[[Any, FloatArray, PulleyState, int, np.record], int] = by_type(
+    {Round: _none_lifted, Shaped: _none_lifted, Toothed: _lifted, Polygon: _none_lifted}, "lifted_intervals"
+)
+"""Find the intervals on which spread teeth are in their grooves, though the belt has lifted off the rim.
+
+From surface, control points, pulley, and number of touching intervals in `zone`, of which the first rows of `lifted` are
+overwritten; returns their number.
+"""

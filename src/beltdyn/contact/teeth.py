@@ -16,7 +16,7 @@ play to both sides, and a tooth of height h has the stiffness k (1 - (z / h)^2)^
 groove smoothly.  Where crests meet, midway between two grooves, q goes through zero over a part of the pitch.  The
 force has a potential: a belt that loads push off rides on the crests, and comes down in other grooves.
 
-Spread teeth act at every point that touches.  Single teeth act at their middles alone, a pitch apart, each with the
+Spread teeth act at every point that has not lifted by the height.  Single teeth act at their middles alone, a pitch apart, each with the
 force of a pitch of spread ones.
 """
 
@@ -170,6 +170,22 @@ tooth_at: Callable[[Any, Approach, float, float], Any] = by_type(
     {Round: _no_tooth, Shaped: _no_tooth, Toothed: _tooth, Polygon: _tooth}, "tooth_at"
 )
 """Spread teeth at a point: of a surface, how the point stands, speed of the pulley (rad/s), material coordinate (m)."""
+
+
+@kernel(inline=True)
+def _no_reach(surface: Any) -> float:
+    return 0.0
+
+
+@kernel(inline=True)
+def _reach(surface: Toothed) -> float:
+    return surface.height if surface.spacing == 0.0 and surface.stiffness > 0.0 else 0.0
+
+
+tooth_reach: Callable[[Any], float] = by_type(
+    {Round: _no_reach, Shaped: _no_reach, Toothed: _reach, Polygon: _no_reach}, "tooth_reach"
+)
+"""Lift off the rim up to which a point of spread teeth is held, m."""
 
 
 @kernel(inline=True)

@@ -92,7 +92,7 @@ class JumpWatch:
         """Mean misfit of the teeth in grooves, or of the nearest ones, in pitches, -1/2 to 1/2; shape (k,)."""
         system, row = self._system, self._table[pulley]
         away = places[:, :, 0] ** 2 + places[:, :, 1] ** 2
-        reach = system.rims.radius[pulley] + (row.height if row.spacing > 0.0 else 0.0)
+        reach = system.rims.radius[pulley] + row.height
         nearest = np.min(away, axis=1, keepdims=True)
         state, point = np.nonzero(away <= np.maximum(reach**2, _BESIDE**2 * nearest))
         angle = row.phase + position[:, system.first_body + pulley] - row.rate * passed_lengths(system.frame, position)

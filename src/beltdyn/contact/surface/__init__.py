@@ -143,13 +143,13 @@ def _shaped_reach(surface: Shaped) -> float:
 
 @kernel
 def _toothed_reach(surface: Toothed) -> float:
-    return surface.radius + (surface.height if surface.spacing > 0.0 else 0.0)
+    return surface.radius + (surface.height if surface.stiffness > 0.0 else 0.0)
 
 
 outer_radius: Callable[[Any], float] = by_type(
     {Round: _circle_reach, Shaped: _shaped_reach, Toothed: _toothed_reach, Polygon: polygon_reach}, "outer_radius"
 )
-"""Radius of the circle around a surface, about the shaft, m; teeth that act alone reach out of it."""
+"""Radius of the circle around a surface, about the shaft, m; teeth reach out of it."""
 
 
 gap_of_kind = choice("gap_of_kind", KINDS.functions("gap"), ["x", "y", "radius"])
