@@ -139,8 +139,24 @@ def test_reversal_takes_up_the_backlash() -> None:
     assert reversal(backlash) - reversal(0.0) == pytest.approx(2.0 * backlash, rel=0.02)
 
 
-@pytest.fixture(scope="module")
-def jumped() -> Run:
+def reversing(play: float) -> float:
+    """Way of the driven pulley, the driver held, as its torque goes from 3 N m to -3 N m in a run, m."""
+    torque = {"kind": "table", "times": [0.0, 0.02, 0.06, 0.07, 1.0], "values": [0.0, 3.0, 3.0, -3.0, -3.0]}
+    given = drive(0.0, speed=0.0, pitch_error=AGREED, backlash=play)
+    loaded = [given.pulleys[0], given.pulleys[1].merged({"torque": torque})]
+    run = bd.simulate(given.replace(pulley=loaded, simulation=given.simulation.replace(duration=0.12)))
+    error = derived.transmission_error(run).sel(pulley="driven")
+    before, after = (float(error.sel(time=window).mean()) for window in (slice(0.04, 0.06), slice(0.1, None)))
+    return before - after
+
+
+def test_a_torque_that_reverses_in_a_run_loses_the_backlash_of_both_pulleys() -> None:
+    backlash = 2e-4
+    assert reversing(backlash) - reversing(0.0) == pytest.approx(2.0 * backlash, rel=0.02)
+
+
+@pytest.fixture(scope="module", params=["discrete", "spread"])
+def jumped(request: pytest.FixtureRequest) -> Run:
     """Pulleys of 24 teeth with steep flanks, and a torque of forty times the load for a few milliseconds."""
     load = {
         "kind": "table",
@@ -148,6 +164,7 @@ def jumped() -> Run:
         "values": [-1.0, -1.0, -40.0, -40.0, -1, -1],
     }
     given = drive(-1.0, tension=100.0, speed=50.0, tooth_stiffness=2e5, flank_angle=0.6, tooth_height=2e-3)
+    given = given.with_({"belt.toothing.law": request.param})
     driver, driven = given.pulleys
     return bd.simulate(
         given.replace(
@@ -255,9 +272,9 @@ def test_teeth_at_rest_share_a_pitch_error_as_a_chain_of_springs() -> None:
     assert np.abs(limit).max() < 1e-6
 
 
-def static_error(error: float) -> FloatArray:
+def static_error(error: float, flank: float = 0.4) -> FloatArray:
     """Static transmission error without load over the first sixth of a pitch, m."""
-    prepared = unbent(error, 4, 1e-5, 1e10, tooth_height=1e-3, flank_angle=0.4)
+    prepared = unbent(error, 4, 1e-5, 1e10, tooth_height=1e-3, flank_angle=flank)
     system = drive_system(prepared)
     state = laid(system, prepared.path)
     fit_phases(system, state)
@@ -274,3 +291,10 @@ def test_pitches_that_agree_under_tension_have_no_transmission_error() -> None:
     assert near > 1e-7
     assert far > 2.0 * near  # teeth with flanks have play as they enter: more than linear
     assert agreed < 0.01 * near  # of tensions 0.2 % above that at which pitches agree
+
+
+def test_a_transmission_error_is_in_proportion_to_a_pitch_error_without_play() -> None:
+    """Steep flanks and no backlash: no tooth leaves a flank, entering or not."""
+    errors = np.array([-1e-3, -5e-4, 2.5e-4, 5e-4, 1e-3, 2e-3])
+    found = np.array([static_error(AGREED + off, flank=0.0) for off in errors])
+    print(found)

@@ -375,6 +375,6 @@ lifted_intervals: Callable[[Any, FloatArray, PulleyState, int, np.record], int] 
 )
 """Find the intervals on which spread teeth are in their grooves, though the belt has lifted off the rim.
 
-From surface, control points, pulley, and number of touching intervals in `zone`, of which the first rows of `lifted` are
-overwritten; returns their number.
+From surface, control points, pulley, and the number of touching intervals in `zone`, of which the first rows of
+`lifted` are overwritten; returns their number.
 """

@@ -16,8 +16,8 @@ play to both sides, and a tooth of height h has the stiffness k (1 - (z / h)^2)^
 groove smoothly.  Where crests meet, midway between two grooves, q goes through zero over a part of the pitch.  The
 force has a potential: a belt that loads push off rides on the crests, and comes down in other grooves.
 
-Spread teeth act at every point that has not lifted by the height.  Single teeth act at their middles alone, a pitch apart, each with the
-force of a pitch of spread ones.
+Spread teeth act at every point that has not lifted by the height.  Single teeth act at their middles alone, a pitch
+apart, each with the force of a pitch of spread ones.
 """
 
 from collections.abc import Callable

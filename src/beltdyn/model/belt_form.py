@@ -13,11 +13,12 @@ from typing import Any
 
 from pydantic import Field
 
+from beltdyn.errors import ModelError
 from beltdyn.model.catalogue import Entry, find_entry, read_catalogue
 from beltdyn.model.stretch_curve import with_initial_slope
-from beltdyn.model.toothing import FEWEST_TEETH, MOST_TEETH, Toothing
+from beltdyn.model.toothing import FEWEST_TEETH, LARGEST_PITCH_ERROR, MOST_TEETH, Toothing
 from beltdyn.parts.part import Part
-from beltdyn.parts.quantity import AxialStiffness, BendingStiffness, Count, Length, MassPerLength
+from beltdyn.parts.quantity import AxialStiffness, BendingStiffness, Count, Length, MassPerLength, number_in
 from beltdyn.stretch import LAWS
 
 _POISSONS_RATIO = 0.3
@@ -168,11 +169,25 @@ def _by_material(data: Mapping[str, Any], base: Path | None) -> Mapping[str, Any
             values["stretch_law"] = "measured"
         if "toothing" in section and isinstance(values.get("toothing"), Mapping):
             values["toothing"] = section["toothing"].arguments | values["toothing"]
+            _has_pitch_of(sold.profile, section["toothing"].pitch, values["toothing"]["pitch"])
         values = section | values
     if "stretch_curve" in data:
         values |= {key: with_initial_slope(data, base)[key] for key in ("stretch_curve", "axial_stiffness")}
     given_section = {key: values.pop(key) for key in Stiffnesses.model_fields if key in values}
     return {"poissons_ratio": _POISSONS_RATIO} | values | _material(Stiffnesses.model_validate(given_section))
+
+
+def _has_pitch_of(profile: str, pitch: float, given: Any) -> None:
+    """Refuse another pitch than that of the profile (m), whose sizes and ratings would not be those of the teeth."""
+    try:
+        own = number_in("toothing.pitch", given, "m")
+    except (ModelError, TypeError):
+        return  # told with the other values of the teeth
+    if abs(own / pitch - 1.0) > LARGEST_PITCH_ERROR:
+        raise ValueError(
+            f'toothing.pitch = {1e3 * own:.5g} mm, but profile "{profile}" has a pitch of {1e3 * pitch:.5g} mm. Omit '
+            "it, or choose a profile of that pitch"
+        )
 
 
 def in_new_form(arguments: Mapping[str, Any], changes: Mapping[str, Any], own: Mapping[str, float]) -> dict[str, Any]:

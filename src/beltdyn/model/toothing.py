@@ -79,6 +79,15 @@ class Toothing(Part):
             )
         return self
 
+    @model_validator(mode="after")
+    def _has_less_play_than_grooves(self) -> Self:
+        if self.backlash >= 0.5 * self.pitch:
+            raise ValueError(
+                f"backlash = {1e3 * self.backlash:.5g} mm must be below half of the pitch of {1e3 * self.pitch:.5g} "
+                "mm: grooves that wide hold no tooth. Reduce it"
+            )
+        return self
+
     @property
     def reach(self) -> float:
         """Lift of the belt off the rim at which a tooth is out of its groove, m."""

@@ -68,6 +68,8 @@ def test_a_smooth_pulley_on_the_inside_touches_the_tops_of_teeth() -> None:
         ({"length": 0.85}, "length = 850 mm is 106.25 pitches of 8 mm, but teeth = 100"),
         ({"crossed": True}, "crossed = true is incompatible with teeth"),
         ({"nominal_length": 0.8}, "teeth and nominal_length exclude each other"),
+        ({"toothing": {"pitch": "5 mm"}}, 'toothing.pitch = 5 mm, but profile "HTD 8M" has a pitch of 8 mm'),
+        ({"toothing": {"backlash": "4 mm"}}, "backlash = 4 mm must be below half of the pitch of 8 mm"),
         ({"wedge_angle": 0.7}, "wedge_angle is incompatible with teeth"),
         ({"profile": "flat-aramid"}, "teeth = 100 needs the pitch and stiffness of the teeth. Give a toothed profile"),
     ],
