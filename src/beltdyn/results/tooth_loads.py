@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 
 from beltdyn.analyses import RUN
-from beltdyn.arrays import FloatArray, IntArray
+from beltdyn.arrays import BoolArray, FloatArray, IntArray
 from beltdyn.errors import ModelError
 from beltdyn.model import Prepared
 from beltdyn.results.mechanics import cells
@@ -49,7 +49,7 @@ class ToothLoads:
     """Least ratio of what presses a tooth on to what its flanks push it off; at 1 a tooth lifts. Infinite without a
     flank angle."""
     places: FloatArray
-    """Middles of teeth along the arc, pitches from the inlet, shape (n,); single teeth may hold a little outside."""
+    """Middles of teeth along the arc, pitches from the inlet, shape (n,); lifted teeth hold a little outside."""
     loads: FloatArray
     """Forces on these teeth along the belt, N, shape (n,); positive where they push it on."""
 
@@ -96,6 +96,7 @@ def loads_at(recorded: Recorded, prepared: Prepared, number: int) -> tuple[Tooth
     touched, traction, pressing = (
         np.asarray(recorded[name][number]) for name in ("contact_pulley", "friction_force", "normal_force")
     )
+    held = _held_by(recorded, prepared, number)
     along, length, pitch = np.asarray(recorded["belt_coordinate"]), prepared.belt_length, prepared.belt.given_pitch
     cell = cells(along, length)
     sense = -1.0 if np.nansum(np.asarray(recorded["belt_speed"])[-1]) < 0.0 else 1.0
@@ -103,18 +104,21 @@ def loads_at(recorded: Recorded, prepared: Prepared, number: int) -> tuple[Tooth
     most = np.nan if toothing.largest_tooth_load is None else toothing.largest_tooth_load
     found = list[ToothLoads]()
     for p, pulley in enumerate(prepared.pulleys):
-        here = np.flatnonzero(touched == p)
+        here = np.flatnonzero((touched == p) | (held == p))
         if not pulley.teeth or not here.size:
             continue
         place = np.mod(along[here] - _inlet(along, here, length), length)
         order = np.argsort(place)
         here, place = here[order], place[order]
-        arc = _Arc(place, cell[here], pressing[here], traction[here])
+        seated = touched[here] == p
+        place -= place[seated][0] if seated.any() else 0.0
+        whole = _Arc(place, cell[here], pressing[here], traction[here])
+        arc = whole.only(seated)
         if "tooth_force" in recorded:
             ahead = np.mod(np.asarray(recorded["tooth_coordinate"]) - along[here[0]] + pitch, length) - pitch
             one = _single(arc, ahead, np.asarray(recorded["tooth_force"][number]), pitch, flank)
         else:
-            one = _spread(arc, pitch, flank)
+            one = _spread(whole, arc, pitch, flank)
         found.append(
             ToothLoads(
                 name=pulley.name,
@@ -141,6 +145,10 @@ class _Arc(NamedTuple):
     traction: FloatArray
     """Force along the belt, N/m."""
 
+    def only(self, points: BoolArray) -> "_Arc":
+        """Some of the points."""
+        return _Arc(*(values[points] for values in self))
+
     @property
     def length(self) -> float:
         """Length of belt, m."""
@@ -149,6 +157,8 @@ class _Arc(NamedTuple):
     @property
     def extent(self) -> float:
         """The same with what lies free between lands, m."""
+        if not self.place.size:
+            return 0.0
         return float(self.place[-1] + 0.5 * (self.share[0] + self.share[-1]))
 
 
@@ -164,14 +174,32 @@ class _Found(NamedTuple):
     """N."""
 
 
-def _spread(arc: _Arc, pitch: float, flank: float) -> _Found:
-    """Loads of teeth in the middles of equal parts of an arc on which they are spread."""
-    count = max(1, round(arc.length / pitch))
-    middles = (np.arange(count) + 0.5) * arc.length / count
-    pressed, pushed = (_means(arc.place, arc.share, values, count) for values in (arc.pressing, arc.traction))
-    largest = pitch * float(np.max(np.abs(arc.traction)))
-    margin = _margin(pressed, np.abs(pushed) * flank)
-    return _Found(largest, margin, middles, np.interp(middles, arc.place, pitch * arc.traction))
+def _spread(whole: _Arc, arc: _Arc, pitch: float, flank: float) -> _Found:
+    """Loads of spread teeth in the middles of equal parts of the belt that they hold, of which an arc touches."""
+    count, begin = max(1, round(whole.length / pitch)), float(whole.place[0] - 0.5 * whole.share[0])
+    middles = begin + (np.arange(count) + 0.5) * whole.length / count
+    largest = pitch * float(np.max(np.abs(whole.traction)))
+    loads = whole.length / count * _means(whole.place - begin, whole.share, whole.traction, count)
+    if not arc.place.size:
+        return _Found(largest, 1.0 if flank > 0.0 else np.inf, middles, loads)
+    seated = max(1, round(arc.length / pitch))
+    pressed, pushed = (_means(arc.place, arc.share, values, seated) for values in (arc.pressing, arc.traction))
+    return _Found(largest, _margin(pressed, np.abs(pushed) * flank), middles, loads)
+
+
+def _held_by(recorded: Recorded, prepared: Prepared, number: int) -> IntArray:
+    """Numbers of the pulleys whose teeth hold points of the belt that do not touch; -1 of all others."""
+    touched, traction = (np.asarray(recorded[name][number]) for name in ("contact_pulley", "friction_force"))
+    lifted, toothed = (touched < 0) & (traction != 0.0), np.flatnonzero(prepared.toothed)
+    held = np.full(touched.size, -1)
+    if not lifted.any():
+        return held
+    instant = int(np.searchsorted(np.asarray(recorded["time"]), np.asarray(recorded["field_time"])[number]))
+    centers = np.asarray(recorded["pulley_center"][min(instant, len(recorded["time"]) - 1)])[toothed]
+    away = np.asarray(recorded["contact_position"][number])[lifted, None] - centers
+    nearest = toothed[np.argmin(np.hypot(away[..., 0], away[..., 1]) - np.asarray(prepared.radii)[toothed], axis=1)]
+    held[lifted] = nearest
+    return held
 
 
 def _single(arc: _Arc, ahead: FloatArray, force: FloatArray, pitch: float, flank: float) -> _Found:

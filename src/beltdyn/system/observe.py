@@ -16,7 +16,7 @@ from beltdyn.contact.contact_zone import (
 from beltdyn.contact.law import PulleyState
 from beltdyn.contact.penetration import approach, slip_velocity
 from beltdyn.contact.point_force import point_force
-from beltdyn.contact.teeth import tooth_at, tooth_push, tooth_traction
+from beltdyn.contact.teeth import tooth_at, tooth_push, tooth_reach, tooth_traction
 from beltdyn.elements.dispatch import strain_energy, tension
 from beltdyn.kernel import kernel
 from beltdyn.machines.tensioners.tensioner_rows import tensioner_center
@@ -199,6 +199,10 @@ def _touch_points(
             result.normal_force[k, row] = force.normal.force + tooth_push(tooth)
             result.friction_force[k, row] = force.friction + tooth_traction(tooth, here)
             result.slip_velocity[k, row] = slip_velocity(here, pulley)
+        elif here.penetration > -tooth_reach(pulley.surface):
+            along = samples.walk.along + system.contact.points[point] * samples.walk.length
+            tooth = tooth_at(pulley.surface, here, pulley.speed, along)
+            result.friction_force[k, row] += tooth_traction(tooth, here)
 
 
 @kernel(inline=True)

@@ -32,10 +32,11 @@ def test_tooth_loads_make_the_torques(run: Run) -> None:
     assert list(loads) == ["driver", "driven"]
     torque = run.dataset.pulley_torque.isel(time=-1).values
     for number, (one, sense) in enumerate(zip(loads.values(), (1.0, -1.0), strict=True)):
-        assert one.places.size == one.loads.size == round(one.in_mesh)
-        # sampled at the middles of teeth
+        seated = (one.places > 0.0) & (one.places < one.in_mesh)
+        assert abs(int(seated.sum()) - one.in_mesh) < 1.0  # others enter or leave
+        # sampled at contact points, across the ends of the arc too
         pull = abs(float(torque[number])) / run.prepared.radii[number]
-        assert sense * float(one.loads.sum()) == pytest.approx(pull, rel=0.03)
+        assert sense * float(one.loads.sum()) == pytest.approx(pull, rel=0.01)
         assert one.largest >= np.abs(one.loads).max()
 
 
@@ -52,7 +53,8 @@ def test_the_margin_falls_with_the_flank_angle(run: Run) -> None:
     steeper = bd.steady_state(run.drive.with_({"belt.toothing": toothing.replace(flank_angle=0.35)}))
     for one, other in zip(tooth_loads(run), tooth_loads(steeper), strict=True):
         ratio = np.tan(toothing.flank_angle) / np.tan(0.35)
-        assert other.jump_margin == pytest.approx(ratio * one.jump_margin, rel=1e-3)
+        # flanks give lifted teeth play, and teeth on the arc some of their load: the largest rises by 0.7 %
+        assert other.jump_margin == pytest.approx(ratio * one.jump_margin, rel=0.01)
         assert other.allowed == toothing.largest_tooth_load
 
 
@@ -92,7 +94,9 @@ def test_teeth_whose_lands_carry_nothing_lift(run: Run, monkeypatch: pytest.Monk
 def test_a_belt_that_flanks_push_off_does_not_run(run: Run) -> None:
     toothing = run.drive.belt.toothing
     assert toothing is not None
-    steep = run.drive.with_({"belt.toothing": toothing.replace(flank_angle=1.3)})
+    steep = run.drive.with_({"belt.toothing": toothing.replace(flank_angle=1.3), "pulley[driven].torque": -20.0})
+    assert tooth_loads(bd.steady_state(steep))[0].jump_margin == 1.0  # all teeth of the driver have lifted, and hold
+    steep = steep.with_({"pulley[driven].torque": -60.0})
     with pytest.raises(ConvergenceError, match="goes slack or jumps beyond that"):
         bd.steady_state(steep)
 
