@@ -175,11 +175,15 @@ class _Found(NamedTuple):
 
 
 def _spread(whole: _Arc, arc: _Arc, pitch: float, flank: float) -> _Found:
-    """Loads of spread teeth in the middles of equal parts of the belt that they hold, of which an arc touches."""
-    count, begin = max(1, round(whole.length / pitch)), float(whole.place[0] - 0.5 * whole.share[0])
-    middles = begin + (np.arange(count) + 0.5) * whole.length / count
+    """Loads of spread teeth, a pitch of the belt that they hold each, of which an arc touches."""
+    begin = float(whole.place[0] - 0.5 * whole.share[0])
+    ends = begin + np.cumsum(np.append(0.0, whole.share))
+    carried = np.cumsum(np.append(0.0, whole.share * whole.traction))
+    borders = begin + pitch * np.arange(max(1, round(whole.length / pitch)) + 1)
+    borders[-1] = max(borders[-1], ends[-1])
+    middles: FloatArray = np.asarray(borders[:-1] + 0.5 * pitch, dtype=float)
+    loads: FloatArray = np.diff(np.interp(borders, ends, carried))
     largest = pitch * float(np.max(np.abs(whole.traction)))
-    loads = whole.length / count * _means(whole.place - begin, whole.share, whole.traction, count)
     if not arc.place.size:
         return _Found(largest, 1.0 if flank > 0.0 else np.inf, middles, loads)
     seated = max(1, round(arc.length / pitch))
