@@ -17,7 +17,7 @@ def timing_drive(run: Run) -> Iterator[Number]:
     radii = [one.teeth * toothing.pitch / (2.0 * pi) if one.teeth else 0.0 for one in run.drive.pulleys]
     pump = 800.0 / (3000.0 * RPM) * (22.0 / 24.0) ** 2
     pull = 14.0 / radii[2] + pump / radii[3]
-    yield Number("speed of the camshaft, rpm", 1500.0, pulleys[2].speed / RPM, 1e-9)
+    yield Number("speed of the camshaft, rpm", 1500.0, pulleys[2].speed / RPM, 1.5e-6)  # 1e-9 of it
     yield Number("tension across the crankshaft, N", pull, spans[3] - spans[0], 0.02 * pull)
     torque = pull * radii[0]
     yield Number("torque of the crankshaft, N m", torque, pulleys[0].shaft_torque, 0.02 * torque)
