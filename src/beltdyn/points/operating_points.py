@@ -353,17 +353,20 @@ class OperatingPoints:
         }
 
     def _extremes(self) -> dict[str, tuple[Variable, ArrayLike]]:
-        """The worst value of each pulley over all points."""
+        """The worst value of each pulley over all points; a belt always slips over guides that stand still."""
         over = tuple(range(len(self.shape)))
+        arrays = {
+            name: np.where(self._drive.guides & (name == "pulley_slip"), np.nan, values)
+            for name, values in self.arrays.items()
+            if name in ("pulley_slip", "slip_safety", "hub_load")
+        }
         found = {
             "largest_slip": (Variable(PULLEY, "1", "Largest slip"), np.fmax.reduce, "pulley_slip"),
             "smallest_safety": (Variable(PULLEY, "1", "Least slip safety"), np.fmin.reduce, "slip_safety"),
             "largest_hub_load": (Variable(PULLEY, "N", "Largest hub load"), np.fmax.reduce, "hub_load"),
         }
         return {
-            name: (variable, worst(self.arrays[of], over))
-            for name, (variable, worst, of) in found.items()
-            if of in self.arrays
+            name: (variable, worst(arrays[of], over)) for name, (variable, worst, of) in found.items() if of in arrays
         }
 
     def _holds(self, variable: Variable) -> bool:

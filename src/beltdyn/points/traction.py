@@ -168,9 +168,9 @@ def _driven_by_speed(drive: Drive, force_tolerance: float | None) -> Drive:
 
 
 def _loaded(drive: Drive, driver: int) -> int:
-    """Number of the only pulley beside the driver that has a torque or loads."""
+    """Number of the only pulley beside the driver, and guides that stand still, that has a torque or loads."""
     taking = [number for number, one in enumerate(drive.pulleys) if number != driver and (one.load or one.torque)]
-    others = [number for number in range(len(drive.pulleys)) if number != driver]
+    others = [number for number, stands in enumerate(drive.guides) if number != driver and not stands]
     found = taking if taking or others[1:] else others
     if len(found) != 1:
         names = ", ".join(drive.pulleys[number].name for number in found or others)

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 
 from beltdyn.analyses import STUDY
-from beltdyn.arrays import FloatArray
+from beltdyn.arrays import BoolArray, FloatArray
 from beltdyn.parts.messages import aligned
 from beltdyn.parts.quantity import RPM, SHOWN_UNITS
 from beltdyn.results.provenance import Resolution, mesh_facts
@@ -164,7 +164,10 @@ def run_sheet(run: Run) -> Sheet:
     facts = Facts(
         (*_power(summary), *_tensioners(summary), *_rolls(run), *_run_up(run), *_mesh_used(run), *_solver(summary))
     )
-    return Sheet(run.drive.name or "", (_pulleys(f"Pulleys{over}", summary), spans, *_steady_running(run), facts))
+    return Sheet(
+        run.drive.name or "",
+        (_pulleys(f"Pulleys{over}", summary, run.drive.guides), spans, *_steady_running(run), facts),
+    )
 
 
 def _run_up(run: Run) -> list[tuple[str, str]]:
@@ -183,8 +186,8 @@ def _mesh_used(run: Run) -> list[tuple[str, str]]:
         return mesh_facts(recorded.attrs)
 
 
-def _pulleys(title: str, summary: Summary) -> Table:
-    """The table of pulleys; powers in kW where they are large."""
+def _pulleys(title: str, summary: Summary, guides: BoolArray) -> Table:
+    """The table of pulleys; powers in kW where they are large, no slip over guides that stand still."""
     pulleys = summary.pulleys
     unit, watts = ("kW", 1e3) if max(abs(one.power) for one in pulleys) >= _KILOWATTS else ("W", 1.0)
     headings = (
@@ -204,8 +207,8 @@ def _pulleys(title: str, summary: Summary) -> Table:
         aligned([one.speed for one in pulleys], 5),
         aligned([one.shaft_torque for one in pulleys]),
         aligned([one.power / watts for one in pulleys]),
-        (_share(one.slip) for one in pulleys),
-        (_share(one.elastic_creep) for one in pulleys),
+        (_share(math.nan if stands else one.slip) for one, stands in zip(pulleys, guides, strict=True)),
+        (_share(math.nan if stands else one.elastic_creep) for one, stands in zip(pulleys, guides, strict=True)),
         (f"{math.degrees(one.wrap_angle):.1f}°" for one in pulleys),
         (f"{math.degrees(one.sliding_arc):.1f}°" for one in pulleys),
         (_safety(one.slip_safety) for one in pulleys),
@@ -226,7 +229,7 @@ def _window(run: Run, summary: Summary) -> str:
 
 
 def _share(part: float) -> str:
-    """A share of the first rim's speed; a dash where that stands still."""
+    """A share of the first rim's speed; a dash where that, or a guide, stands still."""
     return "–" if math.isnan(part) else f"{part:z.3%}"
 
 

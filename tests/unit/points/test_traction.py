@@ -11,6 +11,8 @@ from beltdyn.errors import ModelError
 from beltdyn.model import Drive, load
 from beltdyn.points.traction import traction
 from beltdyn.results import open_result
+from beltdyn.show.sheet import Table, sheet
+from beltdyn.state.steady import steady_state
 from validation.published.cases import better, loaded_two_pulley
 
 
@@ -50,3 +52,15 @@ def test_which_pulley(loaded: Drive) -> None:
         traction(loaded, pulley="driver")
     with pytest.raises(ModelError, match="points = 2 must be 3 or more"):
         traction(loaded, points=2)
+
+
+@pytest.mark.slow
+def test_guides_that_stand_still_are_no_choice_and_have_no_slip() -> None:
+    """The belt slides over them by nature, which is no slip to be judged."""
+    drive = load(Path(__file__).parents[3] / "docs" / "tasks" / "handrail.toml")
+    found = traction(drive, slip="0.02, 0.04 %").dataset
+    assert found.attrs["pulley"] == "roller"
+    assert found.largest_slip.isnull().values.tolist() == [False, False, True, True]
+    rows = next(one for one in sheet(steady_state(drive)).parts if one.title.startswith("Pulleys"))
+    assert isinstance(rows, Table)
+    assert [row[5] for row in rows.rows[2:]] == ["–", "–"]
