@@ -152,8 +152,8 @@ def _spans(path: Path) -> list[dict[str, Any]]:
 
     Room is on the right of the belt, which goes around its pulleys counter-clockwise: off the drive.
     """
-    middles, along = path.span_points.mean(axis=1), np.diff(path.span_points, axis=1)[:, 0]
-    outward = np.column_stack([along[:, 1], -along[:, 0]]) / np.linalg.norm(along, axis=1, keepdims=True)
+    middles, along = path.span_points.mean(axis=1), path.span_directions
+    outward = np.column_stack([along[:, 1], -along[:, 0]])
     return [
         {
             "x": x,

@@ -14,7 +14,7 @@ from beltdyn.arrays import FloatArray
 from beltdyn.kernel import interpreted
 from beltdyn.machines import Idlers
 from beltdyn.machines.carrying.support import Support
-from beltdyn.model import Drive, Prepared
+from beltdyn.model import Drive, Prepared, prepare
 from beltdyn.model.carrying import stretch_of, upper_side
 from beltdyn.points.duty import Column, at_row, durations_of
 from beltdyn.results import Run, Variable
@@ -22,6 +22,7 @@ from beltdyn.results.derived import nips
 from beltdyn.results.mechanics import tensions_at_arcs
 from beltdyn.results.schema import COORDINATES
 from beltdyn.results.summary import Means, means_of
+from beltdyn.state.staying import bring_to_stand
 from beltdyn.state.steady import steady_state
 
 LARGEST_SAG = 0.01
@@ -96,7 +97,9 @@ def line_sheet(given: Drive, columns: list[Column] | None, factors: FloatArray) 
         for name, (variable, _) in found[0].items()
     }
     variables["duration"] = Variable((_ROW,), "s", "Duration"), durations
-    variables |= _geometry(first.prepared)
+    variables |= _geometry(first.prepared) | {
+        "tension_at_rest": (Variable((), "N", "Tension at rest"), np.array(bring_to_stand(prepare(given)).tension))
+    }
     meaning = "Running direction: 1 in the order of the pulleys, -1 against it"
     variables["running_sense"] = Variable((), "1", meaning), np.array(first.sense)
     warnings = list(dict.fromkeys(text for one in rows for text in one.run.warnings))
@@ -110,7 +113,6 @@ def _geometry(prepared: Prepared) -> Values:
     drive, path = prepared.drive, prepared.installation.path
     return {
         "belt_length": (Variable((), "m", "Belt length, unstretched"), prepared.belt_length),
-        "tension_at_rest": (Variable((), "N", "Tension at rest"), prepared.installation.tension),
         "pitch_diameter": (Variable((_PULLEY,), "m", "Diameter of the tension line"), 2.0 * np.abs(path.radii)),
         "friction_coefficient": (Variable((_PULLEY,), "1", "Friction with the wedge effect"), prepared.frictions),
         "span_length": (Variable((_SPAN,), "m", "Span length"), path.span_lengths),

@@ -34,6 +34,12 @@ def test_names_of_small_pulleys_have_room_beyond_the_belt(drive: Drive) -> None:
     assert [name for name, down in below.items() if down] == ["dancer", "coater", "oven 2", "pull"]
 
 
+def test_rollers_of_nips_have_spans_without_length() -> None:
+    """Their numbers reach the browser, which knows no NaN."""
+    line = load(Path(__file__).parents[3] / "docs" / "tasks" / "calender5.toml")
+    json.dumps(scene(draft(line.data, HERE), settled=False), allow_nan=False)
+
+
 def test_an_empty_drive_file_shows_an_empty_canvas() -> None:
     drawn = scene(draft({}, HERE))
     assert (drawn["pulleys"], drawn["belt"], drawn["valid"]) == ([], "", False)
