@@ -121,7 +121,8 @@ def aims_of(study: OptimizationStudy, drive: Drive, points: Sequence[OperatingPo
 def _words(goal: Goal) -> str:
     """A goal in words."""
     which = {("minimize", "worst"): "largest ", ("maximize", "worst"): "least "}.get((goal.sense, goal.over), "mean ")
-    return f"{goal.sense} {which}{goal.result}"
+    said = goal.result.startswith(which.strip())  # such as largest_tension
+    return f"{goal.sense} {'' if said else which}{goal.result}"
 
 
 def _limit(bound: Bound, unit: str, key: str) -> float:

@@ -1,17 +1,18 @@
 """Sensitivities against closed forms, against running states further away, and by what changes nothing."""
 
 from importlib.resources import files
+from pathlib import Path
 
 import numpy as np
 import pytest
 import xarray as xr
 
-from beltdyn.arrays import FloatArray
+from beltdyn.arrays import ComplexArray, FloatArray
 from beltdyn.designs.designs import SmallChanges
 from beltdyn.designs.found_state import Running
 from beltdyn.designs.sensitivity import chosen_numbers, numbers_of, sensitivity
 from beltdyn.errors import ModelError
-from beltdyn.model import Drive, loads, prepare
+from beltdyn.model import Drive, load, loads, prepare
 from beltdyn.parts.change import value_at
 from beltdyn.results import Result, summarize
 from beltdyn.state.staying import bring_to_stand
@@ -217,3 +218,19 @@ def test_a_conveyor_has_no_efficiency_and_its_resistances_change_as_friction_doe
     friction, factor = (found.effect.sel(number=f"support[2].{name}") for name in ("friction", "secondary_factor"))
     np.testing.assert_allclose(factor, friction, rtol=1e-3)
     assert float(friction.sel(result="largest_tension")) > 0.0
+
+
+@pytest.mark.slow
+def test_stability_of_a_controlled_drive_is_found_once(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Not for each number, whose changes are small: eigenvalues cost more than all the rest."""
+    found = list[object]()
+
+    def counted(motions: object) -> ComplexArray:
+        found.append(motions)
+        return np.zeros(0, complex)
+
+    monkeypatch.setattr("beltdyn.state.steady.growing", counted)
+    drive = load(Path(__file__).parents[3] / "docs" / "tasks" / "coater.toml")
+    derivatives = sensitivity(drive, of="span_tension[infeed-coater]", numbers="pulley[coater].speed.value").dataset
+    assert len(found) == 1
+    assert float(derivatives.effect[0, 0]) > 0.0  # a larger draw stretches the web more
