@@ -25,6 +25,8 @@ _MARGIN = 0.06
 """Room around the drive, over its longer side."""
 _LETTER, _GAP = 6.0, 5.0
 """Width of a letter of names, and their distance from a pulley, pixels."""
+_LEVEL = 0.7
+"""Cosine above which a name stands beside its pulley, and not above or below."""
 
 
 @dataclass(frozen=True)
@@ -72,7 +74,8 @@ def picture(drive: Drive) -> Picture:
         right, up = path.clear_way(number) or (0.0, -1.0)
         half = _LETTER * len(pulley.name) / 2.0
         outside = float(half > radius)
-        label = x + outside * right * (radius + _GAP + half), y - outside * up * (radius + 2.0 * _GAP)
+        away = radius + _GAP + half * (abs(right) > _LEVEL)
+        label = x + outside * right * away, y - outside * up * (radius + 2.0 * _GAP)
         return Circle(pulley.name, x, y, radius, pulley.prescribed, label)
 
     circles = tuple(circle(number, pulley) for number, pulley in enumerate(drive.pulleys))

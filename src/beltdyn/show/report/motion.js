@@ -85,7 +85,7 @@ class Picture { // of the drive, on a canvas with a button to play
     pen.lineWidth = 4; pen.strokeStyle = page;
     const [right, up] = clear || [0, -1], outside = wide > 1.7 * r; // beyond the arc, where no span runs
     const at = (place, room, most) => clamp(place, room + 2, most / this.ratio - room - 2);
-    const across = at(x + (outside ? right * (r + 9 + wide / 2) : 0), wide / 2, this.canvas.width);
+    const across = at(x + (outside ? right * (r + 9 + (Math.abs(right) > 0.7 ? wide / 2 : 0)) : 0), wide / 2, this.canvas.width);
     const beside = Math.abs(across - x) > r + wide / 2; // or above or below, where the picture ends
     const to = [across, at(y - (outside ? (beside ? up : Math.sign(up) || 1) * (r + 12) : 0), 6, this.canvas.height)];
     pen.strokeText(name, ...to); pen.fillText(name, ...to);
