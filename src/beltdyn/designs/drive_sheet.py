@@ -265,6 +265,11 @@ class _DriveSheet:
         radius, others = float(self._radii[self._driver]), torques_of(self._drive, self._driver)
         own = [abs(speed / radius) for speed, _ in self._rows]
         if given is None:
+            if max(own) == 0.0:
+                raise ModelError(
+                    "the sheet needs speeds of the driver, whose prescribed speed is zero at the instant given. "
+                    'Give them by speed, such as "100..3000 rpm".'
+                )
             low = min(own) if max(own) > 1.01 * min(own) else _LEAST_SPEED * max(own)
             found = np.linspace(low, max(own), points)
         else:

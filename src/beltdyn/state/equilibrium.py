@@ -31,7 +31,7 @@ def equilibrium(drive: Drive, *, force_tolerance: float | None = None, progress:
     force_tolerance
         Tolerance of contact forces, relative to the largest on each pulley, to which a mesh graded towards the ends of
         arcs is refined; by default simulation.force_tolerance. Without either the mesh has equal elements, as many as
-        the drive; of a belt with teeth, supports or goods the mesh is graded, to a tolerance of 0.01.
+        the drive; of a closed belt with teeth, supports or goods the mesh is graded, to a tolerance of 0.01.
     progress
         Called repeatedly with a `Progress`.
 
@@ -55,7 +55,7 @@ def equilibrium(drive: Drive, *, force_tolerance: float | None = None, progress:
     [27.0, 27.0]
     """
     tolerance = drive.simulation.force_tolerance if force_tolerance is None else force_tolerance
-    if tolerance is not None or drive.stays_at_rest:
+    if tolerance is not None or (drive.stays_at_rest and drive.carriage is None):
         return _refined(drive, _TOLERANCE if tolerance is None else tolerance, progress)
     prepared = prepare(on_equal_elements(drive))
     rest = rest_of(prepared, progress)

@@ -6,7 +6,7 @@ from typing import NamedTuple
 import numpy as np
 
 from beltdyn.arrays import FloatArray
-from beltdyn.errors import ConvergenceError
+from beltdyn.errors import ConvergenceError, ModelError
 from beltdyn.model import Drive, Prepared
 from beltdyn.model.resolution import Arc, Laid
 from beltdyn.observation.compilation import ahead, compile_observing
@@ -82,11 +82,19 @@ def laid_state(laid: Laid, system: System, tensioners: FloatArray) -> State:
     return state
 
 
+def require_passing(drive: Drive) -> None:
+    """Make sure that the belt may pass a mesh that stays: it is closed, or a web."""
+    if drive.ends and not drive.is_web:
+        modes = "; `beltdyn stroke` has stiffness and modes of the axis at rest" if drive.carriage else ""
+        raise ModelError(f"an open belt has no steady running. Simulate it with `beltdyn simulate`{modes}.")
+
+
 def bring_to_stand(prepared: Prepared, elements: int | None = None) -> Standing:
     """Find the equilibrium at rest, with the installed tension that was asked for if one was.
 
     The length for that tension is found on a mesh that is fine enough for it.
     """
+    require_passing(prepared.drive)
     (rest, tighter), wanted = begin(prepared, partial(_on_some_mesh, elements=elements)), prepared.installed_tension
     if wanted is None:
         return rest

@@ -24,7 +24,7 @@ from beltdyn.state.linearized import growing, in_motion
 from beltdyn.state.newton import SteadyWork
 from beltdyn.state.refinement import MeshRule, against_coarser, is_fine, refine, steady_from_rest
 from beltdyn.state.search import SteadySearch
-from beltdyn.state.staying import FINER, Standing, bring_to_stand, carried
+from beltdyn.state.staying import FINER, Standing, bring_to_stand, carried, require_passing
 from beltdyn.system.arc_mesh import MESH_SHIFTS, lengths_of, mesh_attributes, shifts_of
 from beltdyn.system.arrays import System
 from beltdyn.system.constant_drive import controllers, rigid_links
@@ -365,9 +365,7 @@ def _growth(search: SteadySearch) -> dict[str, FloatArray]:
 
 def require_steady(drive: Drive) -> None:
     """Make sure that a drive may run steadily."""
-    if drive.ends and not drive.is_web:
-        modes = "; `beltdyn stroke` has stiffness and modes of the axis at rest" if drive.carriage else ""
-        raise ModelError(f"an open belt has no steady running. Simulate it with `beltdyn simulate`{modes}.")
+    require_passing(drive)
     shaped = [pulley.name for pulley in drive.pulleys if pulley.surface and pulley.surface.kind != "circle"]
     if shaped:
         raise ModelError(

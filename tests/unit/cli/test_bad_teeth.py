@@ -1,6 +1,7 @@
 """Teeth that cannot mesh give one clear message each: the key, the value, the rule and the remedy."""
 
 from collections.abc import Callable
+from importlib.resources import files
 from pathlib import Path
 
 import pytest
@@ -74,3 +75,32 @@ def test_message(name: str, tmp_path: Path, refuse: Refuse) -> None:
         assert part in message
     assert message.startswith("error: ")
     assert len(message.splitlines()) == 1
+
+
+AXES = ("printer_axis", "gantry_axis")
+OF_STEADY_RUNNING = (
+    *(["steady-state"], ["sheet"], ["operating-map", "--speed", "100 rpm"], ["duty", "--table", "duty.csv"]),
+    *(["traction"], ["rating"], ["sensitivity"], ["modes"], ["campbell", "--speed", "100 rpm"]),
+    *(["response", "--speed", "100 rpm"], ["tensioner-sheet"], ["life"]),
+)
+
+
+@pytest.mark.parametrize("command", OF_STEADY_RUNNING, ids=lambda words: words[0])
+@pytest.mark.parametrize("name", AXES)
+def test_an_axis_is_refused_where_it_cannot_run_steadily(
+    name: str, command: list[str], refuse: Refuse, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Two pulleys and a carriage: one message each, from any command."""
+    monkeypatch.chdir(tmp_path)
+    Path("duty.csv").write_text("share [%], speed [rpm]\n50, 100\n50, 200\n", encoding="utf-8")
+    Path("axis.toml").write_text(files("beltdyn").joinpath("examples", f"{name}.toml").read_text("utf-8"), "utf-8")
+    said = refuse([command[0], "axis.toml", *command[1:]])
+    assert said.count("error: ") == 1
+
+
+def test_a_sheet_of_a_motor_that_stands_asks_for_speeds(
+    refuse: Refuse, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    Path("axis.toml").write_text(files("beltdyn").joinpath("examples", "servo_axis.toml").read_text("utf-8"), "utf-8")
+    assert 'Give them by speed, such as "100..3000 rpm"' in refuse(["sheet", "axis.toml"])

@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 import xarray as xr
 
+import beltdyn as bd
 from beltdyn.errors import ModelError
 from beltdyn.model import Drive, load
 from beltdyn.results import StaticResult, open_result, open_run, summarize
@@ -119,3 +120,9 @@ def test_the_tolerance_may_be_that_of_the_drive(drive: Drive) -> None:
 def test_a_tolerance_that_makes_no_sense(example: str, tolerance: float, message: str) -> None:
     with pytest.raises(ModelError, match=message):
         equilibrium(load(str(files("beltdyn") / "examples" / f"{example}.toml")), force_tolerance=tolerance)
+
+
+def test_an_axis_at_rest_is_that_in_which_its_runs_begin() -> None:
+    axis = bd.example("printer_axis")
+    begun = bd.simulate(axis.with_({"simulation.duration": 1e-3})).dataset.span_tension.values[0]
+    np.testing.assert_allclose(bd.equilibrium(axis).dataset.span_tension.values, begun, rtol=1e-9)
