@@ -9,6 +9,7 @@ import beltdyn as bd
 from beltdyn.errors import ModelError
 from beltdyn.model.nip import damping_ratios, foundations, on_slides, rim_ratios, side_stiffness
 from beltdyn.model.plausibility import judge_plausibility
+from beltdyn.points.quasi_steady import QuasiSteady
 from beltdyn.theory.nip import equivalent_radius, force, half_width, rolling_loss, series
 
 COVER = {"thickness": "10 mm", "youngs_modulus": "4 MPa", "poissons_ratio": 0.45}
@@ -205,4 +206,4 @@ def test_speeds_that_differ_by_more_than_creep_are_told() -> None:
 
 def test_lumped_models_know_no_nips() -> None:
     with pytest.raises(ModelError, match="knows no nip"):
-        bd.sheet(pressed())
+        QuasiSteady(bd.model.prepare(pressed()), bd.model.install(pressed()))

@@ -108,7 +108,6 @@ def test_powers_of_shafts_and_web_balance() -> None:
         ),
         (partial(bd.traction, pulley="idler"), "a traction curve needs a closed belt, and this is a web line"),
         (bd.tensioner_sheet, "a tensioner sheet needs a closed belt, and this is a web line"),
-        (bd.sheet, "a drive sheet needs a closed belt, and this is a web line"),
         (bd.life, "the fatigue life needs a closed belt, and this is a web line"),
         (bd.stroke, "a stroke needs a carriage"),
     ],
