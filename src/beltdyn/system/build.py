@@ -6,7 +6,7 @@ from typing import Any, Literal
 import numpy as np
 
 from beltdyn.arrays import FloatArray
-from beltdyn.contact.friction import ForceSlope
+from beltdyn.contact.friction import ForceSlope, as_common
 from beltdyn.contact.law import ContactLaw
 from beltdyn.contact.normal import NoPull
 from beltdyn.contact.surface import KINDS, SHAPES, RoundRims, ShapedRims
@@ -202,10 +202,10 @@ def contact_points(contact: Contact | None) -> Quadrature:
 def _contact_law(contact: Contact | None) -> ContactLaw:
     """Laws of contact; some that are never used where there is none."""
     if contact is None:
-        return ContactLaw(NoPull(1.0, 0.0), ForceSlope(1.0), True)
+        return ContactLaw(NoPull(1.0, 0.0), as_common(ForceSlope(1.0)), True)
     return ContactLaw(
         normal=contact.normal_parameters,
-        friction=contact.friction_parameters,
+        friction=as_common(contact.friction_parameters),
         follow_zone=contact.sampling == "distributed" and contact.integration == "zone",
         arm_to_rim=contact.moment_arm == "rim",
     )

@@ -9,6 +9,7 @@ from beltdyn.elements import ELEMENTS, Element, ElementKind, Section
 from beltdyn.errors import ModelError
 from beltdyn.model import Belt
 from beltdyn.quadrature import Quadrature, gauss_points, lobatto_points
+from beltdyn.stretch import as_common
 from beltdyn.system.arrays import System
 
 _REDUCED = 3
@@ -58,7 +59,7 @@ def discretize(belt: Belt, lengths: FloatArray | None = None) -> Discretization:
 def belt_section(belt: Belt) -> Section:
     """Stiffness, damping and inertia of a belt's section."""
     return Section(
-        stretch=belt.stretch_parameters,
+        stretch=as_common(belt.stretch_parameters),
         bending=belt.bending_stiffness,
         quartic=belt.youngs_modulus * belt.fourth_moment * belt.bending_factor,
         shear=belt.shear_stiffness,

@@ -1,11 +1,14 @@
 """Friction laws (Eq. 20, Fig. 3; Leamy and Wasfy 2002; relative creep): odd, capped, continuous, exact derivatives."""
 
+from typing import Any
+
 import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from beltdyn.contact.friction import AirFilm, FrictionParameters, RelativeCreep, friction_force
+from beltdyn.contact.friction import AirFilm, FrictionParameters, RelativeCreep, as_common, friction_force
+from beltdyn.contact.friction.common import CommonFriction
 
 MU = 0.5
 RIM = 0.8
@@ -120,3 +123,20 @@ def test_air_film_of_a_known_web() -> None:
 
 def test_air_film_carries_what_does_not_press() -> None:
     assert friction_force(FILM, 0.3, 0.0, MU, 5.0)[0] == 0.0
+
+
+@pytest.mark.parametrize("slip", [-3.0, -0.01, 0.0, 2e-3, 0.7])
+def test_a_law_under_the_common_type_is_itself(friction: FrictionParameters, slip: float) -> None:
+    common = as_common(friction)
+    assert isinstance(common, CommonFriction)
+    assert common.own == friction
+    assert common.smoothed(2.0).own == friction.smoothed(2.0)
+    for pressed in (0.0, 30.0, -5.0):
+        assert friction_force(common, slip, pressed, 0.6, 4.0) == friction_force(friction, slip, pressed, 0.6, 4.0)
+    pressures = np.array([10.0, 200.0])
+    np.testing.assert_array_equal(common.saturation(pressures, 0.6, 4.0), friction.saturation(pressures, 0.6, 4.0))
+
+
+def test_a_law_from_outside_keeps_its_type() -> None:
+    law: Any = object()
+    assert as_common(law) is law

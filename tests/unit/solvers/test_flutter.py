@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 
-from beltdyn.contact.friction import ForceSlope
+from beltdyn.contact.friction.common import CommonFriction
 from beltdyn.model import Drive, prepare
 from beltdyn.solvers import flutter
 from beltdyn.solvers.flutter import FlutterWatch, growth_rates, growth_within, longest_pieces
@@ -58,8 +58,8 @@ def watch(system: System, monkeypatch: pytest.MonkeyPatch) -> Callable[..., Flut
         pulley = np.full((count, points), -1)
         pulley[:, : points // 2] = 0
         normal = np.where(pulley == 0, 300.0, 0.0)
-        assert isinstance(system.law.friction, ForceSlope)
-        saturation = system.pulleys.friction[0] * normal / system.law.friction.creep_rate_factor
+        assert isinstance(system.law.friction, CommonFriction)
+        saturation = system.pulleys.friction[0] * normal / system.law.friction.force_slope.creep_rate_factor
         slip = -part * saturation
         slip[np.arange(points) >= np.asarray(pieces)[:, None]] *= 0.9
         seen = {"normal_force": normal, "slip_velocity": slip, "contact_pulley": pulley}

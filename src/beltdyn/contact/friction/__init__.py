@@ -1,6 +1,10 @@
 """Friction laws, one per file (Eqs. 20 and 22, Fig. 3); importing one here registers it."""
 
+from collections import ChainMap
+
 from beltdyn.contact.friction.air_film import AirFilm as AirFilm
+from beltdyn.contact.friction.common import CommonFriction, common_friction
+from beltdyn.contact.friction.common import as_common as as_common
 from beltdyn.contact.friction.creep_rate import CoefficientSlope as CoefficientSlope
 from beltdyn.contact.friction.creep_rate import ForceSlope as ForceSlope
 from beltdyn.contact.friction.creep_rate import RelativeCreep as RelativeCreep
@@ -10,7 +14,7 @@ from beltdyn.contact.friction.law import FrictionParameters as FrictionParameter
 from beltdyn.contact.friction.stribeck import Stribeck as Stribeck
 from beltdyn.kernel import by_type, kernel
 
-_pressed = by_type(LAWS.by_class("force"), "friction_force")
+_pressed = by_type(ChainMap(LAWS.by_class("force"), {CommonFriction: common_friction}), "friction_force")
 
 
 @kernel
