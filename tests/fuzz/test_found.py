@@ -127,7 +127,9 @@ def test_dots_in_texts_and_comments_are_no_keys() -> None:
         ("secret\nsecret\n" * LONG, "has no numbers"),
         ("0,1\n1,two\n", 'line 2, column 2: "two" is not a number'),
         ("0,1\n" + "x" * LONG, "is not two numbers"),
-        ("\n".join(f"{number},1" for number in range(1_000_000)), "has 1,000,000 lines; the limit is 250,000"),
+        pytest.param(
+            "\n".join(f"{number},1" for number in range(300_000)), "has 300,000 lines; the limit is 250,000", id="long"
+        ),
     ],
 )
 def test_tables_are_quoted_only_where_they_are_tables(tmp_path: Path, content: str, told: str) -> None:

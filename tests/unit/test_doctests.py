@@ -23,7 +23,7 @@ EXAMPLES = [
     for example in _FINDER.find(importlib.import_module(name), module=None)
     if example.examples and example.name.startswith(name)
 ]
-COSTLY = ("transmission_error", "stroke")
+COSTLY = ("transmission_error", "stroke", "carriage_error")
 """Examples of toothed belts, for which kernels are compiled."""
 
 

@@ -311,7 +311,7 @@ def test_python_of_the_pages_on_results_runs(new_drive: str, tmp_path: Path, mon
     "document",
     [
         "README.md",
-        "docs/tutorial.md",
+        pytest.param("docs/tutorial.md", marks=pytest.mark.slow),
         *(
             pytest.param(f"docs/examples/{file.name}", marks=pytest.mark.slow)
             for file in sorted((ROOT / "docs" / "examples").glob("*.md"))

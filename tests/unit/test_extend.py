@@ -178,6 +178,7 @@ def test_every_name_is_there() -> None:
     assert all(getattr(beltdyn.extend, name) is not None for name in beltdyn.extend.__all__)
 
 
+@pytest.mark.slow
 def test_the_examples_are_modules_of_a_script(tmp_path: Path) -> None:
     assert set(run(tmp_path, READ)) == {
         'stretch law "rubber" rubber',

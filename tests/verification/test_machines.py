@@ -62,6 +62,7 @@ def test_a_motor_runs_up_in_the_time_of_its_closed_form() -> None:
     assert found == pytest.approx(150.0 * (1 - slip), rel=1e-9)
 
 
+@pytest.mark.slow
 def test_a_one_way_clutch_takes_its_body_to_the_largest_speed_of_the_rim() -> None:
     """Without load nothing slows the body behind: it approaches m (1 + a), the crank's largest speed, from below."""
     clutch = {"kind": "one_way_clutch", "locking_damping": 0.5, "inertia": 0.01}

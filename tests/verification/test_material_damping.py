@@ -88,6 +88,7 @@ def test_modes_decay_with_half_omega_tau(kind: str, measured: Callable[..., None
     np.testing.assert_allclose(ratio, 0.5 * exact * TIME, rtol=1e-4)
 
 
+@pytest.mark.slow
 def test_energy_of_a_free_flight_is_lost_to_damping_alone(measured: Callable[..., None]) -> None:
     """Kinetic and strain energy and the loss together stay as they are, momentum and angular momentum too, to 1e-9."""
     belt = make_belt(16).replace(thickness="5 mm", stretch_damping_time="1 ms", bending_damping_time="2 ms")

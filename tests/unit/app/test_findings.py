@@ -77,6 +77,7 @@ def test_modes_are_drawn_with_what_moves(run: Run) -> None:
     assert pickle.loads(pickle.dumps(found)) == found
 
 
+@pytest.mark.slow
 def test_other_results_have_no_charts_of_their_own(drive_text: str) -> None:
     found = findings_of(bd.traction(bd.loads(drive_text), points=3))
     assert (found.figures, found.rows, found.shapes) == ((), (), ())

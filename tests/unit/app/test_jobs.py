@@ -4,6 +4,8 @@ import math
 import time
 from pathlib import Path
 
+import pytest
+
 from beltdyn.app.jobs import Job, Outcome, _Teller
 from beltdyn.results import open_result
 from beltdyn.solvers.run_progress import Progress
@@ -16,6 +18,7 @@ def ended(job: Job) -> Outcome:
     return job.outcome
 
 
+@pytest.mark.slow
 def test_a_duty_table_of_the_folder_is_read(drive_text: str, tmp_path: Path) -> None:
     table = tmp_path / "duty.csv"
     table.write_text("duration [s],driver speed [rad/s]\n10,6\n20,12\n", encoding="utf-8")
@@ -49,7 +52,7 @@ def test_what_fails_says_why(drive_text: str, tmp_path: Path) -> None:
 
 
 def test_a_run_that_is_cancelled_keeps_what_was_computed(drive_text: str, tmp_path: Path) -> None:
-    job = Job("simulate", drive_text.replace("duration = 1.0", "duration = 500.0"), tmp_path, tmp_path / "drive.nc", {})
+    job = Job("simulate", drive_text.replace("duration = 1.0", "duration = 50.0"), tmp_path, tmp_path / "drive.nc", {})
     while job.outcome is None and job.step.phase != "integrating":
         time.sleep(0.05)
         job.poll()

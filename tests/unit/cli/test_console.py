@@ -44,6 +44,7 @@ def test_signs_are_spelled(said: Callable[[str, list[str]], tuple[int, bytes]], 
     assert "ä° - x²".encode("latin-1") in said("latin-1", ["check", str(drive_file)])[1]
 
 
+@pytest.mark.slow
 @pytest.mark.skipif(sys.platform != "linux", reason="elsewhere names of files are text")
 def test_names_that_are_no_text(said: Callable[[str, list[str]], tuple[int, bytes]], run: Run, tmp_path: Path) -> None:
     """The bytes of the name come out as they are; reports and figures show a sign for them."""

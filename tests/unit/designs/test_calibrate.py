@@ -85,6 +85,7 @@ def test_an_interrupted_calibration_keeps_what_it_has_come_to(drive: Drive, slip
     assert loads((tmp_path / "out.toml").read_text(encoding="utf-8")) == kept.drive
 
 
+@pytest.mark.slow
 def test_noise_gives_intervals_of_its_size(drive: Drive, slips: FloatArray, tmp_path: Path) -> None:
     """Slip goes with 1/E: five measurements of a deviation tell E to that deviation over sqrt(5)."""
     noise = 1.0 + DEVIATION * np.random.default_rng(3).standard_normal(slips.size)
@@ -95,6 +96,7 @@ def test_noise_gives_intervals_of_its_size(drive: Drive, slips: FloatArray, tmp_
     assert float(found.lower[0]) < TRUE_MODULUS < float(found.upper[0])
 
 
+@pytest.mark.slow
 def test_stiffness_from_frequencies_at_rest(drive: Drive, tmp_path: Path) -> None:
     """Rows are other drives: of a belt of given length, tension and frequencies go with its stiffness."""
     true = drive.replace(belt=drive.belt.replace(installed_tension=None, length=1.2443))
@@ -113,6 +115,7 @@ def test_stiffness_from_frequencies_at_rest(drive: Drive, tmp_path: Path) -> Non
     assert found.row.values.tolist() == ["slip, row 1", "slip, row 2"]
 
 
+@pytest.mark.slow
 def test_what_measurements_do_not_tell(drive: Drive, slips: FloatArray, tmp_path: Path, monkeypatch: Any) -> None:
     """Young's modulus and the axial factor do the same to a belt without bending stiffness worth the name."""
     write(tmp_path, slips)

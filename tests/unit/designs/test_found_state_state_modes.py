@@ -39,7 +39,9 @@ def slopes(found: Callable[[float], FoundState], step: float) -> FloatArray:
     return np.array([up.value(name) - down.value(name) for name in NAMES]) / (2.0 * step)
 
 
-@pytest.mark.parametrize(("path", "step"), [(MODULUS, 1e-5), ("contact.friction", 1e-5)])
+@pytest.mark.parametrize(
+    ("path", "step"), [pytest.param(MODULUS, 1e-5, marks=pytest.mark.slow), ("contact.friction", 1e-5)]
+)
 def test_derivatives_against_modes_found_anew(drive: Drive, running: Running, path: str, step: float) -> None:
     """By Richardson's extrapolation from two steps, to 1e-5 of derivative or result.
 
@@ -67,6 +69,7 @@ def drive_value(drive: Drive, path: str) -> float:
     return float(known.get(path) or drive.pulleys[1].inertia or 0.0)
 
 
+@pytest.mark.slow
 def test_derivatives_at_rest_over_wide_steps(drive: Drive, resting: Resting) -> None:
     """Where no point comes into contact: Richardson's extrapolation from 0.2 and 0.1 %, to 1e-5 of derivatives."""
     modulus = drive_value(drive, MODULUS)

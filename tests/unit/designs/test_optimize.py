@@ -68,6 +68,7 @@ def test_start_and_best_stand_side_by_side(found: Result) -> None:
     assert int(dataset.designs) == dataset.sizes["design"]
 
 
+@pytest.mark.slow
 def test_the_mean_of_efficiencies_can_be_maximized(loaded: Drive) -> None:
     """Losses of friction fall with the tension down to where slip costs more: it is not above the start."""
     wanted = study(goal={"result": "efficiency", "sense": "maximize", "over": "mean"})

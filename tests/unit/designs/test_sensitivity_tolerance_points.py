@@ -29,6 +29,7 @@ def found(toleranced: Drive) -> Result:
     return sensitivity(toleranced, of="hub_load, least_slip_safety, largest_tension", numbers=numbers, sobol=COUNT)
 
 
+@pytest.mark.slow
 def test_both_spreads_agree(found: Result) -> None:
     """Randomized Sobol points of two numbers have a deviation within a few per cent of the true one."""
     values = found.dataset

@@ -71,6 +71,7 @@ def test_thousands_of_tiny_points_come_back_from_processes(tiny_work: Make) -> N
     require_each_once(compute(LocalProcesses(2), tiny_work(), widths), widths)
 
 
+@pytest.mark.slow
 def test_a_killed_process_loses_and_doubles_no_point(tiny_work: Make, tmp_path: Path) -> None:
     widths = [*np.linspace(0.0101, 0.0129, 10).tolist(), 0.013, *np.linspace(0.0131, 0.02, 10).tolist()]
     found = compute(LocalProcesses(2), tiny_work(kills=1), widths)

@@ -49,6 +49,7 @@ def twice(disc, count):
 """
 
 
+@pytest.mark.slow
 def test_of_processes_that_need_the_same_one_compiles_and_the_others_load(tmp_path: Path) -> None:
     """None that needs something else is lost, either."""
     (tmp_path / "areas.py").write_text(_AREAS, encoding="utf-8")

@@ -83,6 +83,7 @@ def test_the_drive_sheet_has_the_numbers_of_the_mirror_image(drives: tuple[Drive
     np.testing.assert_allclose(second["mode_frequency"], first["mode_frequency"], rtol=1e-6)
 
 
+@pytest.mark.slow
 def test_an_operating_map_and_a_run_up_go_clockwise(drives: tuple[Drive, Drive]) -> None:
     mapped = bd.operating_map(drives[1], speed="900 rpm").dataset
     assert mapped["pulley_speed"].sel(pulley="crank").item() == pytest.approx(900 * np.pi / 30)
@@ -180,6 +181,7 @@ def test_a_one_way_clutch_drives_in_the_running_sense() -> None:
     assert clutch.reversed().values(1)["sense"] == -clutch.values(1)["sense"]
 
 
+@pytest.mark.slow
 def test_a_run_equals_that_with_negative_numbers() -> None:
     given = bd.example("accessory_drive").with_({"simulation.duration": 1e-3, "simulation.output_interval": 5e-4})
     by_key = given.with_({"rotation": "clockwise"})

@@ -166,6 +166,7 @@ def test_other_processes_say_that_they_do_not_run_the_script(tmp_path: Path) -> 
     assert "Move it to a module beside the script and import that" in done.stdout
 
 
+@pytest.mark.slow
 def test_other_processes_import_the_module_that_registers_a_kind(tmp_path: Path) -> None:
     (tmp_path / "laws.py").write_text(SCRIPT, encoding="utf-8")
     program = """

@@ -22,6 +22,7 @@ def loaded() -> Drive:
     return drive.replace(contact=drive.contact.replace(friction=0.3))
 
 
+@pytest.mark.slow
 def test_from_nothing_past_gross_slip(loaded: Drive, tmp_path: Path) -> None:
     file = tmp_path / "traction.nc"
     found = traction(loaded, points=8, output=file).dataset
@@ -37,6 +38,7 @@ def test_from_nothing_past_gross_slip(loaded: Drive, tmp_path: Path) -> None:
     np.testing.assert_allclose(found.pulley_slip.sel(pulley="driven"), found.slip, atol=1e-9)
 
 
+@pytest.mark.slow
 def test_where_steps_of_the_slip_are_too_long_shorter_ones_are_taken() -> None:
     """The arc of the alternator slides on nine tenths, and that of the crank on seven: a step of 0.1 % is too long."""
     found = traction(

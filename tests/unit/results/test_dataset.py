@@ -55,6 +55,7 @@ def take_extras(file: h5py.File) -> None:
     take(file, *(file.keys() & set(EXTRA)))
 
 
+@pytest.mark.slow
 def test_the_kept_file_is_drawn(kept: Path, tmp_path: Path) -> None:
     """All but what the drive has not, tensioners, teeth, nips and carriage, and what needs more turns of the belt."""
     teeth = ("load_sharing", "transmission_error", "transmission_orders")

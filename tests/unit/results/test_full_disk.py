@@ -105,6 +105,7 @@ def test_disks_of_many_sizes(tmp_path: Path, layout: Layout) -> None:
             fill(disk / "result.nc", layout)
 
 
+@pytest.mark.slow
 def test_refusal_at_any_write(
     tmp_path: Path, layout: Layout, attributes: Any, make_chunk: Callable[..., Any], monkeypatch: pytest.MonkeyPatch
 ) -> None:

@@ -14,6 +14,7 @@ WRITER = Path(__file__).with_name("writer_process.py")
 PERIOD = 100
 
 
+@pytest.mark.slow
 def test_killed_writer_leaves_complete_outputs(tmp_path: Path) -> None:
     _write_kill_and_read(tmp_path / "result.nc", outputs=7)
 

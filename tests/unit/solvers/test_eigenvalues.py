@@ -122,6 +122,7 @@ def test_which_modes_are_given_is_a_rule(batch: int, count: int, monkeypatch: py
     np.testing.assert_allclose(found, expected[np.argsort(expected.imag)], rtol=1e-6)
 
 
+@pytest.mark.slow
 def test_a_search_that_begins_elsewhere_gives_the_same_modes() -> None:
     given = pencil(*oscillators(120)[0], none(120))
     lists = [swinging(given, 20, first, counted=lightly_damped)[0] for first in (3.0, 200.0)]

@@ -27,6 +27,7 @@ def drive(**driven: Any) -> Drive:
     return Drive(belt=belt, pulley=[first, second], simulation={"duration": 1.0, "output_interval": 1e-2})
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("driven", "asked"),
     [

@@ -20,7 +20,7 @@ ACCURACY = 1.1e-6
         pytest.param(1475, id="with the estimated take-up the belt leaves a pulley"),
         pytest.param(3701, id="only with a tighter belt all pulleys are touched"),
         pytest.param(2716, id="the tension rises with the length of the belt"),
-        pytest.param(3495, id="far from the first length"),
+        pytest.param(3495, id="far from the first length", marks=pytest.mark.slow),
         pytest.param(4633, id="from the laid belt a fine mesh loses a pulley"),
     ],
 )
@@ -35,7 +35,12 @@ def test_the_tension_is_found(seed: int) -> None:
     ("seed", "reason"),
     [
         pytest.param(2895, r'the belt leaves "pulley 2", which it must touch', id="a pulley of small wrap"),
-        pytest.param(3318, r"the tensioner force gives 5.82\d* N .* and more with other", id="the tension turns"),
+        pytest.param(
+            3318,
+            r"the tensioner force gives 5.82\d* N .* and more with other",
+            id="the tension turns",
+            marks=pytest.mark.slow,
+        ),
         pytest.param(2182, 'does not touch "pulley 7"', id="bending holds the belt off a pulley"),
         pytest.param(2899, "its spring gives .* that tension needs", id="a balance beyond the dead centre is none"),
     ],

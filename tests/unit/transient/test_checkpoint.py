@@ -58,7 +58,7 @@ def require_same(found: Run, whole: Run) -> None:
         assert found.dataset.attrs[name] == whole.dataset.attrs[name]
 
 
-@pytest.mark.parametrize("drive", ["alternator", "travelling"])
+@pytest.mark.parametrize("drive", [pytest.param("alternator", marks=pytest.mark.slow), "travelling"])
 def test_an_interrupted_run_goes_on_to_the_bit(drive: str, request: pytest.FixtureRequest, tmp_path: Path) -> None:
     """Twice, before and after the load comes."""
     given: Drive = request.getfixturevalue(drive)

@@ -91,7 +91,9 @@ def test_a_sweep_is_a_run_that_names_its_pulley(drive: Drive, start: float | str
     assert float(run.dataset.time[-1]) == pytest.approx(0.01)
 
 
-@pytest.mark.parametrize(("frame", "closure"), [("travelling", 1e-3), ("staying", 5e-3)])
+@pytest.mark.parametrize(
+    ("frame", "closure"), [("travelling", 1e-3), pytest.param("staying", 5e-3, marks=pytest.mark.slow)]
+)
 def test_a_sweep_begins_at_its_first_speed_where_the_settling_ended(drive: Drive, frame: str, closure: float) -> None:
     """Angles go on from the settling; the account of energy begins anew.
 

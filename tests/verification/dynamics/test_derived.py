@@ -34,6 +34,7 @@ def slipping(drive: Drive, change: Change, elements: int) -> Run:
     )
 
 
+@pytest.mark.slow
 def test_a_drive_that_slides_through_has_the_slip_safety_of_a_capstan(
     drive: Drive, change: Change, measured: Measured
 ) -> None:

@@ -63,6 +63,7 @@ def test_pulses_in_step_with_the_outputs(follow: Follow, measured: Measured, sha
     assert end.work[TORQUE_WORK] == pytest.approx(0.5 * INERTIA * end.speeds[0] ** 2, rel=1e-4)
 
 
+@pytest.mark.slow
 def test_a_measured_signal_of_100_000_points_is_quick(follow: Follow) -> None:
     """Noise that the tolerance need not follow costs no steps, and its impulse is exact."""
     times = np.linspace(0.0, 2.0, 100_001)

@@ -153,7 +153,7 @@ def converged(short: Drive, change: Change) -> xr.Dataset:
 @pytest.mark.parametrize(
     ("integrator", "rtols"),
     [
-        ("generalized_alpha", (1e-3, 1e-4, 1e-5)),
+        pytest.param("generalized_alpha", (1e-3, 1e-4, 1e-5), marks=pytest.mark.slow),
         ("cvode", (1e-3, 1e-4, 1e-5)),
         pytest.param("ida", (1e-3, 1e-4, 1e-5), marks=pytest.mark.slow),
         ("bdf", (1e-3, 1e-4)),

@@ -95,6 +95,7 @@ def test_pulse_of_a_command(follow: Follow, width: float) -> None:
     assert -end.work[TORQUE_WORK] == pytest.approx(0.5 * INERTIA * (100.0**2 - end.speeds[0] ** 2), rel=1e-3)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("width", [0.02, 0.2, 1.0])
 @pytest.mark.parametrize("start", [30.0, 2.0 * np.pi * 100.0, 2000.0])
 def test_narrow_pulses_over_the_angle(follow: Follow, measured: Measured, width: float, start: float) -> None:

@@ -296,13 +296,14 @@ def require_modes(drive: Drive, expected: FloatArray) -> FloatArray:
     return nearest
 
 
+@pytest.mark.slow
 def test_rims_rotor_and_slide_of_a_lumped_model() -> None:
     slide = {"kind": "sliding", "direction": [0.0, 1.0], "mass": SLIDE, "preload": 800.0, "rate": RATE}
     drive = belted(slide)
     require_modes(drive, lumped(drive.belt.axial_stiffness, UP)[0])
 
 
-@pytest.mark.parametrize("direction", [UP, ASKEW])
+@pytest.mark.parametrize("direction", [pytest.param(UP, marks=pytest.mark.slow), ASKEW])
 def test_rims_rotor_and_arm_of_a_lumped_model(direction: float, measured: Callable[..., None]) -> None:
     """An arm of the same mass and rate at its pulley; of two directions of the arm one is askew to the spans."""
     x, y = CENTERS["slide"]

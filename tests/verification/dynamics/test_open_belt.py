@@ -50,7 +50,14 @@ def braked(brake: Drive, *, mirrored: bool, pull: bool) -> Run:
     )
 
 
-@pytest.mark.parametrize(("mirrored", "pull"), [(False, False), (False, True), (True, True)])
+@pytest.mark.parametrize(
+    ("mirrored", "pull"),
+    [
+        pytest.param(False, False, marks=pytest.mark.slow),
+        pytest.param(False, True, marks=pytest.mark.slow),
+        (True, True),
+    ],
+)
 def test_tensions_of_a_band_brake(brake: Drive, measured: Callable[..., None], mirrored: bool, pull: bool) -> None:
     """T1 / T2 = exp(mu angle) at every instant of sliding, short of bending, E I / R^2 over the tension.
 

@@ -11,6 +11,7 @@ from collections.abc import Callable
 from typing import Any
 
 import numpy as np
+import pytest
 
 from beltdyn import simulate
 from beltdyn.arrays import FloatArray
@@ -77,6 +78,7 @@ def test_free_rotation(make: Make, measured: Measured) -> None:
     np.testing.assert_allclose(momentum[time > 0.021], 0.6, rtol=1e-6)
 
 
+@pytest.mark.slow
 def test_two_frequencies(
     make: Make, at_rest: Callable[..., Any], motions: Callable[..., Any], measured: Measured
 ) -> None:

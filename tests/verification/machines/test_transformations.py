@@ -154,6 +154,7 @@ def test_results_follow(
     assert found[worst] < ROUNDING, found
 
 
+@pytest.mark.slow
 def test_nodes_elsewhere(
     build: Callable[..., Drive], places: tuple[float, float], references: dict[float, xr.Dataset], measured: Measured
 ) -> None:

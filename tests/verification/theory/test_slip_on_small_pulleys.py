@@ -350,6 +350,7 @@ DRIVES: dict[str, dict[str, Any]] = {
 }
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     "name", ["small pulley", *(pytest.param(name, marks=pytest.mark.slow) for name in list(DRIVES)[1:])]
 )

@@ -48,9 +48,10 @@ class CommonFriction(NamedTuple):
 def as_common(law: FrictionParameters) -> FrictionParameters:
     """Parameters of a law of the package under the common type; others as they are."""
     laws: dict[str, Any] = CommonFriction._field_defaults
-    for number, (name, other) in enumerate(laws.items(), start=1):
-        if type(law) is type(other):
-            return CommonFriction(number)._replace(**{name: law})
+    for number, name in enumerate(laws, start=1):
+        if type(law) is type(laws[name]):
+            chosen: dict[str, Any] = {name: law}
+            return CommonFriction(number, **chosen)
     return law
 
 

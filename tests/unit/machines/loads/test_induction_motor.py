@@ -79,6 +79,7 @@ def test_up_to_the_rated_frequency_the_supply_shifts_the_curve(torque: Torque, f
     assert shifted == pytest.approx(torque(MOTOR, SYNCHRONOUS - lag).torque, rel=1e-9)
 
 
+@pytest.mark.slow
 def test_above_the_rated_frequency_the_breakdown_torque_falls_with_its_square(torque: Torque) -> None:
     curve = [torque(inverter(80.0), speed).torque for speed in np.linspace(0.0, 1.6 * SYNCHRONOUS, 5001)]
     assert max(curve) == pytest.approx(3.0 * RATED * (50.0 / 80.0) ** 2, rel=1e-5)

@@ -75,6 +75,7 @@ def test_the_scale_has_room_for_all_results(
     plt.close("all")
 
 
+@pytest.mark.slow
 def test_a_page_of_several_runs_has_their_names_above(pair: list[Run], tmp_path: Path) -> None:
     page = plot.FIGURES["powers"].arrange(pair, plot.figures.Choice())
     assert page.get_suptitle() == "one, other"

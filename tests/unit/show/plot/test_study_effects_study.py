@@ -95,6 +95,7 @@ def test_a_tornado_has_the_largest_bar_on_top(make: Make) -> None:
     plt.close("all")
 
 
+@pytest.mark.slow
 def test_sobol_indices_add_up_where_numbers_act_alone(make: Make) -> None:
     """The tension is the product of width and modulus, whose logarithms add up."""
     result = make(WIDTH, MODULUS, sampling="saltelli", points=32)

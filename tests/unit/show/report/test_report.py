@@ -233,6 +233,7 @@ def test_every_figure_is_there_for_paper_too(page: Page) -> None:
     assert all(str(one["src"]).startswith("data:image/") and one["alt"] for one in pictures)
 
 
+@pytest.mark.slow
 def test_several_runs_stand_side_by_side(limited: Run, run: Run, tmp_path: Path) -> None:
     other = Run(run.dataset, run.drive.replace(name="Other", belt=run.drive.belt.replace(width=0.02)))
     text = write_report([limited, other], tmp_path / "two.html").read_text(encoding="utf-8")
