@@ -3,8 +3,9 @@
 from collections import ChainMap
 
 from beltdyn.kernel import by_type
-from beltdyn.stretch.common import CommonStretch, common_stretch
+from beltdyn.stretch.common import CommonStretch as CommonStretch
 from beltdyn.stretch.common import as_common as as_common
+from beltdyn.stretch.common import common_stretch
 from beltdyn.stretch.law import LAWS as LAWS
 from beltdyn.stretch.law import Stretching as Stretching
 from beltdyn.stretch.law import StretchLaw as StretchLaw

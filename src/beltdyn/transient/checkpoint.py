@@ -20,6 +20,7 @@ from typing import Any, Literal
 import numpy as np
 
 from beltdyn.contact.friction import LAWS as FRICTION_LAWS
+from beltdyn.contact.friction import CommonFriction
 from beltdyn.contact.law import ContactLaw
 from beltdyn.contact.normal import LAWS as NORMAL_LAWS
 from beltdyn.contact.surface import PolygonRims, RoundRims, ShapedRims, ToothedRims
@@ -45,6 +46,7 @@ from beltdyn.solvers.generalized_alpha import AlphaIntegration, GeneralizedAlpha
 from beltdyn.solvers.integrator_state import IntegratorState, Settings, Trial
 from beltdyn.solvers.trajectory import Chunk, Statistics, Task
 from beltdyn.stretch import LAWS as STRETCH_LAWS
+from beltdyn.stretch import CommonStretch
 from beltdyn.system.arrays import Bare, BodyForces, Carrying, NoCarriage, Supports, System
 from beltdyn.system.frame import ArcMesh, Flowing, FlowingByArcs, Staying, StayingByArcs, Travelling
 from beltdyn.system.guide import Guided
@@ -396,4 +398,6 @@ def packing() -> Packing:
     """With the classes of all laws and elements that are registered."""
     laws = (law.record for laws in (FRICTION_LAWS, NORMAL_LAWS, STRETCH_LAWS) for law in laws.values())
     elements = (kind.element for kind in ELEMENTS.values())
-    return Packing((Checkpoint, *laws, *elements, *STATE, *_SYSTEM, *_INTEGRATION, *_RECORDING))
+    return Packing(
+        (Checkpoint, *laws, CommonFriction, CommonStretch, *elements, *STATE, *_SYSTEM, *_INTEGRATION, *_RECORDING)
+    )

@@ -3,8 +3,9 @@
 from collections import ChainMap
 
 from beltdyn.contact.friction.air_film import AirFilm as AirFilm
-from beltdyn.contact.friction.common import CommonFriction, common_friction
+from beltdyn.contact.friction.common import CommonFriction as CommonFriction
 from beltdyn.contact.friction.common import as_common as as_common
+from beltdyn.contact.friction.common import common_friction
 from beltdyn.contact.friction.creep_rate import CoefficientSlope as CoefficientSlope
 from beltdyn.contact.friction.creep_rate import ForceSlope as ForceSlope
 from beltdyn.contact.friction.creep_rate import RelativeCreep as RelativeCreep

@@ -47,10 +47,9 @@ class CommonFriction(NamedTuple):
 
 def as_common(law: FrictionParameters) -> FrictionParameters:
     """Parameters of a law of the package under the common type; others as they are."""
-    laws: dict[str, Any] = CommonFriction._field_defaults
-    for number, name in enumerate(laws, start=1):
-        if type(law) is type(laws[name]):
-            chosen: dict[str, Any] = {name: law}
+    for number, other in enumerate(CommonFriction(0)):
+        if type(law) is type(other):
+            chosen: dict[str, Any] = {CommonFriction._fields[number]: law}
             return CommonFriction(number, **chosen)
     return law
 
