@@ -396,7 +396,7 @@ def _made_by() -> str:
 
 def packing() -> Packing:
     """With the classes of all laws and elements that are registered."""
-    laws = (law.record for laws in (FRICTION_LAWS, NORMAL_LAWS, STRETCH_LAWS) for law in laws.values())
+    kinds = (law.record for laws in (FRICTION_LAWS, NORMAL_LAWS, STRETCH_LAWS) for law in laws.values())
     elements = (kind.element for kind in ELEMENTS.values())
     return Packing(
         (Checkpoint, *laws, CommonFriction, CommonStretch, *elements, *STATE, *_SYSTEM, *_INTEGRATION, *_RECORDING)
