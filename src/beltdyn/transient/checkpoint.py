@@ -396,8 +396,7 @@ def _made_by() -> str:
 
 def packing() -> Packing:
     """With the classes of all laws and elements that are registered."""
-    kinds = (law.record for laws in (FRICTION_LAWS, NORMAL_LAWS, STRETCH_LAWS) for law in laws.values())
+    laws = (law.record for laws in (FRICTION_LAWS, NORMAL_LAWS, STRETCH_LAWS) for law in laws.values())
     elements = (kind.element for kind in ELEMENTS.values())
-    return Packing(
-        (Checkpoint, *laws, CommonFriction, CommonStretch, *elements, *STATE, *_SYSTEM, *_INTEGRATION, *_RECORDING)
-    )
+    common = (CommonFriction, CommonStretch)
+    return Packing((Checkpoint, *laws, *common, *elements, *STATE, *_SYSTEM, *_INTEGRATION, *_RECORDING))
