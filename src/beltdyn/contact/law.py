@@ -13,7 +13,7 @@ class ContactLaw(NamedTuple):
     normal: NormalParameters
     """Parameters of the law of the normal force; their type identifies the law."""
     friction: FrictionParameters
-    """Parameters of the friction law; their type identifies the law."""
+    """Parameters of the friction law, `CommonFriction` of one of the package; another type identifies its law."""
     follow_zone: bool
     """Integrate over the contact zone of an element only; False is the published rule, over the whole element."""
     arm_to_rim: bool = False

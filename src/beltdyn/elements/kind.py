@@ -20,7 +20,7 @@ class Section(NamedTuple):
     """The factors of Eqs. 14 and 15 after integration over the section, and the section's inertia and damping."""
 
     stretch: StretchParameters
-    """Parameters of the law of stretch, E A alpha1 among them; their type says which law it is."""
+    """Parameters of the law of stretch, E A alpha1 among them: `CommonStretch`, or a type of its own."""
     bending: float
     """E I alpha2, N m^2."""
     quartic: float
