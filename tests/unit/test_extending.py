@@ -27,6 +27,7 @@ COSTLY = {
     "analysis",
     "integrator",
     "result_variable",
+    "figure",
 }
 """Checks of examples that compile kernels of their own, half a minute each; those of the others are the same."""
 

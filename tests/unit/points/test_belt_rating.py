@@ -136,6 +136,7 @@ service_factor = 1.5
 """
 
 
+@pytest.mark.slow
 def test_a_toothed_belt_is_rated_by_its_teeth_in_mesh_and_its_cords() -> None:
     """By the cords, 896 N of 16 mm: twelve teeth of 58 N at rest would carry less on the motor at 1500 rpm."""
     dataset = rating(loads(TOOTHED)).dataset

@@ -122,6 +122,7 @@ def test_a_tolerance_that_makes_no_sense(example: str, tolerance: float, message
         equilibrium(load(str(files("beltdyn") / "examples" / f"{example}.toml")), force_tolerance=tolerance)
 
 
+@pytest.mark.slow
 def test_an_axis_at_rest_is_that_in_which_its_runs_begin() -> None:
     axis = bd.example("printer_axis")
     begun = bd.simulate(axis.with_({"simulation.duration": 1e-3})).dataset.span_tension.values[0]
