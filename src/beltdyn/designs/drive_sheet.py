@@ -5,6 +5,7 @@ All states are those of the balance of tensions about the equilibrium at rest, w
 """
 
 from collections.abc import Iterator, Mapping
+from inspect import signature
 from pathlib import Path
 from typing import Any, NamedTuple
 
@@ -165,23 +166,12 @@ def sheet(
     return result
 
 
-_OF_BELTS = {
-    "speed": None,
-    "acceleration": "0 rpm/s",
-    "light_load": 0.1,
-    "tolerance": "0.5 %",
-    "wear": "1 %",
-    "full": False,
-}
-"""Options of sheets of closed belts alone, with their defaults."""
-
-
 def _sheet_of_line(
     drive: Drive, table: Path | str | None, friction: Numbers, at: float | str | None, options: Mapping[str, object]
 ) -> Result:
     """The sheet of a web line, or of a belt that carries or slides over guides."""
     for name, value in options.items():
-        if value != _OF_BELTS[name]:
+        if value != signature(sheet).parameters[name].default:
             raise ModelError(
                 f"{name} = {value} is an option for belts between pulleys alone. A sheet of a web line, a conveyor or "
                 "a guided belt has operating points: give them as groups [[duty]], or as a CSV file with table."

@@ -6,6 +6,7 @@ resistances of the strands of a conveyor are those of DIN 22101, by hand, beside
 
 from collections.abc import Iterator
 from dataclasses import replace
+from functools import cached_property
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -17,6 +18,7 @@ from beltdyn.machines.carrying.support import Support
 from beltdyn.model import Drive, Prepared, prepare
 from beltdyn.model.carrying import stretch_of, upper_side
 from beltdyn.points.duty import Column, at_row, durations_of
+from beltdyn.records import row
 from beltdyn.results import Run, Variable
 from beltdyn.results.derived import nips
 from beltdyn.results.mechanics import tensions_at_arcs
@@ -68,7 +70,7 @@ def line_sheet(given: Drive, columns: list[Column] | None, factors: FloatArray) 
         On friction, ascending.
     """
     durations = durations_of(columns) if columns else np.ones(1)
-    drives = [at_row(given, columns, row) for row in range(durations.size)] if columns else [given]
+    drives = [at_row(given, columns, number) for number in range(durations.size)] if columns else [given]
     names = [one.name or f"{number}" for number, one in enumerate(given.duty, 1)]
     rows, run = list[_Row](), None
     for one in drives:
@@ -103,8 +105,8 @@ def line_sheet(given: Drive, columns: list[Column] | None, factors: FloatArray) 
     meaning = "Running direction: 1 in the order of the pulleys, -1 against it"
     variables["running_sense"] = Variable((), "1", meaning), np.array(first.sense)
     warnings = list(dict.fromkeys(text for one in rows for text in one.run.warnings))
-    for name, row in zip(coordinates[_ROW][1], rows, strict=True):
-        warnings += _row_warnings(name, row, factors)
+    for name, point in zip(coordinates[_ROW][1], rows, strict=True):
+        warnings += _row_warnings(name, point, factors)
     return LineSheet(variables, coordinates, warnings)
 
 
@@ -180,8 +182,9 @@ class _Row:
         yield "tension_before", (Variable((_PULLEY,), "N", "Tension where the belt reaches the pulley"), reached)
         yield "tension_after", (Variable((_PULLEY,), "N", "Tension where the belt leaves the pulley"), left)
         meaning = "Least tension on the slack side without gross slip (Euler)"
-        yield "least_slack_tension", (Variable((_PULLEY, "friction"), "N", meaning), self.least_slack_tension())
+        yield "least_slack_tension", (Variable((_PULLEY, "friction"), "N", meaning), self.least_slack_tension)
 
+    @cached_property
     def least_slack_tension(self) -> FloatArray:
         """Slack tension that Euler's formula needs for the pull of each pulley, shape (pulleys, factors), N."""
         prepared, speed = self.prepared, self.at["belt_speed"].values
@@ -195,7 +198,7 @@ class _Row:
     def _of_spans(self) -> Iterator[tuple[str, tuple[Variable, Any]]]:
         """Tensions at the ends of spans in running direction, stretch and, of what carries, resistances."""
         speed, law = np.abs(self.at["belt_speed"].values), self.prepared.belt.stretch_parameters
-        first, last = self.span_ends()
+        first, last = self.span_ends
         mean = self.at["span_tension"].values
         yield "span_tension", (Variable((_SPAN,), "N", "Span tension"), mean)
         yield "tension_at_start", (Variable((_SPAN,), "N", "Tension at the start of the span"), first)
@@ -211,8 +214,8 @@ class _Row:
         for name, values in self.resistances().items():
             yield name, (Variable((_SPAN,), "N", RESISTANCES[name]), values)
         yield "span_pull", (Variable((_SPAN,), "N", "Rise of the tension along the span"), last - first)
-        yield "goods_mass", (Variable((_SPAN,), "kg/m", "Mass of goods"), self.goods_mass())
-        needed, sag = self.sag(np.minimum(first, last))
+        yield "goods_mass", (Variable((_SPAN,), "kg/m", "Mass of goods"), self.goods_mass)
+        needed, sag = self.sag
         meaning = f"Least tension for a sag of {LARGEST_SAG:.0%} between idlers"
         yield "least_tension_for_sag", (Variable((_SPAN,), "N", meaning), needed)
         yield "sag", (Variable((_SPAN,), "1", "Largest sag between idlers, over their spacing"), sag)
@@ -222,6 +225,7 @@ class _Row:
         """The span where a web enters; of a closed belt that behind the driver."""
         return len(self.drive.spans) - 1 if self.drive.ends else self.drive.reference
 
+    @cached_property
     def span_ends(self) -> tuple[FloatArray, FloatArray]:
         """Tensions at start and end of each span in running direction, shape (spans,), N."""
         starts, ends = self.at["span_tension"].values.copy(), self.at["span_tension"].values.copy()
@@ -238,6 +242,7 @@ class _Row:
         forces = [one.preload - one.rate * place for one, place in zip(ones, places, strict=True)]
         yield "tensioner_force", (Variable((_TENSIONER,), "N or N m", "Force of the tensioner"), forces)
 
+    @cached_property
     def goods_mass(self) -> FloatArray:
         """Mass of goods on each span, kg/m."""
         spans = self.drive.spans
@@ -271,19 +276,19 @@ class _Row:
                 weight += one.mass_per_length * max(0.0, min(end, place.end) - max(start, place.start))
         normal, speed = weight * down / length, float(np.abs(self.at["belt_speed"].values).mean())
         values = support.values(float(np.linalg.norm(self.drive.gravity)))
-        row = np.zeros(1, dtype=support.constants)
-        for name, value in values.items():
-            row[name] = value
-        force = length * interpreted(type(support).resistance_at)(row.view(np.recarray)[0], normal, speed).force
+        constants = row(support.constants, **values)
+        force = length * interpreted(type(support).resistance_at)(constants, normal, speed).force
         if not isinstance(support, Idlers):
             return force, 0.0
         further = length * (support.resistance + support.linear * speed)
         main = (force - further) / support.secondary_factor
         return main + further, force - further - main
 
-    def sag(self, least: FloatArray) -> tuple[FloatArray, FloatArray]:
+    @cached_property
+    def sag(self) -> tuple[FloatArray, FloatArray]:
         """Least tension of each span for the largest sag between idlers, and the sag that is found."""
-        drive, path, goods = self.drive, self.prepared.installation.path, self.goods_mass()
+        drive, path, goods = self.drive, self.prepared.installation.path, self.goods_mass
+        least = np.minimum(*self.span_ends)
         needed = np.full(len(drive.spans), np.nan)
         for support in drive.supports:
             place = stretch_of(support, drive.spans, path)
@@ -294,22 +299,21 @@ class _Row:
         return needed, LARGEST_SAG * needed / least
 
 
-def _row_warnings(name: str, row: _Row, factors: FloatArray) -> Iterator[str]:
+def _row_warnings(name: str, point: _Row, factors: FloatArray) -> Iterator[str]:
     """What a designer has to look after at an operating point."""
-    slack = np.minimum(row.before, row.after)
-    needed = row.least_slack_tension()[:, 0]
-    for number in np.flatnonzero((slack < needed) & ~row.drive.guides):
+    slack = np.minimum(point.before, point.after)
+    needed = point.least_slack_tension[:, 0]
+    for number in np.flatnonzero((slack < needed) & ~point.drive.guides):
         yield (
-            f"{row.drive.pulleys[number].name} slips at operating point {name} with {factors[0]:.3g} times the "
+            f"{point.drive.pulleys[number].name} slips at operating point {name} with {factors[0]:.3g} times the "
             f"friction: its slack tension is {slack[number]:.4g} N, Euler's formula needs {needed[number]:.4g} N. "
             "Raise the tension or the wrap angle, or share the pull with another drive."
         )
-    if row.drive.carries:
-        first, last = row.span_ends()
-        needed, sag = row.sag(np.minimum(first, last))
+    if point.drive.carries:
+        needed, sag = point.sag
         for number in np.flatnonzero(sag > LARGEST_SAG):
             yield (
                 f"the belt sags by {sag[number]:.2%} of the idler spacing in the span "
-                f"{'-'.join(row.drive.spans[number])} at operating point {name}: {LARGEST_SAG:.0%} needs "
+                f"{'-'.join(point.drive.spans[number])} at operating point {name}: {LARGEST_SAG:.0%} needs "
                 f"{needed[number]:.4g} N. Raise the tension, or place idlers closer."
             )

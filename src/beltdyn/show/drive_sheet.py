@@ -9,8 +9,8 @@ from beltdyn.arrays import FloatArray
 from beltdyn.parts.messages import aligned
 from beltdyn.parts.quantity import RPM
 from beltdyn.results import Result
-from beltdyn.show.line_sheet import line_sheet, safeties
-from beltdyn.show.sheet import Facts, Sheet, Table
+from beltdyn.show.line_sheet import line_sheet
+from beltdyn.show.sheet import Facts, Sheet, Table, safeties
 
 if TYPE_CHECKING:
     import xarray as xr

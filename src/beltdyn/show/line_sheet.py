@@ -5,20 +5,17 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from beltdyn.arrays import BoolArray, FloatArray
+from beltdyn.arrays import BoolArray
 from beltdyn.designs.line_sheet import LARGEST_SAG, RESISTANCES
 from beltdyn.parts.messages import aligned
 from beltdyn.parts.quantity import RPM
 from beltdyn.results import Result
-from beltdyn.show.sheet import Facts, Sheet, Table
+from beltdyn.show.sheet import Facts, Sheet, Table, power_unit, safeties
 
 if TYPE_CHECKING:
     import xarray as xr
 
 _DEGREES = 180.0 / np.pi
-_LARGEST_SAFETY = 100.0
-_KILOWATTS = 1e4
-"""Power from which powers are shown in kW, W."""
 _HOUR = 3.6
 """kg/s in t/h."""
 _NOTHING = 1e-9
@@ -59,15 +56,15 @@ def _facts(dataset: "xr.Dataset") -> Iterator[tuple[str, str]]:
 def _points(dataset: "xr.Dataset") -> Table:
     """A line for each operating point, with the worst of pulleys and spans."""
     durations = dataset["duration"].values
-    powers, (factor, unit) = dataset["power_in"].values, _power_unit(dataset["power"].values)
+    powers, (unit, watts) = dataset["power_in"].values, power_unit(dataset["power"].values)
     ends = np.stack([dataset["tension_at_start"].values, dataset["tension_at_end"].values])
     columns: list[Sequence[str]] = [
         [str(one) for one in dataset["row"].values],
         [f"{one:.1%}" for one in durations / durations.sum()],
         aligned(dataset["belt_speed"].mean("span").values.tolist(), 4),
-        aligned((factor * powers).tolist(), 4),
-        aligned((factor * dataset["power_out"].values).tolist(), 4),
-        aligned((factor * dataset["loss"].values).tolist(), 4),
+        aligned((powers / watts).tolist(), 4),
+        aligned((dataset["power_out"].values / watts).tolist(), 4),
+        aligned((dataset["loss"].values / watts).tolist(), 4),
         [
             f"{out / given:.1%}" if given > 0.0 and out > 0.0 else "none"
             for out, given in zip(dataset["power_out"].values, powers, strict=True)
@@ -87,13 +84,9 @@ def _points(dataset: "xr.Dataset") -> Table:
     return Table("Operating points", headings, tuple(zip(*columns, strict=True)))
 
 
-def _power_unit(powers: FloatArray) -> tuple[float, str]:
-    return (1e-3, "kW") if np.nanmax(np.abs(powers)) >= _KILOWATTS else (1.0, "W")
-
-
 def _pulleys(at: "xr.Dataset", where: str, stands: BoolArray) -> Table:
     """Diameter, speed, torque, power and hub load of each pulley."""
-    power, (factor, unit) = at["power"].values, _power_unit(at["power"].values)
+    power, (unit, watts) = at["power"].values, power_unit(at["power"].values)
     power = np.where(np.abs(power) > _NOTHING * np.max(np.abs(power), initial=1.0), power, 0.0)
     columns = (
         map(str, at["pulley"].values),
@@ -101,7 +94,7 @@ def _pulleys(at: "xr.Dataset", where: str, stands: BoolArray) -> Table:
         [f"{_DEGREES * one:.1f}°" for one in at["wrap_angle"].values],
         _but(stands, aligned((RPM * at["pulley_speed"].values).tolist(), 5)),
         _but(stands, aligned(at["shaft_torque"].values.tolist(), 4)),
-        _but(stands, aligned((factor * power).tolist(), 4)),
+        _but(stands, aligned((power / watts).tolist(), 4)),
         aligned(at["hub_load"].values.tolist(), 4),
         [f"{_DEGREES * one:z.0f}°" for one in at["hub_direction"].values],
     )
@@ -231,11 +224,3 @@ def _nips(at: "xr.Dataset", where: str) -> Table:
 def _but(stands: BoolArray, texts: Sequence[str]) -> list[str]:
     """Texts, with a dash in some places, such as guides that stand still."""
     return ["–" if still else text for still, text in zip(stands, texts, strict=True)]
-
-
-def safeties(values: FloatArray) -> list[str]:
-    """Slip safeties; a dash without load."""
-    return [
-        "–" if np.isnan(one) else f"{one:.2f}" if one < _LARGEST_SAFETY else f"> {_LARGEST_SAFETY:.0f}"
-        for one in values
-    ]

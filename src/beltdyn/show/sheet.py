@@ -7,6 +7,7 @@ from importlib import import_module
 from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 from beltdyn.analyses import STUDY
 from beltdyn.arrays import BoolArray, FloatArray
@@ -189,7 +190,7 @@ def _mesh_used(run: Run) -> list[tuple[str, str]]:
 def _pulleys(title: str, summary: Summary, guides: BoolArray) -> Table:
     """The table of pulleys; powers in kW where they are large, no slip over guides that stand still."""
     pulleys = summary.pulleys
-    unit, watts = ("kW", 1e3) if max(abs(one.power) for one in pulleys) >= _KILOWATTS else ("W", 1.0)
+    unit, watts = power_unit([one.power for one in pulleys])
     headings = (
         "",
         "rpm",
@@ -215,6 +216,19 @@ def _pulleys(title: str, summary: Summary, guides: BoolArray) -> Table:
         aligned([one.hub_load for one in pulleys]),
     )
     return Table(title, (*headings, "slip\nsafety", "hub load\nN"), tuple(zip(*columns, strict=True)))
+
+
+def power_unit(powers: ArrayLike) -> tuple[str, float]:
+    """Unit in which powers (W) are shown, and its size in W."""
+    return ("kW", 1e3) if np.fmax.reduce(np.abs(np.asarray(powers)), axis=None) >= _KILOWATTS else ("W", 1.0)
+
+
+def safeties(values: FloatArray) -> list[str]:
+    """Slip safeties; a dash without load."""
+    return [
+        "–" if np.isnan(one) else f"{one:.2f}" if one < _LARGEST_SAFETY else f"> {_LARGEST_SAFETY:.0f}"
+        for one in values
+    ]
 
 
 def _window(run: Run, summary: Summary) -> str:
