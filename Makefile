@@ -1,5 +1,5 @@
 .DEFAULT_GOAL := help
-.PHONY: help install demo paper test validate compatibility mutation browser bench docs wheel lock clean
+.PHONY: help install demo paper test lint quick validate compatibility mutation browser bench docs wheel lock clean
 
 PYTHON ?= python3
 BIN := .venv/bin
@@ -27,10 +27,15 @@ paper: install ## the paper's statements beside our results, in beltdyn-paper/pa
 	$(BIN)/python -m validation.paper
 
 test: install ## linters, types, layers, unit and verification tests
+	$(MAKE) --no-print-directory --jobs=2 lint quick
+
+lint: install ## linters, types, layers
 	$(BIN)/ruff check .
 	$(BIN)/ruff format --check .
 	$(BIN)/mypy
 	$(BIN)/lint-imports
+
+quick: install ## unit and verification tests but the slow ones
 	$(BIN)/pytest $(PARALLEL) -m "not slow" $(wildcard tests/unit tests/verification tests/fuzz)
 
 validate: install ## slow verification tests and comparisons with the literature

@@ -21,6 +21,7 @@ from beltdyn.system.observe import observe
 from beltdyn.system.state import State, at_rest, laid
 from beltdyn.system.steady_assembly import assemble
 
+pytestmark = pytest.mark.slow  # kernels of their own
 Order = Callable[..., float]
 Measured = Callable[..., None]
 LINKS_OF = {"truss": 1, "three-node-beam": 2}

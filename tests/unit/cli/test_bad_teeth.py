@@ -98,6 +98,7 @@ def test_an_axis_is_refused_where_it_cannot_run_steadily(
     assert said.count("error: ") == 1
 
 
+@pytest.mark.slow
 def test_a_sheet_of_a_motor_that_stands_asks_for_speeds(
     refuse: Refuse, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:

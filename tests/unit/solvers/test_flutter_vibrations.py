@@ -30,7 +30,7 @@ DRIVES = {
 }
 
 
-@pytest.fixture(params=[pytest.param(one, marks=[pytest.mark.slow] * (one == "sliding tensioner")) for one in DRIVES])
+@pytest.fixture(params=[pytest.param(one, marks=[pytest.mark.slow] * ("tensioner" in one)) for one in DRIVES])
 def drive(request: pytest.FixtureRequest) -> Drive:
     name, elements, joint = DRIVES[request.param]
     drive = loads(files("beltdyn").joinpath("examples", f"{name}.toml").read_text(encoding="utf-8"))

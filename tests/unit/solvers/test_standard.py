@@ -12,7 +12,7 @@ from beltdyn.elements.ancf.element import Ancf
 from beltdyn.errors import ConvergenceError, ModelError
 from beltdyn.solvers.standard import Name, StandardIntegrator
 from beltdyn.solvers.trajectory import Chunk, Task
-from beltdyn.stretch import Green
+from beltdyn.stretch import Green, as_common
 from beltdyn.system.arrays import System
 
 Spin = Callable[..., Task]
@@ -50,7 +50,7 @@ def test_longest_step(spin: Spin, name: Name) -> None:
 @pytest.mark.filterwarnings("ignore::RuntimeWarning")  # SciPy's, of the nan that is meant
 def test_failure_names_the_integrator_and_a_remedy(spin: Spin, spinning: System, name: Name) -> None:
     element = spinning.element
-    broken = spinning._replace(element=Ancf(element.section._replace(stretch=Green(np.nan)), element.elastic))
+    broken = spinning._replace(element=Ancf(element.section._replace(stretch=as_common(Green(np.nan))), element.elastic))
     with pytest.raises(ConvergenceError, match=f"integrator {name} fails.*generalized_alpha"):
         list(StandardIntegrator(name, 1e-3)(spin(INTERVAL, system=broken)))
 

@@ -30,7 +30,7 @@ VARIANTS = [
     ("force_slope", "nodal", "shared_node", "ancf"),
     *product(["force_slope"], ["zone", "nodal"], ["shared_node"], ["truss", "three-node-beam"]),
 ]
-COMPILED_ALONE = {"three-node-beam", "coefficient_slope"}
+COMPILED_ALONE = {"truss", "three-node-beam", "coefficient_slope"}
 """Kinds that no other quick test compiles."""
 
 COMMON: dict[str, Any] = {

@@ -83,6 +83,7 @@ def residual(system: System, motion: Motion, factors: TangentFactors) -> tuple[F
     return equations.matrix.node_side.copy(), equations.matrix.border_side.copy(), equations
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("way", [0.005, 0.0203, -0.0104])
 def test_the_tangent_is_the_derivative_of_the_residual(system: System, way: float) -> None:
     """On the free way and in both stops; the step moves the ends as the carriage does."""

@@ -14,6 +14,7 @@ from beltdyn.model import Drive
 from beltdyn.results import Run, open_run
 from beltdyn.show import plot
 
+pytestmark = pytest.mark.slow  # kernels of their own
 Change = Callable[..., Drive]
 ELEMENTS = {"truss": 60, "three-node-beam": 30}
 LINKS = 60
@@ -21,7 +22,7 @@ SAMPLING = {"distributed": 5, "nodal": 2}
 """Contact points of a link."""
 
 
-@pytest.fixture(scope="module", params=["truss", pytest.param("three-node-beam", marks=pytest.mark.slow)])
+@pytest.fixture(scope="module", params=ELEMENTS)
 def kind(request: pytest.FixtureRequest) -> str:
     return str(request.param)
 

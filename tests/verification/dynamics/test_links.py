@@ -8,6 +8,7 @@ import pytest
 from beltdyn import simulate
 from beltdyn.model import Drive
 
+pytestmark = pytest.mark.slow  # kernels of their own
 Change = Callable[..., Drive]
 Measured = Callable[..., None]
 CHAINS = {"truss": 480, "three-node-beam": 240}
@@ -29,7 +30,7 @@ def made_of(small: Drive, change: Change) -> Callable[..., Drive]:
     return make
 
 
-@pytest.mark.parametrize("kind", ["truss", pytest.param("three-node-beam", marks=pytest.mark.slow)])
+@pytest.mark.parametrize("kind", CHAINS)
 @pytest.mark.parametrize("sampling", ["nodal", "distributed"])
 def test_energy_account_closes(made_of: Callable[..., Drive], measured: Measured, kind: str, sampling: str) -> None:
     errors = []
@@ -41,7 +42,6 @@ def test_energy_account_closes(made_of: Callable[..., Drive], measured: Measured
     assert errors[1] < 0.3 * errors[0]
 
 
-@pytest.mark.slow
 @pytest.mark.parametrize("kind", CHAINS)
 @pytest.mark.parametrize("integrator", ["bdf", "radau"])
 def test_integrators_agree(made_of: Callable[..., Drive], measured: Measured, kind: str, integrator: str) -> None:
@@ -62,7 +62,6 @@ def test_integrators_agree(made_of: Callable[..., Drive], measured: Measured, ki
     assert place < 0.01 * moved
 
 
-@pytest.mark.slow
 @pytest.mark.parametrize("kind", CHAINS)
 @pytest.mark.parametrize("sampling", ["nodal", "distributed"])
 def test_agrees_with_the_papers_element(
