@@ -49,8 +49,8 @@ def test_longest_step(spin: Spin, name: Name) -> None:
 @pytest.mark.parametrize("name", NAMES)
 @pytest.mark.filterwarnings("ignore::RuntimeWarning")  # SciPy's, of the nan that is meant
 def test_failure_names_the_integrator_and_a_remedy(spin: Spin, spinning: System, name: Name) -> None:
-    element = spinning.element
-    broken = spinning._replace(element=Ancf(element.section._replace(stretch=as_common(Green(np.nan))), element.elastic))
+    section, elastic = spinning.element
+    broken = spinning._replace(element=Ancf(section._replace(stretch=as_common(Green(np.nan))), elastic))
     with pytest.raises(ConvergenceError, match=f"integrator {name} fails.*generalized_alpha"):
         list(StandardIntegrator(name, 1e-3)(spin(INTERVAL, system=broken)))
 
