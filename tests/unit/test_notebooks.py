@@ -97,6 +97,7 @@ def shown(notebook: Path) -> Shown:
     return found
 
 
+@pytest.mark.slow
 def test_drives_and_results_show_themselves_as_html(shown: Shown) -> None:
     kinds = {"drive": None, "run": "Run", "steady": "Steady running", "modes": "Modes", "equilibrium": "Equilibrium"}
     for name, kind in kinds.items():

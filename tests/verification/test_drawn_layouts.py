@@ -38,7 +38,7 @@ def bring_to_stand(drive: Drive) -> Standing:
     ("bring", "seeds"),
     [
         (bring_to_stand, range(3, 15)),
-        (bring_to_rest, range(3, 15)),
+        pytest.param(bring_to_rest, range(3, 15), marks=pytest.mark.slow),
         pytest.param(bring_to_stand, range(15, 5003), marks=pytest.mark.slow),
         pytest.param(bring_to_rest, range(15, 5003, 10), marks=pytest.mark.slow),
     ],

@@ -35,6 +35,7 @@ def test_time_that_is_left_is_told_where_an_analysis_does_not_know_its_pace(tmp_
     assert teller._remaining(progress, 0.25, 11.0) == 3.0
 
 
+@pytest.mark.slow
 def test_a_result_and_its_report_are_written(drive_text: str, tmp_path: Path) -> None:
     outcome = ended(Job("equilibrium", drive_text, tmp_path, tmp_path / "drive-equilibrium.nc", {}))
     assert (outcome.status, outcome.error) == ("completed", "")

@@ -78,6 +78,7 @@ def test_chosen_figures_of_one_pulley(run_main: RunMain, result_file: Path) -> N
     assert {path.name for path in folder.iterdir()} == {"hub_loads.png", "slip.png"}
 
 
+@pytest.mark.slow
 def test_figures_of_several_files(run_main: RunMain, refuse: Refuse, result_file: Path) -> None:
     other = result_file.with_name("other.nc")
     shutil.copy(result_file, other)

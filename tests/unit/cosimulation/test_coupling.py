@@ -38,7 +38,7 @@ def page() -> dict[str, Any]:
     return names
 
 
-@pytest.fixture(scope="module", params=["2.0", "3.0"])
+@pytest.fixture(scope="module", params=[pytest.param("2.0", marks=pytest.mark.slow), "3.0"])
 def unit(request: pytest.FixtureRequest, drive: Drive, tmp_path_factory: pytest.TempPathFactory) -> Path:
     return fmu(drive, tmp_path_factory.mktemp("units") / "drive.fmu", ["pulley[driver].speed"], fmi=request.param)
 

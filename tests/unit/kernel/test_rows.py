@@ -87,7 +87,7 @@ def kept(folder: Path) -> int:
     return len(list((folder / "cache").rglob("*.kernel")))
 
 
-@pytest.mark.parametrize("module", [False, True], ids=["script", "module"])
+@pytest.mark.parametrize("module", [pytest.param(False, marks=pytest.mark.slow), True], ids=["script", "module"])
 def test_a_law_is_compiled_once_and_again_where_it_has_changed(tmp_path: Path, module: bool) -> None:
     """Its own code, a number of its module, and a kernel of another module that it calls."""
     found, counts = [], []

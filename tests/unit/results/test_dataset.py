@@ -77,6 +77,7 @@ def test_the_kept_file_says_what_it_said(kept: Path) -> None:
     run.dataset.close()
 
 
+@pytest.mark.slow
 def test_a_file_with_the_core_alone_is_summed_up_drawn_and_tabled(kept: Path, change: Callable[..., Path]) -> None:
     run = open_run(change(take_extras))
     whole = open_run(kept)

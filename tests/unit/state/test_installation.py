@@ -105,6 +105,7 @@ def test_the_tension_that_is_asked_for_is_there(case: str, elements: int, measur
     assert found == pytest.approx(drive.belt.installed_tension, rel=ASKED)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     "tensioner",
     [

@@ -150,14 +150,15 @@ def converged(short: Drive, change: Change) -> xr.Dataset:
     return simulate(change(short, simulation={"integrator": "cvode", "rtol": REFERENCE})).dataset
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("integrator", "rtols"),
     [
-        pytest.param("generalized_alpha", (1e-3, 1e-4, 1e-5), marks=pytest.mark.slow),
+        ("generalized_alpha", (1e-3, 1e-4, 1e-5)),
         ("cvode", (1e-3, 1e-4, 1e-5)),
-        pytest.param("ida", (1e-3, 1e-4, 1e-5), marks=pytest.mark.slow),
+        ("ida", (1e-3, 1e-4, 1e-5)),
         ("bdf", (1e-3, 1e-4)),
-        pytest.param("radau", (1e-3, 1e-4), marks=pytest.mark.slow),
+        ("radau", (1e-3, 1e-4)),
     ],
 )
 def test_integrators_agree_and_approach_each_other(

@@ -24,7 +24,9 @@ RATIO = RADII[0] / RADII[1]
 CRANK = {"kind": "table", "times": [0.0, 0.05, 0.1, 0.14, 0.2], "values": [0.0, SPEED, SPEED, 0.3 * SPEED, SPEED]}
 
 
-@pytest.fixture(scope="module", params=[1.0, -1.0], ids=["counter-clockwise", "clockwise"])
+@pytest.fixture(
+    scope="module", params=[1.0, pytest.param(-1.0, marks=pytest.mark.slow)], ids=["counter-clockwise", "clockwise"]
+)
 def run(request: pytest.FixtureRequest, make: Make) -> xr.Dataset:
     """Brought to speed by 0.05 s, slowed from 0.1 s to 0.14 s, and brought to speed again by 0.2 s."""
     sense = request.param

@@ -111,6 +111,7 @@ def test_eigenfrequency(
     assert abs(rigid / hand - 1) > 5 * error
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("kind", KINDS)
 def test_let_go(
     drive: Callable[..., Drive],

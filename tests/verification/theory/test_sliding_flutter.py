@@ -58,6 +58,7 @@ def sliding_belt(drive: Drive, contact: Contact) -> SlidingBelt:
     )
 
 
+@pytest.mark.slow
 def test_a_sliding_ring_flutters(measured: Callable[..., None]) -> None:
     """Stretch (0.4 %), tension and bending, which the formula leaves out, make 2 %."""
     drive = two_pulley()

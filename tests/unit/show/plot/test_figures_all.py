@@ -95,6 +95,7 @@ _OF_TEETH = ("load_sharing", "transmission_error", "transmission_orders")
 _NOT_OF_IT = ("waterfall", "orders", "carriage_error", "nip_pressure", *_OF_TEETH)
 
 
+@pytest.mark.slow
 def test_all_figures_of_a_drive_with_a_tensioner(tmp_path: Path, run: Run) -> None:
     """Those of a sweep need more turns than this run has, others teeth, carriages, nips; they are tried elsewhere."""
     tensioned = tensioned_run(run)
