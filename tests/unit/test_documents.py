@@ -6,7 +6,6 @@ import shlex
 import tomllib
 from importlib.resources import files
 from pathlib import Path
-from types import ModuleType
 from typing import Any
 
 import key_tables
@@ -20,7 +19,7 @@ from beltdyn.analyses import ANALYSES, EQUILIBRIUM, RUN
 from beltdyn.cli import main
 from beltdyn.designs.designs import free_number
 from beltdyn.designs.residuals import read_measured
-from beltdyn.machines import profiles
+from beltdyn.machines.profiles.profile import PROFILES
 from beltdyn.model import (
     Belt,
     Contact,
@@ -53,11 +52,6 @@ MACHINES = ROOT / "docs" / "machines.md"
 DRIVE_FILE = ROOT / "docs" / "drive_file.md"
 CATALOGUE = ROOT / "docs" / "catalogue.md"
 RESULTS = ROOT / "docs" / "results"
-
-
-def kinds_of(family: ModuleType) -> list[type[Part]]:
-    """The kinds that a family of machines has registered."""
-    return [kind for kind in vars(family).values() if isinstance(kind, type)]
 
 
 def pages(chapter: Path) -> list[Path]:
@@ -144,7 +138,7 @@ def test_every_kind_of_machine_has_a_section(family: str) -> None:
             assert f"{{{{ keys.{family}.{kind} }}}}" in section[1].split("\n#")[0]
 
 
-@pytest.mark.parametrize("profile", kinds_of(profiles))
+@pytest.mark.parametrize("profile", PROFILES.values())
 def test_every_key_of_a_profile_is_documented(profile: type[Part]) -> None:
     kind = profile.model_fields["kind"].default or "table"
     text = DRIVE_FILE.read_text(encoding="utf-8")

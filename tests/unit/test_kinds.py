@@ -13,13 +13,13 @@ from beltdyn.contact.friction import LAWS, FrictionLaw
 from beltdyn.errors import ModelError
 from beltdyn.kernel import kernel
 from beltdyn.kinds import Parameter, Registry, register
+from beltdyn.machines.links import LINK
 from beltdyn.machines.links.link import LINKS
-from beltdyn.machines.links.link_rows import LINK
+from beltdyn.machines.loads import SHAFT_LOAD
 from beltdyn.machines.loads.load import LOADS, Load, LoadTorque
-from beltdyn.machines.loads.load_rows import SHAFT_LOAD
 from beltdyn.machines.profiles.profile import PROFILES
+from beltdyn.machines.tensioners import TENSIONER
 from beltdyn.machines.tensioners.tensioner import TENSIONERS
-from beltdyn.machines.tensioners.tensioner_rows import TENSIONER
 from beltdyn.model import Drive, Pulley
 from beltdyn.parts.quantity import quantity
 from beltdyn.records import record

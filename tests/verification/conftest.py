@@ -8,7 +8,7 @@ import pytest
 from hypothesis import settings
 
 from beltdyn.arrays import FloatArray
-from beltdyn.elements.ancf.belt_element import ANCF
+from beltdyn.elements.ancf import ANCF
 from beltdyn.elements.ancf.elastic_force import element_energy, element_force
 from beltdyn.elements.ancf.element import Ancf
 from beltdyn.model import Belt, Drive, loads
@@ -16,8 +16,7 @@ from beltdyn.quadrature import gauss_points
 from beltdyn.records import blank
 from beltdyn.system.arrays import System
 from beltdyn.system.build import belt_system
-from beltdyn.system.discretization import belt_section
-from beltdyn.system.state import State, at_rest
+from beltdyn.system.state import State, at_rest, belt_section
 
 settings.register_profile("patient", deadline=None)  # a kernel is compiled at its first call
 settings.load_profile("patient")

@@ -17,10 +17,9 @@ from beltdyn.model import Belt, Constant, Contact, Path, Pulley
 from beltdyn.state.static import find_equilibrium
 from beltdyn.system.arrays import NO_TANGENT, BodyForces, Motion, System
 from beltdyn.system.build import belt_system
-from beltdyn.system.motion import new_equations, no_multipliers
 from beltdyn.system.observe import observe
 from beltdyn.system.state import State, at_rest, laid
-from beltdyn.system.steady_assembly import assemble
+from beltdyn.system.steady_assembly import assemble, new_equations, no_multipliers
 from beltdyn.theory.creep import capstan_ratio
 
 RADIUS = 0.1

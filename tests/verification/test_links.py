@@ -16,10 +16,9 @@ from beltdyn.model import Belt, Drive, prepare
 from beltdyn.state.static import find_equilibrium
 from beltdyn.system.arrays import NO_TANGENT, System
 from beltdyn.system.build import belt_system, drive_system
-from beltdyn.system.motion import new_equations, no_multipliers
 from beltdyn.system.observe import observe
 from beltdyn.system.state import State, at_rest, laid
-from beltdyn.system.steady_assembly import assemble
+from beltdyn.system.steady_assembly import assemble, new_equations, no_multipliers
 
 pytestmark = pytest.mark.slow  # kernels of their own
 Order = Callable[..., float]

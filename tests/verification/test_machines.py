@@ -8,10 +8,10 @@ import pytest
 from scipy.integrate import quad, solve_ivp
 
 from beltdyn.arrays import FloatArray
-from beltdyn.machines.links.link_rows import link_torque
+from beltdyn.machines.links import link_torque
 from beltdyn.machines.loads.shaft import shaft_torque
 from beltdyn.machines.profiles.functions import prescribed_motion, profile_integral
-from beltdyn.machines.tensioners.tensioner_rows import tensioner_force
+from beltdyn.machines.tensioners import tensioner_force
 from beltdyn.model import Belt, Pulley, SlidingTensioner
 from beltdyn.model.routing import lay_path
 from beltdyn.system.build_machines import Machines, body_inertias, machine_arrays

@@ -9,9 +9,9 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from beltdyn.arrays import FloatArray
-from beltdyn.elements.ancf.belt_element import element_mass
+from beltdyn.elements.ancf import element_mass
 from beltdyn.model import Belt
-from beltdyn.system.discretization import belt_section
+from beltdyn.system.state import belt_section
 
 SPEEDS = st.integers(-1000, 1000).map(lambda tenths: 0.1 * tenths)
 EXACT = 1e-13  # a dozen roundings

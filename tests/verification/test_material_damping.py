@@ -13,7 +13,7 @@ from scipy.integrate import solve_ivp
 from scipy.linalg import eig
 
 from beltdyn.arrays import FloatArray
-from beltdyn.elements.ancf.belt_element import ANCF, element_mass
+from beltdyn.elements.ancf import ANCF, element_mass
 from beltdyn.elements.ancf.elastic_force import element_energy, element_force
 from beltdyn.elements.ancf.element import Ancf
 from beltdyn.elements.ancf.material_damping import damping_force
@@ -21,7 +21,7 @@ from beltdyn.elements.kind import DampingFactors
 from beltdyn.model import Belt
 from beltdyn.quadrature import gauss_points
 from beltdyn.records import blank
-from beltdyn.system.discretization import belt_section
+from beltdyn.system.state import belt_section
 
 TIME = 1e-4
 """Damping time, s."""

@@ -21,8 +21,7 @@ from beltdyn.arrays import FloatArray
 from beltdyn.model import Belt
 from beltdyn.state.static import find_equilibrium
 from beltdyn.system.arrays import System
-from beltdyn.system.discretization import belt_section
-from beltdyn.system.state import State, straight
+from beltdyn.system.state import State, belt_section, straight
 
 Cantilever = Callable[..., tuple[Belt, System]]
 FULL_CIRCLE = 2.0 * pi

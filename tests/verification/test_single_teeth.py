@@ -17,9 +17,8 @@ from beltdyn.show.report.report import verdict
 from beltdyn.state.static import find_equilibrium
 from beltdyn.system.build import drive_system
 from beltdyn.system.frame import centreline_places
-from beltdyn.system.meshing import at_phases, fit_phases, phases
+from beltdyn.system.meshing import at_phases, fit_phases, phases, tooth_coordinates, tooth_forces
 from beltdyn.system.moving_center import pulley_center
-from beltdyn.system.single_teeth import tooth_coordinates, tooth_forces
 from beltdyn.system.state import laid
 
 AXIAL, TOOTH, PITCH, TEETH = 1e5, 1e6, 8e-3, 24

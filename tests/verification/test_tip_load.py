@@ -17,8 +17,7 @@ from beltdyn.arrays import FloatArray
 from beltdyn.model import Belt
 from beltdyn.state.static import find_equilibrium
 from beltdyn.system.arrays import System
-from beltdyn.system.discretization import belt_section
-from beltdyn.system.state import straight
+from beltdyn.system.state import belt_section, straight
 
 Cantilever = Callable[..., tuple[Belt, System]]
 

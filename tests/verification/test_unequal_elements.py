@@ -20,12 +20,10 @@ from beltdyn.solvers.trajectory import drive_task
 from beltdyn.state.static import find_equilibrium, standing
 from beltdyn.system.arrays import NO_TANGENT, Equations, System, TangentFactors
 from beltdyn.system.build import belt_system
-from beltdyn.system.discretization import belt_section
-from beltdyn.system.motion import new_equations, no_multipliers
 from beltdyn.system.observe import observe
 from beltdyn.system.ring_matrix import entries, places
-from beltdyn.system.state import State, laid, straight
-from beltdyn.system.steady_assembly import assemble
+from beltdyn.system.state import State, belt_section, laid, straight
+from beltdyn.system.steady_assembly import assemble, new_equations, no_multipliers
 from beltdyn.transient.simulate import choose_integrator
 
 Cut = Callable[..., Drive]

@@ -5,7 +5,7 @@ from typing import NamedTuple
 import numpy as np
 
 from beltdyn.arrays import FloatArray
-from beltdyn.elements.ancf.belt_element import ANCF
+from beltdyn.elements.ancf import ANCF
 from beltdyn.elements.ancf.element import bends, slopes
 from beltdyn.elements.kind import ElementKind, Section
 from beltdyn.elements.planar_curve import Density, add_density, begin_tangent, combine, curve_scratch, end_tangent

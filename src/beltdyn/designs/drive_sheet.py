@@ -17,9 +17,8 @@ from beltdyn.designs.line_sheet import line_sheet
 from beltdyn.errors import ModelError
 from beltdyn.model import Drive, FixedTensioner, Prepared, alignment, prepare
 from beltdyn.model.alignment import judge_alignment
-from beltdyn.model.installation import Installation
+from beltdyn.model.installation import DEFLECTION, Installation, tension_checks
 from beltdyn.model.parameter_study import PASS
-from beltdyn.model.tensioning import DEFLECTION, tension_checks
 from beltdyn.parts.quantity import Number, Numbers, number_in, numbers_in
 from beltdyn.points.changed_drive import at_instant, held_at
 from beltdyn.points.duty import Column, at_row, durations_of, duty, duty_of

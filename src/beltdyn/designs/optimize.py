@@ -9,8 +9,7 @@ import numpy as np
 from beltdyn.arrays import FloatArray
 from beltdyn.designs.batch import held, study_points
 from beltdyn.designs.designs import Design, Designs, free_number
-from beltdyn.designs.goals import Aims, aims_of
-from beltdyn.designs.optimization_history import History
+from beltdyn.designs.optimization_history import Aims, History, aims_of
 from beltdyn.errors import ConvergenceError, ModelError
 from beltdyn.model import Drive
 from beltdyn.model.parameter_study import OptimizationStudy

@@ -13,8 +13,8 @@ from beltdyn.designs.toothed_selection import of_toothed_profile
 from beltdyn.errors import ModelError
 from beltdyn.model import Entry, read_catalogue
 from beltdyn.model.catalogue import find_entry
+from beltdyn.model.installation import RUN_IN
 from beltdyn.model.rating import RatedBelt, Rating
-from beltdyn.model.tensioning import RUN_IN
 from beltdyn.parts.messages import reason
 from beltdyn.parts.quantity import RPM, number_in, numbers_in
 from beltdyn.theory.rating import least_tension

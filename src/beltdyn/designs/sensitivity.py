@@ -23,11 +23,10 @@ from beltdyn.designs.named_results import listed, names_in, names_of, need_bands
 from beltdyn.errors import ConvergenceError, ModelError
 from beltdyn.model import Drive, prepare
 from beltdyn.model.parameter_study import Points
-from beltdyn.parts.change import unit_at, value_at
+from beltdyn.parts.change import tolerances_of, unit_at, value_at
 from beltdyn.parts.messages import suggest
 from beltdyn.parts.part import Part
 from beltdyn.parts.text_file import entry_name
-from beltdyn.parts.tolerances import tolerances_of
 from beltdyn.points.changed_drive import at_instant
 from beltdyn.results import Result, Variable, build_result
 from beltdyn.results.schema import AXIS_NAMES, VARIOUS

@@ -15,7 +15,7 @@ from typing import NamedTuple
 import numpy as np
 
 from beltdyn.arrays import FloatArray
-from beltdyn.elements.ancf.belt_element import ANCF
+from beltdyn.elements.ancf import ANCF
 from beltdyn.elements.kind import DampingFactors, ElementKind, Section
 from beltdyn.elements.planar_curve import (
     CurveMotion,

@@ -1,6 +1,5 @@
 """Compiled code: the decorator of kernels and the cache of their machine code."""
 
-from beltdyn.kernel.by_kind import choice
 from beltdyn.kernel.by_type import by_type
 from beltdyn.kernel.compilation_progress import (
     CompilationReport,
@@ -19,7 +18,7 @@ from beltdyn.kernel.fingerprint import (
     kernel_cache,
     source_hash,
 )
-from beltdyn.kernel.rows import KernelKinds, KindRows, labels
+from beltdyn.kernel.rows import KernelKinds, KindRows, choice, labels
 
 __all__ = [
     "CACHE_VARIABLE",

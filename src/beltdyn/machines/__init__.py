@@ -1,8 +1,8 @@
 """The machines around a belt: loads and motors, hub chains, tensioners, prescribed functions of time.
 
 A kind of machine is a file: the class that a user's keys make, a record of its constants, and kernels that give its
-force with exact derivatives.  Each family has a module `kinds`, which imports its kinds, one a line; all else that
-knows the kinds is made from it.
+force with exact derivatives.  The `__init__` of a family imports its kinds, one a line, and makes from them the field
+type of drive files, the rows of tables and the kernels that evaluate any of them.
 """
 
 from beltdyn.machines.carrying import Goods, Guide, Idlers

@@ -65,7 +65,7 @@ from beltdyn.model.rating import Rating
 from beltdyn.model.resolution import ERROR_LIMITS, Running, elements_needed, layer_lengths, mesh_errors, unresolved
 from beltdyn.model.rest_estimate import estimate_at_rest
 from beltdyn.model.simulation import Limits, Simulation, Steady
-from beltdyn.model.tensioner_balance import TensionerBalance
+from beltdyn.model.static_estimate import TensionerBalance
 from beltdyn.model.toml import dumps, example, json_schema, load, loads
 from beltdyn.model.toothing import Toothing
 from beltdyn.model.web import Roll, Unwinder, Winder

@@ -12,8 +12,8 @@ from beltdyn.arrays import FloatArray
 from beltdyn.errors import ModelError
 from beltdyn.model.drive import Drive
 from beltdyn.model.path import Path
+from beltdyn.parts.change import tolerances_of
 from beltdyn.parts.messages import Finding
-from beltdyn.parts.tolerances import tolerances_of
 
 _FREEDOMS = ("axial_offset", "tilt[1]", "tilt[2]")
 """Numbers of a pulley that put it out of the plane."""

@@ -9,9 +9,9 @@ from pydantic import Field, model_validator
 
 from beltdyn.arrays import FloatArray
 from beltdyn.kernel import interpreted
+from beltdyn.machines.profiles import PushProfile
 from beltdyn.machines.profiles.functions import profile_integral, profile_rows
 from beltdyn.machines.profiles.profile import Profile
-from beltdyn.machines.profiles.profile_types import PushProfile
 from beltdyn.machines.tensioners.tensioner import Direction
 from beltdyn.model.end import FixedEnd, PathEnd
 from beltdyn.model.path import Path

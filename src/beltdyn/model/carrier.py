@@ -7,8 +7,8 @@ import numpy as np
 
 from beltdyn.arrays import FloatArray
 from beltdyn.kernel import interpreted
+from beltdyn.machines.tensioners import tensioner_row
 from beltdyn.machines.tensioners.tensioner import TENSIONERS, MovingTensioner, Tensioner
-from beltdyn.machines.tensioners.tensioner_rows import tensioner_row
 from beltdyn.model.path import Path
 from beltdyn.model.pulley import Pulley
 
@@ -22,7 +22,7 @@ class Carrier:
     tensioner: MovingTensioner
     """The tensioner."""
     row: np.record
-    """Its row of `beltdyn.machines.tensioners.tensioner_rows.TENSIONER_ROWS`, without weight."""
+    """Its row of `beltdyn.machines.tensioners.TENSIONER_ROWS`, without weight."""
     presses: bool = False
     """Whether it presses the roller of a nip, in place of tensioning the belt; it rests at its place zero."""
 

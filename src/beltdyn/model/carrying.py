@@ -8,8 +8,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from beltdyn.arrays import BoolArray, FloatArray
-from beltdyn.machines.carrying.goods import Goods
-from beltdyn.machines.carrying.support import OnSpan, Support
+from beltdyn.machines.carrying.support import Goods, OnSpan, Support
 from beltdyn.model.path import Path
 from beltdyn.model.resolution import Laid
 

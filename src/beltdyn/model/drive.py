@@ -14,8 +14,8 @@ from beltdyn.contact.friction import FrictionParameters
 from beltdyn.elements import ELEMENTS, ElementKind
 from beltdyn.errors import ModelError
 from beltdyn.machines import FunctionLoad, Goods, MovingTensioner, Tensioner
-from beltdyn.machines.carrying.support_rows import AnySupport
-from beltdyn.machines.tensioners.tensioner_rows import AnyTensioner
+from beltdyn.machines.carrying import AnySupport
+from beltdyn.machines.tensioners import AnyTensioner
 from beltdyn.model.as_supplied import Rotation, as_supplied
 from beltdyn.model.belt import Belt
 from beltdyn.model.carriage import Carriage, check_carriage
@@ -34,12 +34,11 @@ from beltdyn.model.routing import radii, span_names
 from beltdyn.model.simulation import Frame, Limits, Simulation, Steady, choose_frame, element_of
 from beltdyn.model.toothing import DISCRETE, RatedTeeth
 from beltdyn.model.web import Unwinder, Winder, check_rollers
-from beltdyn.parts.change import changed_arguments
+from beltdyn.parts.change import carry_tolerances, changed_arguments, tolerances_of, with_tolerances
 from beltdyn.parts.kind_fields import Chosen, chosen_kinds
 from beltdyn.parts.part import Part
 from beltdyn.parts.quantity import Acceleration, Title, Words
 from beltdyn.parts.text_file import parse_toml
-from beltdyn.parts.tolerances import carry_tolerances, tolerances_of, with_tolerances
 
 _MOST_NAMED = 8
 """Pulleys that a drive names where it says what it is."""

@@ -17,8 +17,7 @@ from beltdyn.model.nip import Nip, check_nips, placed, tensioning
 from beltdyn.model.path import Path
 from beltdyn.model.pulley import Pulley
 from beltdyn.model.routing import lay_path
-from beltdyn.model.static_estimate import StaticEstimate
-from beltdyn.model.tensioner_balance import balance_tensioners
+from beltdyn.model.static_estimate import StaticEstimate, balance_tensioners
 from beltdyn.parts.messages import apart
 
 LARGEST_STRAIN = 0.5

@@ -28,8 +28,7 @@ from beltdyn.model.path import Path
 from beltdyn.model.pulley import Pulley
 from beltdyn.model.resolution import CARRIED_ELEMENTS, SPAN_ELEMENTS, Laid, graded_mesh, layer_length, layer_lengths
 from beltdyn.model.simulation import Frame, Simulation
-from beltdyn.model.static_estimate import StaticEstimate
-from beltdyn.model.tensioner_balance import TensionerBalance, all_balances, balance_tensioners
+from beltdyn.model.static_estimate import StaticEstimate, TensionerBalance, all_balances, balance_tensioners
 
 
 @dataclass(frozen=True, eq=False)
@@ -349,7 +348,7 @@ def prepare(drive: Drive) -> Prepared:
 def install(drive: Drive) -> Installation:
     """Estimate tension, penetration and tensioner positions for the belt at rest.
 
-    `beltdyn.model.static_estimate` and `beltdyn.model.tensioner_balance` have the equations, which leave out bending
+    `beltdyn.model.static_estimate` and `beltdyn.model.static_estimate` have the equations, which leave out bending
     stiffness and weight; `beltdyn.state.installation.bring_to_rest` finds static equilibrium.
 
     Parameters

@@ -12,11 +12,11 @@ from pydantic.fields import FieldInfo
 
 from beltdyn.arrays import FloatArray
 from beltdyn.contact.surface import KINDS, SurfaceKind
-from beltdyn.machines.links.link_rows import AnyHubLink
-from beltdyn.machines.loads.load_rows import AnyLoad
+from beltdyn.machines.links import AnyHubLink
+from beltdyn.machines.loads import AnyLoad
+from beltdyn.machines.profiles import SpeedProfile, TorqueProfile
 from beltdyn.machines.profiles.harmonic import SpeedHarmonics
 from beltdyn.machines.profiles.profile import Profile
-from beltdyn.machines.profiles.profile_types import SpeedProfile, TorqueProfile
 from beltdyn.model.belt import Belt, Side, read_side
 from beltdyn.model.contact import Contact
 from beltdyn.model.cover import Cover

@@ -13,12 +13,11 @@ from pydantic import ValidationError
 
 from beltdyn.errors import ModelError
 from beltdyn.model.drive import Drive, refuse_functions
-from beltdyn.parts.change import unit_at
+from beltdyn.parts.change import location_of, tolerances_of, unit_at, with_tolerances
 from beltdyn.parts.messages import explain, reason
 from beltdyn.parts.part import Part
 from beltdyn.parts.quantity import written_like
 from beltdyn.parts.text_file import LONGEST_TOML, open_file, parse_toml, read_text, shorten
-from beltdyn.parts.tolerances import location_of, tolerances_of, with_tolerances
 from beltdyn.parts.toml_edits import Edit, changed_data, changed_text
 
 Study = TypeVar("Study", bound=Part)

@@ -30,9 +30,9 @@ from beltdyn.results.belt_history import fill_mid_spans
 from beltdyn.results.friction_work import ARC_PARTS, Touch, WorkSoFar, add_friction_work
 from beltdyn.solvers.engine import accelerate
 from beltdyn.system.arrays import System
-from beltdyn.system.motion import new_equations, no_multipliers
 from beltdyn.system.observe import observe
 from beltdyn.system.state import State
+from beltdyn.system.steady_assembly import new_equations, no_multipliers
 
 _SECOND = f"import sys; from {__name__} import run_for_another; run_for_another(sys.stdin.buffer)"
 

@@ -20,13 +20,13 @@ from beltdyn.results.slip_safety import sliding_of_pulleys
 from beltdyn.solvers.flutter import Flutter, FlutterWatch
 from beltdyn.solvers.trajectory import Chunk
 from beltdyn.system.arrays import BENDING_LOSS, ENERGY_WORKS, STRETCH_LOSS, System
-from beltdyn.system.discretization import curve_lengths
 from beltdyn.system.frame import OverTime, Travelling
+from beltdyn.system.meshing import JumpWatch, tooth_coordinates, tooth_forces
 from beltdyn.system.moving_center import pulley_speeds
 from beltdyn.system.nips import seen_nips
 from beltdyn.system.observations import OBSERVED
 from beltdyn.system.observe import observe_motion
-from beltdyn.system.single_teeth import JumpWatch, tooth_coordinates, tooth_forces
+from beltdyn.system.state import curve_lengths
 
 # The energy account of a run: what goes in, what is stored, what is lost, and whether that adds up
 

@@ -26,10 +26,9 @@ from beltdyn.signals import uninterrupted
 from beltdyn.solvers.run_progress import Pace, Phase, Progress, Report
 from beltdyn.solvers.trajectory import Chunk, Statistics, interpolated
 from beltdyn.system.arrays import System
-from beltdyn.system.discretization import curve_lengths, element_kind, point_coordinates
 from beltdyn.system.frame import FlowingByArcs, OverTime, Travelling
-from beltdyn.system.single_teeth import tooth_coordinates
-from beltdyn.system.state import laid
+from beltdyn.system.meshing import tooth_coordinates
+from beltdyn.system.state import curve_lengths, element_kind, laid, point_coordinates
 
 # What makes the steps of a simulation as short as they are
 

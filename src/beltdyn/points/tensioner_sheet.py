@@ -12,7 +12,7 @@ from beltdyn.errors import ConvergenceError, ModelError
 from beltdyn.machines.tensioners.tensioner import MovingTensioner
 from beltdyn.model import Drive, Installation, Prepared, prepare
 from beltdyn.model.carrier import moved
-from beltdyn.model.tensioner_balance import held_belt
+from beltdyn.model.static_estimate import held_belt
 from beltdyn.parts.messages import reason
 from beltdyn.parts.quantity import Number, to_si
 from beltdyn.points.changed_drive import require_belt

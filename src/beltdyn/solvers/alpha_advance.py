@@ -29,9 +29,8 @@ from beltdyn.system.arrays import (
     Equations,
     System,
 )
-from beltdyn.system.body_forces import keep_body_forces
+from beltdyn.system.body_forces import find_body_forces, keep_body_forces
 from beltdyn.system.missed_action import missed_work, numerical_loss
-from beltdyn.system.state_forces import find_body_forces
 
 REACHED: Final = 0
 """Status: the stop was reached, the room for steps is full, or the budget is spent."""

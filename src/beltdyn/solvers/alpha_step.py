@@ -14,7 +14,7 @@ from math import inf, isfinite, isnan, sqrt
 from typing import Any, Final, NamedTuple
 
 from beltdyn.kernel import by_type, kernel
-from beltdyn.machines.links.link_rows import torque_of_kind
+from beltdyn.machines.links import torque_of_kind
 from beltdyn.machines.loads.shaft import load_torque
 from beltdyn.machines.profiles.functions import NO_SCHEDULE, after_jump, profile_value, schedule_value
 from beltdyn.solvers.integrator_state import (
@@ -30,12 +30,11 @@ from beltdyn.system.arrays import (
     System,
     TangentFactors,
 )
+from beltdyn.system.body_forces import prescribe
 from beltdyn.system.frame import Flowing, FlowingByArcs, Travelling
 from beltdyn.system.missed_action import extrapolated_load, missed_impulses
-from beltdyn.system.motion import subtract_multipliers, subtract_solution
 from beltdyn.system.ring_matrix import factorise_ring, substitute
-from beltdyn.system.state_forces import prescribe
-from beltdyn.system.steady_assembly import assemble
+from beltdyn.system.steady_assembly import assemble, subtract_multipliers, subtract_solution
 
 # Coefficients of generalized-alpha (Chung and Hulbert 1993); the method is described in `alpha_step`
 

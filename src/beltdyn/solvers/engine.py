@@ -22,11 +22,10 @@ from beltdyn.solvers.integrator_state import (
     trial_motion,
 )
 from beltdyn.system.arrays import DRIVER_WORK, NO_TANGENT, Equations, Motion, System, TangentFactors
+from beltdyn.system.body_forces import prescribe
 from beltdyn.system.missed_action import jump_work
-from beltdyn.system.motion import subtract_multipliers, subtract_solution
 from beltdyn.system.ring_matrix import solve_ring, substitute
-from beltdyn.system.state_forces import prescribe
-from beltdyn.system.steady_assembly import assemble
+from beltdyn.system.steady_assembly import assemble, subtract_multipliers, subtract_solution
 
 ADVANCE: Final = 0
 """Step through time."""

@@ -20,9 +20,9 @@ from beltdyn.solvers.engine import linearise
 from beltdyn.system.arrays import Motion, System, TangentFactors
 from beltdyn.system.frame import OverTime
 from beltdyn.system.guide import rows_of_ties
-from beltdyn.system.motion import new_equations, no_multipliers
 from beltdyn.system.moving_center import pulley_speeds
 from beltdyn.system.ring_matrix import entries, places
+from beltdyn.system.steady_assembly import new_equations, no_multipliers
 
 if TYPE_CHECKING:
     from scipy.sparse import csc_array

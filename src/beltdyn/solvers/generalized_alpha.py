@@ -14,8 +14,8 @@ from beltdyn.solvers.integrator_state import IntegratorState, Settings, Steps, e
 from beltdyn.solvers.trajectory import Chunk, Task
 from beltdyn.system.arrays import BodyForces, Equations, System
 from beltdyn.system.frame import FlowingByArcs
-from beltdyn.system.motion import new_equations
 from beltdyn.system.state import crossing_time
+from beltdyn.system.steady_assembly import new_equations
 
 _ROOM = 64
 """Steps handed out at once, at most."""

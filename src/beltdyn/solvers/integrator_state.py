@@ -10,7 +10,7 @@ from beltdyn.records import blank, record
 from beltdyn.system.arrays import ENERGY_WORKS, POWERS, BodyForces, Motion, System
 from beltdyn.system.body_forces import body_forces_history
 from beltdyn.system.missed_action import missed_action
-from beltdyn.system.motion import no_multipliers
+from beltdyn.system.steady_assembly import no_multipliers
 
 CLOCK = record(
     time="f8",  # s

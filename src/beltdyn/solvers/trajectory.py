@@ -12,8 +12,8 @@ from beltdyn.model import Prepared
 from beltdyn.model.pulley import fastest_rim
 from beltdyn.model.simulation import SAME, Instants
 from beltdyn.system.arrays import ENERGY_WORKS, BodyForces, System
+from beltdyn.system.body_forces import body_forces_at
 from beltdyn.system.state import State
-from beltdyn.system.state_forces import body_forces_at
 
 
 @dataclass(frozen=True, eq=False)
@@ -31,7 +31,7 @@ class Chunk:
     work: FloatArray
     """In the order of `system.arrays.ENERGY_WORKS`, since time zero, J, shape (k, 10)."""
     forces: BodyForces
-    """Of each state; `system.state_forces.body_forces_at` finds them where a method does not know them."""
+    """Of each state; `system.body_forces.body_forces_at` finds them where a method does not know them."""
     reached: float
     """Time that the solver has reached, s."""
 

@@ -15,12 +15,11 @@ from beltdyn.solvers.eigenvalues import nearest, pencil
 from beltdyn.solvers.flutter import Vibrations
 from beltdyn.state.settling import with_passage
 from beltdyn.system.arrays import System
-from beltdyn.system.build import drive_system
-from beltdyn.system.build_staying import flowing_system, open_ended
+from beltdyn.system.body_forces import body_forces_at
+from beltdyn.system.build import drive_system, flowing_system, open_ended
 from beltdyn.system.constant_drive import rim_of_bodies, twists
 from beltdyn.system.meshing import turning
 from beltdyn.system.state import State
-from beltdyn.system.state_forces import body_forces_at
 from beltdyn.system.steady_assembly import anchor_at
 
 if TYPE_CHECKING:

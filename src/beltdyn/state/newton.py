@@ -13,9 +13,8 @@ from beltdyn.system.arc_mesh import arc_count, change_shifts, largest_shift
 from beltdyn.system.arrays import Equations, Motion, NoCarriage, System
 from beltdyn.system.body_forces import controls
 from beltdyn.system.meshing import change_body, change_flow, reach_of
-from beltdyn.system.motion import new_equations
 from beltdyn.system.ring_matrix import factorise_ring, ring_matrix, substitute
-from beltdyn.system.steady_assembly import Anchor, assemble_steady
+from beltdyn.system.steady_assembly import Anchor, assemble_steady, new_equations
 from beltdyn.system.web import WebLine, change_content, content, set_content, way_of_content
 
 FOUND: Final = 0

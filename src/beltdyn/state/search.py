@@ -17,8 +17,8 @@ from beltdyn.state.slip_limit import GROSS, Passed, Setting, gross_slip, slip_li
 from beltdyn.state.staying import TOLERANCE, Standing, transfer
 from beltdyn.system.arc_mesh import fitted, shifts_of
 from beltdyn.system.arrays import System
+from beltdyn.system.build import loses_in_bending, on_other_mesh, with_bending_loss
 from beltdyn.system.build_machines import with_resistance
-from beltdyn.system.build_staying import loses_in_bending, on_other_mesh, with_bending_loss
 from beltdyn.system.constant_drive import (
     constant_drive,
     drive_shafts,

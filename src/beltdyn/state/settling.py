@@ -24,8 +24,8 @@ from beltdyn.state.search import SteadySearch
 from beltdyn.state.staying import FINER, Standing, bring_to_stand, stand
 from beltdyn.system.arc_mesh import base_lengths, mesh_attributes, shifts_of
 from beltdyn.system.arrays import System
+from beltdyn.system.build import flowing_system, on_other_mesh, open_ended
 from beltdyn.system.build_machines import profile_arrays
-from beltdyn.system.build_staying import flowing_system, on_other_mesh, open_ended
 from beltdyn.system.meshing import tooth_phases, turning
 from beltdyn.system.observe import observe_motion
 from beltdyn.system.state import State

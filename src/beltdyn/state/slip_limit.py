@@ -14,10 +14,9 @@ from beltdyn.model import Prepared
 from beltdyn.parts.quantity import RPM
 from beltdyn.system.arrays import System
 from beltdyn.system.constant_drive import own_torque
-from beltdyn.system.discretization import curve_lengths
 from beltdyn.system.nips import seen_nips
 from beltdyn.system.observe import observe
-from beltdyn.system.state import State
+from beltdyn.system.state import State, curve_lengths
 
 _FULL = 0.9
 """Use of friction of a pulley that slips as a whole, at least."""

@@ -19,8 +19,8 @@ from beltdyn.records import Records
 from beltdyn.solvers.engine import correct, linearise
 from beltdyn.system.arrays import Equations, Motion, System, TangentFactors
 from beltdyn.system.meshing import phases, turning_grooves, unloaded
-from beltdyn.system.motion import new_equations, no_multipliers
 from beltdyn.system.state import State
+from beltdyn.system.steady_assembly import new_equations, no_multipliers
 
 _STATE_TOLERANCE = 1e-11
 _FORCE_TOLERANCE = 1e-11

@@ -16,15 +16,14 @@ from beltdyn.state.static import only_tensioners
 from beltdyn.state.tightening import Tightening, begin
 from beltdyn.system.arc_mesh import base_lengths, fitted, shifts_of
 from beltdyn.system.arrays import System
+from beltdyn.system.build import staying_system
 from beltdyn.system.build_machines import with_resistance
-from beltdyn.system.build_staying import staying_system
 from beltdyn.system.constant_drive import without_motion
-from beltdyn.system.discretization import nodal_coordinates, point_coordinates
 from beltdyn.system.frame import centreline_places, centreline_points
 from beltdyn.system.meshing import fit_phases, has_teeth, unloaded, with_softer_teeth
 from beltdyn.system.moving_center import pulley_center
 from beltdyn.system.observations import Observations
-from beltdyn.system.state import State, at_rest
+from beltdyn.system.state import State, at_rest, nodal_coordinates, point_coordinates
 from beltdyn.system.steady_assembly import Anchor, anchor_at
 
 TOLERANCE = 1e-9

@@ -27,10 +27,10 @@ from beltdyn.state.search import SteadySearch
 from beltdyn.state.staying import FINER, Standing, bring_to_stand, carried, require_passing
 from beltdyn.system.arc_mesh import MESH_SHIFTS, lengths_of, mesh_attributes, shifts_of
 from beltdyn.system.arrays import System
+from beltdyn.system.body_forces import body_forces_at
 from beltdyn.system.constant_drive import controllers, rigid_links
 from beltdyn.system.meshing import TOOTH_PHASES, has_teeth, phases
 from beltdyn.system.state import State
-from beltdyn.system.state_forces import body_forces_at
 
 # The instant at which an analysis takes a drive that changes over time
 

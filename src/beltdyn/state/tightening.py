@@ -14,7 +14,7 @@ from beltdyn.arrays import FloatArray
 from beltdyn.errors import ConvergenceError, ModelError
 from beltdyn.model.prepared import Prepared
 from beltdyn.model.rest_estimate import tightening
-from beltdyn.model.tensioner_balance import balance_tensioners
+from beltdyn.model.static_estimate import balance_tensioners
 from beltdyn.system.observations import Observations
 
 _ACCURACY = 1e-6

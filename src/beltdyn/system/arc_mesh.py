@@ -14,7 +14,7 @@ import numpy as np
 
 from beltdyn.arrays import ComplexArray, FloatArray, IntArray
 from beltdyn.kernel import by_type, kernel
-from beltdyn.machines.tensioners.tensioner_rows import tensioner_center
+from beltdyn.machines.tensioners import tensioner_center
 from beltdyn.model import Prepared
 from beltdyn.system.arrays import Motion, RingMatrix, System, TangentFactors
 from beltdyn.system.frame import (

@@ -9,11 +9,11 @@ import numpy as np
 from beltdyn.arrays import FloatArray, IntArray
 from beltdyn.errors import ModelError
 from beltdyn.machines import Goods, MovingTensioner, Tensioner
-from beltdyn.machines.carrying.support_rows import GOODS, SUPPORT_ROWS
-from beltdyn.machines.links.link_rows import PlacedLink, link_rows
+from beltdyn.machines.carrying import GOODS, SUPPORT_ROWS
+from beltdyn.machines.links import PlacedLink, link_rows
 from beltdyn.machines.loads.shaft import Sensor, ShaftLoads, shaft_loads
 from beltdyn.machines.profiles.functions import NO_SCHEDULE, Profiles, profile_rows
-from beltdyn.machines.tensioners.tensioner_rows import TENSIONER_ROWS
+from beltdyn.machines.tensioners import TENSIONER_ROWS
 from beltdyn.model import Path, Prepared, Pulley
 from beltdyn.model.carrier import carriers_of
 from beltdyn.model.carrying import Stretch, normal_load, stiffness_of, upper_side

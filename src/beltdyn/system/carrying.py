@@ -17,7 +17,7 @@ import numpy as np
 from beltdyn.arrays import FloatArray
 from beltdyn.contact.contact_zone import fill_bernstein, fill_shape_functions
 from beltdyn.kernel import by_type, kernel
-from beltdyn.machines.carrying.support_rows import resistance_of_kind
+from beltdyn.machines.carrying import resistance_of_kind
 from beltdyn.machines.profiles.functions import schedule_value
 from beltdyn.system.arrays import CARRYING_LOSS, Bare, BodyForces, Carrying, Motion, System
 from beltdyn.system.element_state import gather

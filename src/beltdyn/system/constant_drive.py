@@ -7,7 +7,7 @@ import numpy as np
 from beltdyn.arrays import BoolArray, FloatArray, IntArray
 from beltdyn.errors import ModelError
 from beltdyn.kernel import interpreted
-from beltdyn.machines.links.link_rows import link_torque
+from beltdyn.machines.links import link_torque
 from beltdyn.machines.loads.shaft import mean_loads, shaft_torque
 from beltdyn.machines.profiles.functions import PROFILE, profile_value
 from beltdyn.machines.profiles.profile import SEGMENT

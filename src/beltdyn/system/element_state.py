@@ -6,15 +6,15 @@ from beltdyn.arrays import FloatArray
 from beltdyn.contact.contact_force import contact_record
 from beltdyn.contact.contact_zone import Curve
 from beltdyn.contact.surface import element_start
-from beltdyn.elements.dispatch import damping_force
+from beltdyn.elements import damping_force
 from beltdyn.elements.kind import DampingFactors, is_damped
 from beltdyn.kernel import kernel
 from beltdyn.records import blank, record
 from beltdyn.system.arrays import BENDING_LOSS, STRETCH_LOSS, Bare, BodyForces, System, TangentFactors
-from beltdyn.system.discretization import element_kind
 from beltdyn.system.frame import Travelling, add_flow, flow_record
 from beltdyn.system.material_loss import add_hysteresis, hysteresis_scratch
 from beltdyn.system.moving_center import drift_record
+from beltdyn.system.state import element_kind
 
 
 def element_workspace(system: System) -> np.record:

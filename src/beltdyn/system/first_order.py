@@ -17,12 +17,11 @@ from beltdyn.system.arrays import (
     System,
     TangentFactors,
 )
+from beltdyn.system.body_forces import body_forces_at, prescribe
 from beltdyn.system.missed_action import jump_work
-from beltdyn.system.motion import new_equations, no_multipliers
 from beltdyn.system.ring_matrix import entries, places
 from beltdyn.system.state import State
-from beltdyn.system.state_forces import body_forces_at, prescribe
-from beltdyn.system.steady_assembly import assemble
+from beltdyn.system.steady_assembly import assemble, new_equations, no_multipliers
 
 # The belt's ends joined by Lagrange multipliers, and the multipliers eliminated (Eqs. 25 and 26)
 

@@ -21,7 +21,7 @@ from beltdyn.kernel import by_type, kernel
 from beltdyn.quadrature import gauss_points
 from beltdyn.records import record
 from beltdyn.system.arrays import System
-from beltdyn.system.discretization import curve_lengths
+from beltdyn.system.state import curve_lengths
 
 # Points of the centerline of a belt at any place along it
 

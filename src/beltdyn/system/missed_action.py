@@ -12,7 +12,7 @@ import numpy as np
 
 from beltdyn.arrays import FloatArray
 from beltdyn.kernel import by_type, kernel
-from beltdyn.machines.links.link_rows import link_torque
+from beltdyn.machines.links import link_torque
 from beltdyn.machines.loads.shaft import load_bend, load_torque, shaft_torque
 from beltdyn.machines.profiles.functions import (
     NO_SCHEDULE,

@@ -17,11 +17,12 @@ from beltdyn.contact.law import PulleyState
 from beltdyn.contact.penetration import approach, slip_velocity
 from beltdyn.contact.point_force import point_force
 from beltdyn.contact.teeth import tooth_at, tooth_push, tooth_reach, tooth_traction
-from beltdyn.elements.dispatch import strain_energy, tension
+from beltdyn.elements import strain_energy, tension
 from beltdyn.kernel import kernel
-from beltdyn.machines.tensioners.tensioner_rows import tensioner_center
+from beltdyn.machines.tensioners import tensioner_center
 from beltdyn.system.arc_mesh import fit_mesh
 from beltdyn.system.arrays import BodyForces, System
+from beltdyn.system.body_forces import body_forces_at
 from beltdyn.system.element_state import centreline, gather_motion
 from beltdyn.system.material_loss import hysteresis_tension
 from beltdyn.system.moving_center import pulley_state, tensioner_coordinate
@@ -35,7 +36,6 @@ from beltdyn.system.observations import (
     turned_at,
     turned_at_the_end,
 )
-from beltdyn.system.state_forces import body_forces_at
 
 
 def observe(system: System, time: FloatArray, position: FloatArray, velocity: FloatArray) -> Observations:

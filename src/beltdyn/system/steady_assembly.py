@@ -25,10 +25,9 @@ import numpy as np
 from beltdyn.arrays import FloatArray
 from beltdyn.contact.contact_force import ContactFactors, contact_force
 from beltdyn.contact.contact_zone import Curve, out_of_reach
-from beltdyn.elements.dispatch import elastic_force
+from beltdyn.elements import elastic_force
 from beltdyn.kernel import by_type, kernel
 from beltdyn.system.arc_mesh import add_holding_force, fit_mesh, hold_arcs
-from beltdyn.system.arc_tangent import add_steady_shifts, arcs_element
 from beltdyn.system.arrays import (
     NO_TANGENT,
     BodyForces,
@@ -39,13 +38,22 @@ from beltdyn.system.arrays import (
     System,
     TangentFactors,
 )
-from beltdyn.system.body_forces import add_contact, add_machines, clear_body_forces, controls, differentiates_forces
+from beltdyn.system.body_forces import (
+    add_contact,
+    add_machines,
+    clear_body_forces,
+    controls,
+    differentiates_forces,
+    new_body_forces,
+)
 from beltdyn.system.carrying import CarryingFactors, add_carrying
-from beltdyn.system.element_state import add_material_damping, centreline, gather, gather_motion
+from beltdyn.system.element_state import add_material_damping, centreline, element_workspace, gather, gather_motion
 from beltdyn.system.flow_tangent import (
     NO_FLOW_TANGENT,
     FlowFactors,
     add_flow_forces,
+    add_steady_shifts,
+    arcs_element,
     find_rate,
     flowing_element,
     hold_mesh,
@@ -56,7 +64,7 @@ from beltdyn.system.frame import Flowing, FlowingByArcs, Travelling
 from beltdyn.system.guide import carry_ends
 from beltdyn.system.meshing import add_steady_machines, clear_last_row, flow_unknown
 from beltdyn.system.moving_center import couple_center, keep_drift, moving_center, pulley_state
-from beltdyn.system.ring_matrix import clear
+from beltdyn.system.ring_matrix import clear, ring_matrix
 from beltdyn.system.state import State
 from beltdyn.system.supports import add_nodal_loads, couple_rim, hold_fixed, scatter, take_contact
 from beltdyn.system.web import WebLine, hold_web
@@ -335,3 +343,56 @@ def _hold_line(
 
 _hold = by_type({NoCarriage: _hold_belt, WebLine: _hold_line}, "hold")
 """What keeps the mesh in its place."""
+
+
+def new_equations(system: System) -> Equations:
+    """Make the arrays for a system."""
+    dof, border = len(system.scale), border_size(system)
+    return Equations(
+        ring_matrix(dof, system.nodes, border),
+        np.zeros((system.nodes, dof)),
+        np.zeros(border),
+        new_body_forces(system),
+        element_workspace(system),
+    )
+
+
+def no_multipliers(system: System) -> FloatArray:
+    """Multipliers of a joint that transmits nothing, or where there is none, shape (n,)."""
+    return np.zeros(len(system.scale))
+
+
+@kernel
+def subtract_solution(system: System, equations: Equations, factor: float, vector: FloatArray) -> None:
+    """Take factor times the solution off a state vector.
+
+    Parameters
+    ----------
+    system
+        The system.
+    equations
+        With a solution.
+    factor
+        Dimensionless, or the factor between unknown and vector.
+    vector : ndarray, shape (n N + D,)
+        Positions, velocities or accelerations, changed in place; prescribed bodies keep theirs.
+    """
+    dof = len(system.scale)
+    for node in range(system.nodes):
+        for c in range(dof):
+            vector[dof * node + c] -= factor * equations.node_part[node, c]
+    first = system.first_body
+    for body in range(system.bodies.size):
+        unknown = system.bodies[body].unknown
+        if unknown >= 0:
+            vector[first + body] -= factor * equations.border_part[unknown]
+
+
+@kernel
+def subtract_multipliers(system: System, equations: Equations, factor: float, multipliers: FloatArray) -> None:
+    """Take factor times the solution off the multipliers of the joint, if there is one."""
+    if system.joint:
+        dof = len(system.scale)
+        first = equations.border_part.size - dof
+        for c in range(dof):
+            multipliers[c] -= factor * equations.border_part[first + c]

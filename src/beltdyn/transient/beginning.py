@@ -29,13 +29,11 @@ from beltdyn.state.staying import stand
 from beltdyn.state.steady import require_steady_start
 from beltdyn.system.arc_mesh import MESH_LENGTHS, lengths_of
 from beltdyn.system.arrays import System
-from beltdyn.system.build import drive_system
-from beltdyn.system.build_staying import flowing_system, open_ended, staying_system
+from beltdyn.system.build import drive_system, flowing_system, open_ended, staying_system
 from beltdyn.system.constant_drive import constant_drive
-from beltdyn.system.discretization import curve_lengths, nodal_coordinates, point_coordinates
 from beltdyn.system.frame import centreline_points
 from beltdyn.system.meshing import TOOTH_PHASES, fit_phases, tooth_phases, turned_as, turned_by, turning
-from beltdyn.system.state import State, at_rest, laid
+from beltdyn.system.state import State, at_rest, curve_lengths, laid, nodal_coordinates, point_coordinates
 from beltdyn.transient.checkpoint import is_checkpoint
 
 _SAME = 1e-6

@@ -50,8 +50,8 @@ from beltdyn.stretch import CommonStretch
 from beltdyn.system.arrays import Bare, BodyForces, Carrying, NoCarriage, Supports, System
 from beltdyn.system.frame import ArcMesh, Flowing, FlowingByArcs, Staying, StayingByArcs, Travelling
 from beltdyn.system.guide import Guided
+from beltdyn.system.meshing import JumpWatch
 from beltdyn.system.running_web import RunningWeb
-from beltdyn.system.single_teeth import JumpWatch
 from beltdyn.system.state import State
 
 # Objects as bytes and back: JSON, arrays behind it, and a checksum before both

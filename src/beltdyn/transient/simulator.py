@@ -20,11 +20,11 @@ from beltdyn.solvers.integrator_state import IntegratorState, grown
 from beltdyn.solvers.run_progress import Report
 from beltdyn.solvers.trajectory import Statistics, drive_task
 from beltdyn.system.arrays import ENERGY_WORKS
+from beltdyn.system.body_forces import body_forces_at
 from beltdyn.system.build_machines import profile_arrays
 from beltdyn.system.moving_center import moving_to, pulley_center, with_movers
 from beltdyn.system.observe import observe_motion
 from beltdyn.system.state import State
-from beltdyn.system.state_forces import body_forces_at
 from beltdyn.transient.beginning import begin_on, mesh_of, settled
 from beltdyn.transient.simulate import choose_integrator
 

@@ -13,9 +13,8 @@ from beltdyn.state.static import standing
 from beltdyn.state.staying import Standing, bring_to_stand
 from beltdyn.state.steady import search_from
 from beltdyn.system.arrays import System
-from beltdyn.system.build import drive_system
+from beltdyn.system.build import drive_system, flowing_system, staying_system, without_hysteresis
 from beltdyn.system.build_machines import with_resistance
-from beltdyn.system.build_staying import flowing_system, staying_system, without_hysteresis
 from beltdyn.system.constant_drive import constant_drive, dry_friction_of, without_actions
 from beltdyn.system.meshing import stopped
 from beltdyn.system.state import State

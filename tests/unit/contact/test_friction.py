@@ -7,8 +7,14 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from beltdyn.contact.friction import AirFilm, FrictionParameters, RelativeCreep, as_common, friction_force
-from beltdyn.contact.friction.common import CommonFriction
+from beltdyn.contact.friction import (
+    AirFilm,
+    CommonFriction,
+    FrictionParameters,
+    RelativeCreep,
+    as_common,
+    friction_force,
+)
 
 MU = 0.5
 RIM = 0.8

@@ -9,7 +9,7 @@ import pytest
 import beltdyn as bd
 from beltdyn.errors import ModelError
 from beltdyn.model import example, install
-from beltdyn.model.tensioning import tension_checks
+from beltdyn.model.installation import tension_checks
 
 ROWS = [
     {"name": "idle", "share": 0.7, "speed": "900 rpm", "power": {"alternator": "0.5 kW"}},

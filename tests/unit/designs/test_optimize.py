@@ -8,7 +8,7 @@ import pytest
 
 from beltdyn.designs.batch import held, study_points
 from beltdyn.designs.designs import Designs, free_number
-from beltdyn.designs.goals import aims_of
+from beltdyn.designs.optimization_history import aims_of
 from beltdyn.designs.optimize import optimize
 from beltdyn.errors import ConvergenceError, ModelError
 from beltdyn.model import Drive, OptimizationStudy, dumps, loads

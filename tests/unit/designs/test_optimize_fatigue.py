@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 
 from beltdyn.designs.batch import OperatingPoint
-from beltdyn.designs.goals import aims_of
 from beltdyn.designs.named_results import names_of, unit_of, values_of
+from beltdyn.designs.optimization_history import aims_of
 from beltdyn.model import Drive, OptimizationStudy
 from beltdyn.results.damage import hourly_damage
 from beltdyn.state.steady import steady_state

@@ -11,8 +11,8 @@ import pytest
 from beltdyn.designs.selection import DIAMETERS, Proposal, select
 from beltdyn.errors import ModelError
 from beltdyn.model import install, loads, prepare, read_catalogue
+from beltdyn.model.installation import RUN_IN
 from beltdyn.model.rating import RatedBelt
-from beltdyn.model.tensioning import RUN_IN
 from beltdyn.results.means import rate
 from beltdyn.theory.span import open_belt
 

@@ -2,7 +2,7 @@
 
 from beltdyn.designs.sensitivity import chosen_numbers
 from beltdyn.model import loads
-from beltdyn.parts.tolerances import tolerances_of
+from beltdyn.parts.change import tolerances_of
 from tests.unit.conftest import FATIGUE_DRIVE
 
 

@@ -6,14 +6,13 @@ import numpy as np
 import pytest
 
 from beltdyn.arrays import FloatArray
-from beltdyn.elements import ELEMENTS
-from beltdyn.elements.dispatch import damping_force, elastic_force, strain_energy, tension
+from beltdyn.elements import ELEMENTS, damping_force, elastic_force, strain_energy, tension
 from beltdyn.elements.kind import DampingFactors, ElementKind, Section
 from beltdyn.model import Drive
 from beltdyn.quadrature import gauss_points
 from beltdyn.records import blank
 from beltdyn.stretch import StretchParameters
-from beltdyn.system.discretization import belt_section
+from beltdyn.system.state import belt_section
 
 LENGTH = 0.06
 DIRECTION = np.array([0.8, -0.6])

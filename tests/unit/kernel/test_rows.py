@@ -1,13 +1,15 @@
-"""Laws from outside the package in kernels of the package: kept on disk, and compiled anew where they have changed."""
+"""Kernels chosen by the kind of a row; laws from outside, kept on disk and compiled anew where they changed."""
 
 import os
 import subprocess
 import sys
 from pathlib import Path
 
+import numpy as np
 import pytest
 
-from beltdyn.kernel import CACHE_VARIABLE, PLAIN_VARIABLE
+from beltdyn.kernel import CACHE_VARIABLE, PLAIN_VARIABLE, choice, interpreted, kernel
+from beltdyn.records import record, row
 
 _LAW = """
 from typing import NamedTuple
@@ -61,7 +63,7 @@ def own_load(factor):
     return register(Pull)
 
 from beltdyn.machines.loads.load import ShaftState
-from beltdyn.machines.loads.load_rows import SHAFT_LOADS, torque_of_kind
+from beltdyn.machines.loads import SHAFT_LOADS, torque_of_kind
 from beltdyn.records import row
 
 for factor in (3.0, 5.0):
@@ -110,3 +112,60 @@ def test_a_load_that_is_registered_again_replaces_the_one_before_in_kernels(tmp_
     """As when a cell of a notebook is run again, and from the disk."""
     assert [run(tmp_path, _LOAD), run(tmp_path, _LOAD)] == [["6.0", "10.0"]] * 2
     assert kept(tmp_path) == 2
+
+
+LINE, CIRCLE = record(slope="f8"), record(radius="f8")
+SHAPE = record(kind="i8", line=LINE, circle=CIRCLE)
+
+
+@kernel
+def line_height(line: np.record, x: float) -> float:
+    return float(line.slope * x)
+
+
+@kernel
+def circle_height(circle: np.record, x: float) -> float:
+    return float(np.sqrt(circle.radius * circle.radius - x * x))
+
+
+height = choice("height", {"line": line_height, "circle": circle_height}, ["x"])
+
+
+@kernel
+def twice_the_height(shape: np.record, x: float) -> float:
+    return float(2.0 * height(shape, x))
+
+
+@pytest.mark.parametrize(
+    ("kind", "numbers", "expected"), [(0, {"line": {"slope": 0.5}}, 1.5), (1, {"circle": {"radius": 5.0}}, 4.0)]
+)
+def test_the_kind_of_the_row_chooses(kind: int, numbers: dict[str, dict[str, float]], expected: float) -> None:
+    shape = row(SHAPE, kind=kind, **numbers)
+    assert height(shape, 3.0) == expected
+    assert twice_the_height(shape, 3.0) == 2.0 * expected
+
+
+def test_python_runs_a_kernel_and_those_that_it_calls_without_the_compiler() -> None:
+    program = """
+import sys
+import numpy as np
+from beltdyn.kernel import interpreted
+from beltdyn.machines.tensioners import tensioner_force
+from beltdyn.machines.tensioners import TENSIONER
+from beltdyn.records import row
+spring = {"preload": 20.0, "rate": 30.0, "creep_speed": 0.1, "lower": -np.inf, "upper": np.inf}
+tensioner = row(TENSIONER, kind=1, sliding={"spring": spring})
+print(interpreted(tensioner_force)(tensioner, 0.1, 0.0).force, "numba" in sys.modules)
+"""
+    done = subprocess.run([sys.executable, "-c", program], capture_output=True, text=True, check=True)
+    assert done.stdout.split() == ["17.0", "False"]
+
+
+def test_an_interpreted_kernel_takes_arrays() -> None:
+    line = row(LINE, slope=2.0)
+
+    @kernel
+    def doubled(given: np.record, x: float) -> float:
+        return given.slope * x  # type: ignore[no-any-return]
+
+    np.testing.assert_array_equal(interpreted(doubled)(line, np.array([1.0, 2.0])), [2.0, 4.0])  # type: ignore[arg-type]

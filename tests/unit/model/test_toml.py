@@ -13,8 +13,8 @@ from hypothesis import strategies as st
 from beltdyn.errors import ModelError
 from beltdyn.model import Drive, LoadTable, Pulley, Table, advise, dumps, install, json_schema, load, loads, prepare
 from beltdyn.model.toml import edited
+from beltdyn.parts.change import tolerances_of
 from beltdyn.parts.quantity import RPM
-from beltdyn.parts.tolerances import tolerances_of
 
 
 def test_the_papers_drive(drive: Drive) -> None:

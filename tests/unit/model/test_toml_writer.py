@@ -8,8 +8,7 @@ import pytest
 from beltdyn.designs.sensitivity import numbers_of
 from beltdyn.model import Drive, dumps, loads
 from beltdyn.model.toml import edited, spelled_out
-from beltdyn.parts.change import unit_at
-from beltdyn.parts.tolerances import tolerances_of
+from beltdyn.parts.change import tolerances_of, unit_at
 
 EXAMPLES = sorted(path.name for path in files("beltdyn").joinpath("examples").iterdir() if path.name.endswith(".toml"))
 

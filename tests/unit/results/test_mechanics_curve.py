@@ -1,7 +1,7 @@
 import numpy as np
 import pytest
 
-from beltdyn.elements.ancf.belt_element import ANCF
+from beltdyn.elements.ancf import ANCF
 from beltdyn.elements.truss import TRUSS
 from beltdyn.results.mechanics import centerline
 

@@ -4,7 +4,7 @@ import pytest
 
 from beltdyn.errors import ModelError
 from beltdyn.model import Drive, install
-from beltdyn.model.tensioning import tension_checks
+from beltdyn.model.installation import tension_checks
 from beltdyn.show.rest_sheet import rest_sheet, tensioning
 
 

@@ -9,8 +9,8 @@ from beltdyn.solvers.engine import advance, restart
 from beltdyn.solvers.integrator_state import IntegratorState, Settings, empty_steps, new_state
 from beltdyn.solvers.trajectory import Chunk
 from beltdyn.system.arrays import ENERGY_WORKS, BodyForces, System
-from beltdyn.system.motion import new_equations
 from beltdyn.system.state import straight
+from beltdyn.system.steady_assembly import new_equations
 
 SETTINGS = Settings(0.8, 1e-3, 1e-3, 1.0)
 ACCELERATION = 5.0

@@ -9,8 +9,8 @@ from beltdyn.solvers.alpha_step import method_of, new_step, try_step
 from beltdyn.solvers.engine import restart
 from beltdyn.solvers.integrator_state import Settings, allowed_error, new_state
 from beltdyn.system.arrays import System
-from beltdyn.system.motion import new_equations
 from beltdyn.system.state import straight
+from beltdyn.system.steady_assembly import new_equations
 
 SETTINGS = Settings(0.8, 1e-3, 1e-3, 1.0, long_step=0.02)
 ACCELERATION = 5.0

@@ -7,8 +7,7 @@ from beltdyn.model import Drive, prepare
 from beltdyn.solvers.alpha_step import follow_trend, method_of, predict
 from beltdyn.solvers.integrator_state import IntegratorState, new_state
 from beltdyn.system.arrays import System
-from beltdyn.system.build import drive_system
-from beltdyn.system.build_staying import flowing_system, staying_system
+from beltdyn.system.build import drive_system, flowing_system, staying_system
 
 METHOD = method_of(0.6)
 STEP = 2e-3

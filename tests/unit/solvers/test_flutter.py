@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 
-from beltdyn.contact.friction.common import CommonFriction
+from beltdyn.contact.friction import CommonFriction
 from beltdyn.model import Drive, prepare
 from beltdyn.solvers import flutter
 from beltdyn.solvers.flutter import FlutterWatch, growth_rates, growth_within, longest_pieces

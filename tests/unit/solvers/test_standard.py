@@ -49,8 +49,8 @@ def test_longest_step(spin: Spin, name: Name) -> None:
 @pytest.mark.parametrize("name", NAMES)
 @pytest.mark.filterwarnings("ignore::RuntimeWarning")  # SciPy's, of the nan that is meant
 def test_failure_names_the_integrator_and_a_remedy(spin: Spin, spinning: System, name: Name) -> None:
-    section, elastic = spinning.element
-    broken = spinning._replace(element=Ancf(section._replace(stretch=as_common(Green(np.nan))), elastic))
+    section = spinning.element.section._replace(stretch=as_common(Green(np.nan)))
+    broken = spinning._replace(element=Ancf(section, spinning.element.elastic))
     with pytest.raises(ConvergenceError, match=f"integrator {name} fails.*generalized_alpha"):
         list(StandardIntegrator(name, 1e-3)(spin(INTERVAL, system=broken)))
 

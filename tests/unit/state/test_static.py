@@ -9,8 +9,7 @@ from beltdyn.state.installation import drawn_in
 from beltdyn.state.static import find_equilibrium
 from beltdyn.system.arrays import System
 from beltdyn.system.build import belt_system, drive_system
-from beltdyn.system.discretization import belt_section
-from beltdyn.system.state import laid, straight
+from beltdyn.system.state import belt_section, laid, straight
 
 SECTION_HELD = [(0, 0), (0, 1), (0, 4), (0, 5)]
 

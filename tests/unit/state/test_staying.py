@@ -13,7 +13,7 @@ from beltdyn.model.resolution import Laid
 from beltdyn.state import staying
 from beltdyn.state.newton import find_steady
 from beltdyn.state.staying import bring_to_stand, carried, found_arcs, stand, stand_like, transfer
-from beltdyn.system.build_staying import staying_system
+from beltdyn.system.build import staying_system
 from beltdyn.system.frame import centreline_points
 
 

@@ -9,8 +9,8 @@ from beltdyn.state.newton import steady_work
 from beltdyn.state.staying import Standing, bring_to_stand
 from beltdyn.system.arc_mesh import arc_count, base_coordinates, fitted, shifts_of, zones_of
 from beltdyn.system.arrays import Carrying, Motion, RingMatrix, System
+from beltdyn.system.build import flowing_system, staying_system
 from beltdyn.system.build_machines import carrying_arrays, with_resistance
-from beltdyn.system.build_staying import flowing_system, staying_system
 from beltdyn.system.constant_drive import constant_drive, with_speeds_unknown
 from beltdyn.system.frame import FlowingByArcs, StayingByArcs
 from beltdyn.system.steady_assembly import Anchor, anchor_at, assemble_steady

@@ -8,12 +8,12 @@ import pytest
 from beltdyn.arrays import FloatArray
 from beltdyn.model import Drive, Path, prepare
 from beltdyn.system.arrays import POWERS, System
+from beltdyn.system.body_forces import body_forces_at
 from beltdyn.system.build import drive_system
 from beltdyn.system.first_order import FirstOrder, mass_matrix
 from beltdyn.system.observations import OBSERVED, Observations
 from beltdyn.system.observe import observe, observe_motion
 from beltdyn.system.state import State, laid
-from beltdyn.system.state_forces import body_forces_at
 
 TIME = 0.3
 GIVEN, LOST = POWERS[:2], POWERS[2:]

@@ -17,10 +17,9 @@ from beltdyn.system.arrays import (
     TangentFactors,
 )
 from beltdyn.system.build import drive_system
-from beltdyn.system.motion import new_equations, no_multipliers
 from beltdyn.system.observe import observe
 from beltdyn.system.state import State, laid
-from beltdyn.system.steady_assembly import assemble, border_size
+from beltdyn.system.steady_assembly import assemble, border_size, new_equations, no_multipliers
 
 Dense = Callable[[RingMatrix, bool], tuple[FloatArray, FloatArray]]
 

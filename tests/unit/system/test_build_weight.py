@@ -5,7 +5,7 @@ import pytest
 
 from beltdyn.model import Belt, Drive
 from beltdyn.system.build import Closure, belt_system, weight_forces
-from beltdyn.system.discretization import Discretization, discretize
+from beltdyn.system.state import Discretization, discretize
 
 GRAVITY = (3.0, -9.0)
 

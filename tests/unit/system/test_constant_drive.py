@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from beltdyn.machines.loads.shaft import shaft_torque
-from beltdyn.machines.tensioners.tensioner_rows import tensioner_force
+from beltdyn.machines.tensioners import tensioner_force
 from beltdyn.model import Drive, prepare
 from beltdyn.system.arrays import System
 from beltdyn.system.build import drive_system

@@ -9,11 +9,10 @@ from beltdyn.model import Drive, prepare
 from beltdyn.solvers.engine import accelerate
 from beltdyn.system.arrays import Motion
 from beltdyn.system.build import belt_system, drive_system
-from beltdyn.system.discretization import curve_lengths
 from beltdyn.system.first_order import FirstOrder, mass_matrix
-from beltdyn.system.motion import new_equations, no_multipliers
 from beltdyn.system.observe import observe
-from beltdyn.system.state import laid, straight
+from beltdyn.system.state import curve_lengths, laid, straight
+from beltdyn.system.steady_assembly import new_equations, no_multipliers
 
 SPEED = 2.0
 

@@ -11,8 +11,8 @@ from beltdyn.solvers.engine import accelerate
 from beltdyn.system.arrays import POWERS, Motion, System
 from beltdyn.system.build import drive_system
 from beltdyn.system.first_order import FirstOrder
-from beltdyn.system.motion import new_equations, no_multipliers
 from beltdyn.system.state import State, laid
+from beltdyn.system.steady_assembly import new_equations, no_multipliers
 
 TIME = 0.3
 

@@ -15,15 +15,12 @@ from beltdyn.model import Drive, Path, prepare
 from beltdyn.model.resolution import Laid
 from beltdyn.state.staying import laid_state
 from beltdyn.system.arrays import NO_TANGENT, Equations, System, TangentFactors
-from beltdyn.system.build import belt_system
-from beltdyn.system.build_staying import flowing_system, staying_system
-from beltdyn.system.discretization import nodal_coordinates, point_coordinates
+from beltdyn.system.build import belt_system, flowing_system, staying_system
 from beltdyn.system.frame import Travelling, staying
 from beltdyn.system.missed_action import numerical_loss
-from beltdyn.system.motion import new_equations, no_multipliers
 from beltdyn.system.ring_matrix import entries, places
-from beltdyn.system.state import State, at_rest
-from beltdyn.system.steady_assembly import assemble
+from beltdyn.system.state import State, at_rest, nodal_coordinates, point_coordinates
+from beltdyn.system.steady_assembly import assemble, new_equations, no_multipliers
 
 SPEED, PULL = 3.0, 40.0
 FACTORS = TangentFactors(1.0, 7e2, 4e5)

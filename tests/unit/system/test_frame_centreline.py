@@ -5,9 +5,8 @@ import pytest
 
 from beltdyn.model import Drive, Path, prepare
 from beltdyn.system.build import drive_system
-from beltdyn.system.discretization import point_coordinates
 from beltdyn.system.frame import centreline_points
-from beltdyn.system.state import laid
+from beltdyn.system.state import laid, point_coordinates
 
 
 @pytest.mark.parametrize("kind", ["ancf", "quintic"])

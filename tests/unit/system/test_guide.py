@@ -8,12 +8,12 @@ from beltdyn.model import Drive, prepare
 from beltdyn.solvers.engine import linearise
 from beltdyn.solvers.flutter import Vibrations
 from beltdyn.system.arrays import SPRING_ENERGY, TORQUE_WORK, Equations, Motion, System, TangentFactors
+from beltdyn.system.body_forces import body_forces_at
 from beltdyn.system.build import drive_system
 from beltdyn.system.guide import Guided
-from beltdyn.system.motion import new_equations, no_multipliers
 from beltdyn.system.ring_matrix import entries
 from beltdyn.system.state import laid
-from beltdyn.system.state_forces import body_forces_at
+from beltdyn.system.steady_assembly import new_equations, no_multipliers
 
 DRIVE = Drive(
     belt={

@@ -10,8 +10,7 @@ from beltdyn.model import Prepared, prepare
 from beltdyn.state.static import only_tensioners
 from beltdyn.state.staying import laid_state
 from beltdyn.system.arrays import System
-from beltdyn.system.build import drive_system
-from beltdyn.system.build_staying import staying_system
+from beltdyn.system.build import drive_system, staying_system
 from beltdyn.system.constant_drive import with_speeds_unknown
 from beltdyn.system.meshing import (
     TOOTH_PHASES,

@@ -9,13 +9,13 @@ from beltdyn.state.settling import with_passage
 from beltdyn.state.staying import laid_state
 from beltdyn.system.arrays import NO_TANGENT, TORQUE_WORK, System
 from beltdyn.system.body_forces import new_body_forces
-from beltdyn.system.build_staying import flowing_system, open_ended, staying_system
+from beltdyn.system.build import flowing_system, open_ended, staying_system
 from beltdyn.system.element_state import element_workspace
 from beltdyn.system.frame import FlowingByArcs, node_shift
 from beltdyn.system.guide import rows_of_ties
-from beltdyn.system.motion import new_equations
 from beltdyn.system.running_web import carry_web, gone_with_web, push_running
 from beltdyn.system.state import State
+from beltdyn.system.steady_assembly import new_equations
 from tests.unit.model.test_web import line
 
 ENTERS, LEAVES, SPEED = 100.0, 150.0, 2.0

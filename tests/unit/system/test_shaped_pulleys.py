@@ -11,9 +11,8 @@ from beltdyn.errors import ModelError
 from beltdyn.model import Drive, Path, prepare
 from beltdyn.system.arrays import NO_TANGENT, Motion, RingMatrix, System, TangentFactors
 from beltdyn.system.build import drive_system
-from beltdyn.system.motion import new_equations
 from beltdyn.system.state import State, laid
-from beltdyn.system.steady_assembly import assemble
+from beltdyn.system.steady_assembly import assemble, new_equations
 
 ECCENTRIC = {"kind": "eccentric", "eccentricity": "1 mm", "eccentric_angle": 0.4}
 

@@ -1,4 +1,4 @@
-"""Equations of steady running: their tangent by differences, and what they say of a hoop that spins freely."""
+"""Equations of steady running: tangent by differences, a hoop that spins freely; accelerations leave no residual."""
 
 from collections.abc import Callable
 
@@ -7,19 +7,26 @@ import pytest
 
 from beltdyn.arrays import FloatArray
 from beltdyn.kernel import interpreted
-from beltdyn.model import Drive, Path, prepare
+from beltdyn.model import Belt, Constant, Drive, Path, Pulley, prepare
 from beltdyn.model.resolution import Laid
+from beltdyn.solvers.engine import accelerate
 from beltdyn.state.newton import SteadyWork, steady_work
 from beltdyn.state.staying import laid_state
-from beltdyn.system.arrays import System
-from beltdyn.system.build import belt_system
-from beltdyn.system.build_staying import staying_system
+from beltdyn.system.arrays import NO_TANGENT, Motion, System
+from beltdyn.system.build import belt_system, staying_system
 from beltdyn.system.constant_drive import constant_drive, drive_shafts, with_speeds_unknown
-from beltdyn.system.discretization import nodal_coordinates, point_coordinates
 from beltdyn.system.frame import staying
 from beltdyn.system.ring_matrix import entries, places
-from beltdyn.system.state import State, at_rest
-from beltdyn.system.steady_assembly import Anchor, anchor_at, assemble_steady
+from beltdyn.system.state import State, at_rest, nodal_coordinates, point_coordinates, straight
+from beltdyn.system.steady_assembly import (
+    Anchor,
+    anchor_at,
+    assemble,
+    assemble_steady,
+    new_equations,
+    subtract_multipliers,
+    subtract_solution,
+)
 
 SPEED = 3.0
 
@@ -103,3 +110,60 @@ def test_a_free_hoop(drive: Drive) -> None:
     np.testing.assert_allclose(found, 0.0, atol=1e-5 * force)
     system.frame.speed[0] = 22.0
     assert np.abs(residual(system, state, anchor_at(state, False), steady_work(system))).max() > 0.05 * force
+
+
+TIME = 0.3
+
+
+def test_accelerations_leave_no_residual(system: System, moving: State) -> None:
+    equations = new_equations(system)
+    motion = Motion(TIME, moving.position, moving.velocity.copy(), np.empty_like(moving.position))
+    multipliers = np.empty(len(system.scale))
+    assert accelerate(system, motion, multipliers, equations)
+    forces = np.max(np.abs(equations.matrix.node_side))
+    assemble(system, motion, multipliers, NO_TANGENT, equations)
+    np.testing.assert_allclose(equations.matrix.node_side, 0.0, atol=1e-10 * forces)  # rounding
+    np.testing.assert_allclose(equations.matrix.border_side, 0.0, atol=1e-10 * forces)
+
+
+def test_prescribed_pulley_keeps_its_profile(small: Drive, system: System, moving: State) -> None:
+    equations = new_equations(system)
+    motion = Motion(TIME, moving.position, moving.velocity.copy(), np.empty_like(moving.position))
+    accelerate(system, motion, np.empty(len(system.scale)), equations)
+    speed = small.pulleys[0].speed
+    assert speed is not None
+    assert motion.velocity[-2] == pytest.approx(float(speed.at(TIME)))
+    assert motion.acceleration[-2] == pytest.approx(12.0 / 0.55)
+
+
+@pytest.fixture
+def untouched(drive: Drive) -> Callable[[Pulley], System]:
+    """An open belt, straight and far from a pulley."""
+    belt = Belt(**drive.belt.model_dump() | {"elements": 3})
+    return lambda pulley: belt_system(belt, [pulley], drive.contact)
+
+
+def test_free_pulley_turns_by_torque_over_inertia(untouched: Callable[[Pulley], System]) -> None:
+    system = untouched(Pulley(name="far", center=(0, 50), radius=0.1, inertia=0.4, torque=Constant(value=-2.0)))
+    state, equations = straight(system), new_equations(system)
+    assert accelerate(system, state.at(TIME), np.empty(len(system.scale)), equations)
+    np.testing.assert_allclose(state.acceleration[:-1], 0.0, atol=1e-7)  # rounding of 1e4 N on grams
+    assert state.acceleration[-1] == pytest.approx(-5.0)
+
+
+def test_massless_belt_is_singular(untouched: Callable[[Pulley], System]) -> None:
+    system = untouched(Pulley(name="far", center=(0, 50), radius=0.1, inertia=0.4))
+    system = system._replace(mass=0.0 * system.mass)
+    state = straight(system)
+    assert not accelerate(system, state.at(TIME), np.empty(len(system.scale)), new_equations(system))
+
+
+def test_subtraction_leaves_prescribed_pulleys(system: System, moving: State) -> None:
+    equations = new_equations(system)
+    equations.node_part[:], equations.border_part[:] = 1.0, np.arange(equations.border_part.size)
+    vector, multipliers = moving.position.copy(), np.zeros(len(system.scale))
+    subtract_solution(system, equations, 0.5, vector)
+    subtract_multipliers(system, equations, 0.5, multipliers)
+    np.testing.assert_allclose(moving.position[:-2] - vector[:-2], 0.5)
+    np.testing.assert_array_equal(vector[-2:], moving.position[-2:])
+    np.testing.assert_array_equal(multipliers, -0.5 * np.arange(1, 7) if system.joint else 0.0)

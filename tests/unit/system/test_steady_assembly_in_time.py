@@ -7,9 +7,8 @@ import pytest
 
 from beltdyn.arrays import FloatArray
 from beltdyn.system.arrays import NO_TANGENT, Equations, RingMatrix, System, TangentFactors
-from beltdyn.system.motion import new_equations
 from beltdyn.system.state import State
-from beltdyn.system.steady_assembly import assemble, border_size
+from beltdyn.system.steady_assembly import assemble, border_size, new_equations
 
 Dense = Callable[[RingMatrix, bool], tuple[FloatArray, FloatArray]]
 MULTIPLIERS = np.array([9.0, -4.0, 0.3, 0.2, -0.1, 0.5])

@@ -10,8 +10,8 @@ from beltdyn.model import Belt, Drive
 from beltdyn.solvers.engine import linearise
 from beltdyn.system.arrays import Equations, RingMatrix, System, TangentFactors
 from beltdyn.system.build import belt_system
-from beltdyn.system.motion import new_equations, no_multipliers
 from beltdyn.system.state import straight
+from beltdyn.system.steady_assembly import new_equations, no_multipliers
 from beltdyn.system.supports import add_nodal_loads
 
 Dense = Callable[[RingMatrix, bool], tuple[FloatArray, FloatArray]]

@@ -9,7 +9,7 @@ from beltdyn.state.newton import steady_work
 from beltdyn.state.staying import laid_state
 from beltdyn.system.arrays import NO_TANGENT, TORQUE_WORK, Motion, System
 from beltdyn.system.body_forces import new_body_forces
-from beltdyn.system.build_staying import staying_system
+from beltdyn.system.build import staying_system
 from beltdyn.system.state import State
 from beltdyn.system.web import content, hold_web, push_web, rebased, set_content
 

@@ -9,7 +9,7 @@ import beltdyn as bd
 from beltdyn.errors import ModelError
 from beltdyn.model import Drive
 from beltdyn.state.installation import bring_to_rest
-from beltdyn.system.discretization import point_coordinates
+from beltdyn.system.state import point_coordinates
 from beltdyn.transient.beginning import steady_state_on
 from validation.published.cases import better, loaded_two_pulley
 

@@ -9,7 +9,7 @@ import beltdyn as bd
 from beltdyn.cli.app import main
 from beltdyn.errors import ModelError
 from beltdyn.model import Drive, prepare
-from beltdyn.system.build_staying import staying_system
+from beltdyn.system.build import staying_system
 from beltdyn.transient.beginning import instant_of
 from beltdyn.vibration.modes import modes
 from beltdyn.vibration.small_motions import state_of

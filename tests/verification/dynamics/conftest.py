@@ -16,8 +16,8 @@ from beltdyn.solvers.integrator_state import Settings, empty_steps, new_state
 from beltdyn.solvers.trajectory import Chunk, Statistics, Task
 from beltdyn.system.arrays import System
 from beltdyn.system.build import belt_system
-from beltdyn.system.motion import new_equations
 from beltdyn.system.state import State, straight
+from beltdyn.system.steady_assembly import new_equations
 
 Change = Callable[..., Drive]
 

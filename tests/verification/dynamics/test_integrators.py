@@ -19,9 +19,9 @@ from beltdyn.solvers.engine import advance
 from beltdyn.solvers.integrator_state import Settings, empty_steps, new_state
 from beltdyn.system.arrays import System
 from beltdyn.system.build import belt_system
-from beltdyn.system.motion import new_equations
 from beltdyn.system.observe import observe
 from beltdyn.system.state import straight
+from beltdyn.system.steady_assembly import new_equations
 
 Change = Callable[..., Drive]
 Measured = Callable[..., None]

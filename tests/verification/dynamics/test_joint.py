@@ -13,9 +13,8 @@ from beltdyn.state.static import find_equilibrium
 from beltdyn.system.arrays import NO_TANGENT, Motion, System
 from beltdyn.system.build import drive_system
 from beltdyn.system.first_order import joint_constraint
-from beltdyn.system.motion import new_equations, no_multipliers
 from beltdyn.system.state import laid
-from beltdyn.system.steady_assembly import assemble
+from beltdyn.system.steady_assembly import assemble, new_equations, no_multipliers
 
 Change = Callable[..., Drive]
 Measured = Callable[..., None]

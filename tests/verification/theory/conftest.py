@@ -9,7 +9,7 @@ import xarray as xr
 
 from beltdyn.arrays import FloatArray
 from beltdyn.model import Drive
-from beltdyn.system.discretization import belt_section
+from beltdyn.system.state import belt_section
 from beltdyn.theory.running_drive import RunningDrive
 
 Changes = Mapping[str, Any]

@@ -15,10 +15,9 @@ from beltdyn.model.simulation import Instants
 from beltdyn.solvers.generalized_alpha import GeneralizedAlpha
 from beltdyn.solvers.trajectory import Chunk, Statistics, Task
 from beltdyn.system.build import belt_system
-from beltdyn.system.discretization import belt_section
 from beltdyn.system.observations import Observations
 from beltdyn.system.observe import observe
-from beltdyn.system.state import State
+from beltdyn.system.state import State, belt_section
 from beltdyn.theory.span import hoop_stretch, hoop_tension
 
 SPEED, TURNS = 200.0, 2.0

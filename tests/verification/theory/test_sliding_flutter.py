@@ -14,9 +14,8 @@ import pytest
 from beltdyn.model import Contact, Drive, prepare
 from beltdyn.system.arrays import System
 from beltdyn.system.build import belt_system, drive_system
-from beltdyn.system.discretization import belt_section
 from beltdyn.system.first_order import FirstOrder
-from beltdyn.system.state import State
+from beltdyn.system.state import State, belt_section
 from beltdyn.theory.creep import SlidingBelt, fastest_flutter, flutter_at
 from beltdyn.transient.simulate import simulate
 from validation.published import better, two_pulley

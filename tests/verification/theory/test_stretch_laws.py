@@ -16,7 +16,7 @@ from beltdyn.model import Drive
 from beltdyn.quadrature import gauss_points
 from beltdyn.records import blank
 from beltdyn.state.installation import bring_to_rest
-from beltdyn.system.discretization import belt_section
+from beltdyn.system.state import belt_section
 from beltdyn.theory.creep import speed_loss
 
 CURVE = {"strains": [0.01, 0.02, 0.03, 0.05], "tensions": [70.0, 120.0, 155.0, 200.0]}

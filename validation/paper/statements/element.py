@@ -10,9 +10,8 @@ from beltdyn.model import Belt, Drive
 from beltdyn.state.static import find_equilibrium
 from beltdyn.system.arrays import System
 from beltdyn.system.build import belt_system
-from beltdyn.system.discretization import belt_section
 from beltdyn.system.observe import observe
-from beltdyn.system.state import State, at_rest, straight
+from beltdyn.system.state import State, at_rest, belt_section, straight
 from validation.paper.numbers import power_of_ten
 from validation.paper.runs import Runs
 from validation.paper.statement import Finding, Number, Section, Statement, verdict

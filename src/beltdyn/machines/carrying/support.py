@@ -1,4 +1,4 @@
-"""The contract of what carries a span between its pulleys: keys, constants, and resistance against motion."""
+"""Supports that carry a span between its pulleys, their contract and resistance, and the goods on a span."""
 
 from collections.abc import Callable, Mapping
 from math import tanh
@@ -9,8 +9,20 @@ from pydantic import Field, model_validator
 
 from beltdyn.kernel import KernelKinds, kernel
 from beltdyn.kinds import register
+from beltdyn.machines.profiles import Schedule
 from beltdyn.parts.part import Part
-from beltdyn.parts.quantity import Coordinate, Length, LineDamping, LineStiffness, Mass, Name, Ratio, Speed, Stiffness
+from beltdyn.parts.quantity import (
+    Coordinate,
+    Length,
+    LineDamping,
+    LineStiffness,
+    Mass,
+    MassPerLength,
+    Name,
+    Ratio,
+    Speed,
+    Stiffness,
+)
 from beltdyn.records import record
 
 
@@ -235,3 +247,32 @@ class Guide(Support):
         0.0, ge=0, description="the normal force of clamping, besides that of weight and curvature, in N/m"
     )
     creep_speed: Speed = Field(0.01, gt=0, description="the speed at which friction reaches 76 %, in m/s")
+
+
+class Goods(OnSpan):
+    """Goods that ride on a span: they get on with the belt's speed, have weight, and are accelerated with it.
+
+    They lie from `start` to `end`, or, as a batch, move with the belt from `start`, where they get on, to `end`.
+
+    Examples
+    --------
+    >>> bd.model.Goods(span=["tail", "head"], mass_per_length="110 kg/m").mass_per_length
+    110.0
+    """
+
+    mass_per_length: MassPerLength = Field(gt=0, description="the mass of the goods over the length, in kg/m")
+    schedule: Schedule | None = Field(None, description="the factor on the mass over time, from 0 to 1")
+    batch: tuple[Coordinate, Coordinate] | None = Field(
+        None,
+        description="the rear and the front, at time zero, of a batch that moves with the belt, from the start of the "
+        "span, in m; by default goods lie everywhere",
+    )
+
+    @model_validator(mode="after")
+    def _has_a_front(self) -> Self:
+        if self.batch is not None and not self.batch[0] < self.batch[1]:
+            raise ValueError(
+                f"batch = [{self.batch[0]:g}, {self.batch[1]:g}] m must be the rear and the front of the batch, in the "
+                "running order of the belt. Exchange them"
+            )
+        return self

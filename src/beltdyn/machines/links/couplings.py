@@ -16,7 +16,7 @@ from pydantic import Field
 from beltdyn.kernel import kernel
 from beltdyn.kinds import register
 from beltdyn.machines.links.link import HubLink, LinkTorque
-from beltdyn.machines.profiles.profile_types import Schedule
+from beltdyn.machines.profiles import Schedule
 from beltdyn.parts.quantity import Torque, TorsionalDamping, TorsionalStiffness
 from beltdyn.records import record
 

@@ -16,8 +16,8 @@ from beltdyn.arrays import FloatArray
 from beltdyn.kernel import kernel
 from beltdyn.kinds import register
 from beltdyn.machines.loads.load import Load, LoadTorque, ShaftState
+from beltdyn.machines.profiles import BrakingProfile, ForceProfile
 from beltdyn.machines.profiles.profile import Profile
-from beltdyn.machines.profiles.profile_types import BrakingProfile, ForceProfile
 from beltdyn.machines.profiles.ramps import Constant
 from beltdyn.parts.quantity import Angle, AngularSpeed, Length, Ratio, Torque
 from beltdyn.records import record

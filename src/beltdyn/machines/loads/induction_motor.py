@@ -21,8 +21,8 @@ from beltdyn.kernel import kernel
 from beltdyn.kinds import register
 from beltdyn.machines.loads.load import Load, LoadTorque, ShaftState, nearer_kink
 from beltdyn.machines.loads.motor import kloss_over_slip
+from beltdyn.machines.profiles import FrequencyProfile
 from beltdyn.machines.profiles.profile import Profile
-from beltdyn.machines.profiles.profile_types import FrequencyProfile
 from beltdyn.machines.profiles.ramps import Constant, Step
 from beltdyn.parts.messages import apart
 from beltdyn.parts.quantity import AngularSpeed, Frequency, Power, Ratio, Time

@@ -8,9 +8,9 @@ from pydantic import Field
 
 from beltdyn.arrays import FloatArray
 from beltdyn.kernel import KernelKinds, interpreted, kernel
+from beltdyn.machines.profiles import Schedule
 from beltdyn.machines.profiles.harmonic import Harmonic
 from beltdyn.machines.profiles.profile import Profile
-from beltdyn.machines.profiles.profile_types import Schedule
 from beltdyn.machines.tensioners.tensioner import MovingTensioner
 from beltdyn.parts.part import Part
 from beltdyn.records import blank, fill

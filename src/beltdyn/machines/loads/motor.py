@@ -18,8 +18,8 @@ from beltdyn.arrays import FloatArray
 from beltdyn.kernel import kernel
 from beltdyn.kinds import register
 from beltdyn.machines.loads.load import Load, LoadTorque, ShaftState, StateRate, nearer_kink
+from beltdyn.machines.profiles import PowerProfile, SpeedProfile
 from beltdyn.machines.profiles.profile import Profile
-from beltdyn.machines.profiles.profile_types import PowerProfile, SpeedProfile
 from beltdyn.parts.quantity import AngularSpeed, Power, Ratio, Time, Torque, TorsionalDamping
 from beltdyn.records import record
 

@@ -12,8 +12,8 @@ from beltdyn.kernel import kernel
 from beltdyn.kinds import register
 from beltdyn.machines.loads.brake import BRAKE, braking_torque
 from beltdyn.machines.loads.load import Load, LoadTorque, ShaftState
+from beltdyn.machines.profiles import PressureProfile
 from beltdyn.machines.profiles.profile import Profile
-from beltdyn.machines.profiles.profile_types import PressureProfile
 from beltdyn.parts.quantity import AngularSpeed, Power, QuadraticDamping, Ratio, Torque, TorsionalDamping, quantity
 from beltdyn.records import record
 

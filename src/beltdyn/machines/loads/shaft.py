@@ -9,8 +9,7 @@ import numpy as np
 
 from beltdyn.arrays import FloatArray, IntArray
 from beltdyn.kernel import kernel, labels
-from beltdyn.machines.loads.load import LOADS, Load, LoadTorque, SensorSlope, ShaftState, StateRate
-from beltdyn.machines.loads.load_rows import (
+from beltdyn.machines.loads import (
     NO_STATE,
     SHAFT_LOADS,
     kink_of_kind,
@@ -18,6 +17,7 @@ from beltdyn.machines.loads.load_rows import (
     slope_of_kind,
     torque_of_kind,
 )
+from beltdyn.machines.loads.load import LOADS, Load, LoadTorque, SensorSlope, ShaftState, StateRate
 from beltdyn.machines.profiles.functions import Profiles, command_value, profile_bend, profile_value, schedule_value
 from beltdyn.machines.profiles.harmonic import harmonic_factor, harmonic_rows
 from beltdyn.machines.tensioners.tensioner import MovingTensioner

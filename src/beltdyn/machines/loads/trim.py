@@ -14,8 +14,8 @@ from beltdyn.arrays import FloatArray
 from beltdyn.kernel import kernel
 from beltdyn.kinds import register
 from beltdyn.machines.loads.load import Load, LoadTorque, SensorSlope, ShaftState, StateRate
+from beltdyn.machines.profiles import SpeedProfile, TorqueProfile
 from beltdyn.machines.profiles.profile import Profile
-from beltdyn.machines.profiles.profile_types import SpeedProfile, TorqueProfile
 from beltdyn.machines.tensioners.tensioner import MovingTensioner
 from beltdyn.parts.quantity import Coordinate, Force, Name, Ratio, Time, TorsionalDamping, quantity
 from beltdyn.records import record

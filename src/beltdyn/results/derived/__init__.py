@@ -15,8 +15,15 @@ from beltdyn.results.derived.pulley_means import (
     tension_ratios,
     turn_means,
 )
-from beltdyn.results.derived.spectrum import amplitude_spectrum, element_order, orders, overall_level, waterfall
-from beltdyn.results.derived.tooth_variables import order_spectrum, transmission_error
+from beltdyn.results.derived.spectrum import (
+    amplitude_spectrum,
+    element_order,
+    order_spectrum,
+    orders,
+    overall_level,
+    transmission_error,
+    waterfall,
+)
 
 __all__ = [
     "amplitude_spectrum",

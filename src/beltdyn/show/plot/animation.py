@@ -17,8 +17,7 @@ from beltdyn.parts.quantity import number_in
 from beltdyn.results import Run
 from beltdyn.results.atomic import MARK, atomic_path, is_marked, require_replaceable
 from beltdyn.show.plot.drive_picture import DrivePicture, size_of
-from beltdyn.show.plot.style import new_figure, styled
-from beltdyn.show.plot.view import spread
+from beltdyn.show.plot.style import new_figure, spread, styled
 
 _DPI = 100
 _EVEN = ("-vf", "pad=ceil(iw/2)*2:ceil(ih/2)*2", "-pix_fmt", "yuv420p")

@@ -33,10 +33,10 @@ from beltdyn.show.plot.style import (
     dash,
     label,
     new_figure,
+    spread,
     styled,
     tension_colors,
 )
-from beltdyn.show.plot.view import spread
 from beltdyn.stretch import Linear
 
 # Spring-loaded tensioners in pictures of a drive: arm and pivot, or the line on which one slides, and stops

@@ -21,8 +21,7 @@ from beltdyn.results import Result, Run, derived
 from beltdyn.results.atomic import MARK, atomic_path, is_marked, make_folder, require_replaceable
 from beltdyn.results.schema import runs_steadily
 from beltdyn.show.plot.headline import headlines, overlay, write_headline
-from beltdyn.show.plot.style import one_panel, styled
-from beltdyn.show.plot.view import show_enough
+from beltdyn.show.plot.style import one_panel, show_enough, styled
 
 P = ParamSpec("P")
 _TURNS = 0.01

@@ -19,14 +19,15 @@ from beltdyn.show.plot.style import (
     axes_or_new,
     color,
     dash,
+    draw_limit,
     label,
     name_lines,
     note,
     reserve,
     set_log_scale,
     unit,
+    unit_of,
 )
-from beltdyn.show.plot.view import draw_limit, unit_of
 
 _SHOWN = 0.01
 """Part of the largest energy from which on one is drawn."""

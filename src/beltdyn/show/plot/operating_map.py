@@ -10,7 +10,7 @@ from matplotlib.figure import Figure
 
 from beltdyn.arrays import FloatArray
 from beltdyn.errors import ModelError
-from beltdyn.model.tensioner_balance import held_belt
+from beltdyn.model.static_estimate import held_belt
 from beltdyn.parts.quantity import SHOWN_UNITS
 from beltdyn.results import Result
 from beltdyn.show.plot.figures import Choice, always, figure

@@ -21,8 +21,7 @@ from numpy.typing import ArrayLike, NDArray
 from beltdyn.errors import ModelError
 from beltdyn.results import Result
 from beltdyn.show.plot.figures import FIGURES, Choice, chosen_by_default, data_uri
-from beltdyn.show.plot.style import NOTE, RESERVATION, styled
-from beltdyn.show.plot.view import LIMIT
+from beltdyn.show.plot.style import LIMIT, NOTE, RESERVATION, styled
 
 # What is drawn on the axes of a figure, drawn again on a chart: lines, marks, areas, words and names
 

@@ -6,7 +6,7 @@ import pytest
 from beltdyn.arrays import FloatArray
 from beltdyn.elements.kind import Section
 from beltdyn.model import Drive
-from beltdyn.system.discretization import belt_section
+from beltdyn.system.state import belt_section
 
 
 @pytest.fixture(scope="session")

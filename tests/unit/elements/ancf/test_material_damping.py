@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from beltdyn.arrays import FloatArray
-from beltdyn.elements.ancf.belt_element import ANCF
+from beltdyn.elements.ancf import ANCF
 from beltdyn.elements.ancf.elastic_force import element_energy, element_force
 from beltdyn.elements.ancf.element import Ancf
 from beltdyn.elements.ancf.material_damping import damping_force

@@ -5,8 +5,8 @@ from typing import Any
 import numpy as np
 import pytest
 
+from beltdyn.machines.links import link_torque, torque_of_kind
 from beltdyn.machines.links.link import LinkTorque
-from beltdyn.machines.links.link_rows import link_torque, torque_of_kind
 from beltdyn.machines.profiles.functions import Profiles
 from beltdyn.model import Pulley
 from beltdyn.records import Records

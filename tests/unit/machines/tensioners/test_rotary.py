@@ -5,7 +5,7 @@ from math import pi
 import numpy as np
 import pytest
 
-from beltdyn.machines.tensioners.tensioner_rows import tensioner_center, tensioner_row
+from beltdyn.machines.tensioners import tensioner_center, tensioner_row
 from beltdyn.model import RotaryTensioner
 
 PIVOT = np.array([0.1, 0.1])

@@ -8,7 +8,7 @@ import pytest
 
 from beltdyn.errors import ModelError
 from beltdyn.machines import MovingTensioner
-from beltdyn.machines.tensioners.tensioner_rows import tensioner_center, tensioner_force
+from beltdyn.machines.tensioners import tensioner_center, tensioner_force
 from beltdyn.model import Belt, Path, Pulley, RotaryTensioner, SlidingTensioner
 from beltdyn.model.routing import lay_path
 from beltdyn.records import Records

@@ -13,8 +13,8 @@ from beltdyn.errors import ModelError
 from beltdyn.results import Run, ToothLoads
 from beltdyn.show import plot
 from tests.unit.model.test_toothing import drive
-from tests.unit.results.derived.test_tooth_variables import RIPPLE
-from tests.unit.results.derived.test_tooth_variables import run as toothed
+from tests.unit.results.derived.test_spectrum_tooth_variables import RIPPLE
+from tests.unit.results.derived.test_spectrum_tooth_variables import run as toothed
 
 LOADS = ToothLoads("driver", 2.0, 30.0, np.nan, 5.0, np.array([0.5, 1.5]), np.array([30.0, 10.0]))
 

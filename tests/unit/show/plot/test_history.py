@@ -9,7 +9,7 @@ from matplotlib.axes import Axes
 from beltdyn.results import Run
 from beltdyn.results.tension_balance import losses_of
 from beltdyn.show import plot
-from beltdyn.show.plot.view import LIMIT
+from beltdyn.show.plot.style import LIMIT
 
 
 @pytest.mark.parametrize(

@@ -11,13 +11,11 @@ from beltdyn.model import Belt, Drive, Path, prepare
 from beltdyn.quadrature import gauss_points, lobatto_points
 from beltdyn.system.arrays import NO_TANGENT, Motion, System
 from beltdyn.system.build import Closure, belt_system, drive_system
-from beltdyn.system.discretization import curve_lengths, discretize, nodal_coordinates, point_coordinates
 from beltdyn.system.element_state import fill_control
 from beltdyn.system.first_order import mass_matrix
-from beltdyn.system.motion import new_equations, no_multipliers
 from beltdyn.system.observe import observe
-from beltdyn.system.state import laid
-from beltdyn.system.steady_assembly import assemble
+from beltdyn.system.state import curve_lengths, discretize, laid, nodal_coordinates, point_coordinates
+from beltdyn.system.steady_assembly import assemble, new_equations, no_multipliers
 
 Make = Callable[..., Drive]
 LINKS = {"truss": 1, "three-node-beam": 2}

@@ -4,8 +4,7 @@ from typing import Any
 
 import numpy as np
 
-from beltdyn.stretch import StretchParameters, as_common, stretching
-from beltdyn.stretch.common import CommonStretch
+from beltdyn.stretch import CommonStretch, StretchParameters, as_common, stretching
 
 STRETCHES = np.array([0.8, 1.003, 1.033, 1.5])
 

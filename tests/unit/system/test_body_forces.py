@@ -7,11 +7,16 @@ import pytest
 
 from beltdyn.model import Drive, example, prepare
 from beltdyn.system.arrays import Motion
-from beltdyn.system.body_forces import body_forces_history, new_body_forces
+from beltdyn.system.body_forces import (
+    BodyForcesScratch,
+    body_forces_history,
+    fill_body_forces,
+    new_body_forces,
+    prescribe,
+)
 from beltdyn.system.build import belt_system, drive_system
 from beltdyn.system.element_state import element_workspace
 from beltdyn.system.state import laid
-from beltdyn.system.state_forces import BodyForcesScratch, fill_body_forces, prescribe
 
 EXAMPLES = sorted(path.name[:-5] for path in (files("beltdyn") / "examples").iterdir() if path.name.endswith(".toml"))
 

@@ -7,11 +7,10 @@ from beltdyn.contact.surface import ToothedRims
 from beltdyn.model import Prepared, prepare
 from beltdyn.records import Records
 from beltdyn.system.arrays import System
+from beltdyn.system.body_forces import body_forces_at
 from beltdyn.system.build import drive_system
-from beltdyn.system.meshing import fit_phases
-from beltdyn.system.single_teeth import JumpWatch, tooth_coordinates, tooth_forces
+from beltdyn.system.meshing import JumpWatch, fit_phases, tooth_coordinates, tooth_forces
 from beltdyn.system.state import State, laid
-from beltdyn.system.state_forces import body_forces_at
 from beltdyn.transient.checkpoint import packing
 from tests.unit.model.test_toothing import drive
 

@@ -6,7 +6,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 from matplotlib.axes import Axes
 
-from beltdyn.show.plot.view import LEAST_SHARE, LIMIT, draw_limit, show_enough, spread, unit_of
+from beltdyn.show.plot.style import LEAST_SHARE, LIMIT, draw_limit, show_enough, spread, unit_of
 
 numbers = st.floats(-1e6, 1e6)
 
