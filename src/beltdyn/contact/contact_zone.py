@@ -55,12 +55,7 @@ class Curve(NamedTuple):
 def fill_bernstein(xi: float, weights: FloatArray) -> None:
     """Weights of the control points at xi: the Bernstein polynomials C(p, k) xi^k (1 - xi)^(p - k).
 
-    Parameters
-    ----------
-    xi
-        Place on the curve, 0 to 1.
-    weights : ndarray, shape (p + 1,)
-        Overwritten; its length says the degree p.
+    `xi`: place on the curve, 0 to 1; `weights`: overwritten; its length says the degree p, shape (p + 1,).
     """
     _fill_polynomials(xi, weights.size - 1, weights)
 
@@ -69,12 +64,7 @@ def fill_bernstein(xi: float, weights: FloatArray) -> None:
 def fill_bernstein_rates(xi: float, rates: FloatArray) -> None:
     """Derivatives of the weights with respect to xi: p times the differences of the polynomials of degree p - 1.
 
-    Parameters
-    ----------
-    xi
-        Place on the curve, 0 to 1.
-    rates : ndarray, shape (p + 1,)
-        Overwritten; its length says the degree p.
+    `xi`: place on the curve, 0 to 1; `rates`: overwritten; its length says the degree p, shape (p + 1,).
     """
     degree = rates.size - 1
     _fill_polynomials(xi, degree - 1, rates)
@@ -153,17 +143,7 @@ def zone_scratch(count: int) -> np.record:
 def out_of_reach(control: FloatArray, pulley: PulleyState) -> bool:
     """Whether a line separates the convex hull of the control points from the pulley.
 
-    Parameters
-    ----------
-    control : ndarray, shape (n, 2)
-        Control points, m.
-    pulley
-        The pulley.
-
-    Returns
-    -------
-    bool
-        True only if no point of the curve can touch.
+    `control`: control points, m, shape (n, 2). Returns true only if no point of the curve can touch.
     """
     count = control.shape[0]
     dx = dy = 0.0
@@ -182,20 +162,9 @@ def out_of_reach(control: FloatArray, pulley: PulleyState) -> bool:
 def touching_intervals(control: FloatArray, pulley: PulleyState, zone: np.record) -> int:
     """Find the intervals of the element on which the centerline is inside the pulley.
 
-    Parameters
-    ----------
-    control : ndarray, shape (n, 2)
-        Control points, m.
-    pulley
-        The pulley.
-    zone
-        Scratch, made by `zone_scratch`.  The first rows of its `intervals` are overwritten by the ends of the
-        intervals, in the element coordinate 0 to 1.
-
-    Returns
-    -------
-    int
-        Number of intervals.
+    `control`: control points, m, shape (n, 2); `zone`: scratch, made by `zone_scratch`.  The first rows of its
+    `intervals` are overwritten by the ends of the intervals, in the element coordinate 0 to 1. Returns number of
+    intervals.
     """
     return _intervals(pulley.surface, control, pulley.center_x, pulley.center_y, zone)
 

@@ -41,14 +41,8 @@ class Approach(NamedTuple):
 def approach(x: float, y: float, velocity_x: float, velocity_y: float, pulley: PulleyState) -> Approach:
     """Position and motion of a centerline point relative to a pulley (Eqs. 18, 19 and 21).
 
-    Parameters
-    ----------
-    x, y
-        Position r of the point, m.
-    velocity_x, velocity_y
-        Its velocity, m/s.
-    pulley
-        The pulley, whose shaft may move.
+    `x`, `y`: position r of the point, m; `velocity_x`, `velocity_y`: its velocity, m/s; `pulley`: the pulley, whose
+    shaft may move.
     """
     dx, dy = x - pulley.center_x, y - pulley.center_y
     vx, vy = velocity_x - pulley.velocity_x, velocity_y - pulley.velocity_y

@@ -43,21 +43,9 @@ def moment_arm(point: Approach, law: ContactLaw) -> tuple[float, float]:
 def pulley_moment(normal: float, friction: float, offset: float, arm: float) -> float:
     """Moment per length about the pulley's shaft, f_n (p . t) - arm f_t (Eq. 23).
 
-    Parameters
-    ----------
-    normal
-        Normal force f_n on the belt along n, N/m.
-    friction
-        Friction force f_t on the belt along t, N/m.
-    offset
-        Arm p . t of the normal force, m; zero on a smooth circle.
-    arm
-        Arm of friction, m.
-
-    Returns
-    -------
-    float
-        N m per m of reference length, counter-clockwise positive.
+    `normal`: normal force f_n on the belt along n, N/m; `friction`: friction force f_t on the belt along t, N/m;
+    `offset`: arm p . t of the normal force, m; zero on a smooth circle; `arm`: arm of friction, m. Returns N m per m of
+    reference length, counter-clockwise positive.
     """
     return normal * offset - arm * friction
 
@@ -83,14 +71,8 @@ class RollingResistance(NamedTuple):
 def rolling_resistance(coefficient: float, normal: float, velocity: float) -> RollingResistance:
     """Rolling resistance at a point of the belt.
 
-    Parameters
-    ----------
-    coefficient
-        rho, of the pulley; 0 for none.
-    normal
-        Normal force f_n, N/m; where it pulls there is none.
-    velocity
-        v_t, circumferential velocity of the point against the shaft, m/s.
+    `coefficient`: rho, of the pulley; 0 for none; `normal`: normal force f_n, N/m; where it pulls there is none;
+    `velocity`: v_t, circumferential velocity of the point against the shaft, m/s.
     """
     if coefficient == 0.0 or normal <= 0.0:
         return RollingResistance(0.0, 0.0, 0.0)
@@ -156,16 +138,8 @@ NO_TURN: Final = PointTurn(0.0, 0.0, 0.0)
 def point_force(here: Approach, pulley: PulleyState, law: ContactLaw, secant: bool = False) -> PointForce:
     """Contact force at a point.
 
-    Parameters
-    ----------
-    here
-        How the point stands and moves against the pulley.
-    pulley
-        The pulley.
-    law
-        Laws of contact.
-    secant
-        Whether `by_slip` is the secant of friction from no slip, in place of its slope.
+    `here`: how the point stands and moves against the pulley; `law`: laws of contact; `secant`: whether `by_slip` is
+    the secant of friction from no slip, in place of its slope.
     """
     normal = _pressed(here, pulley, law, 0.0, 1.0)
     if pulley.lasting > 0.0 and here.radial > 0.0:
@@ -243,16 +217,8 @@ def point_tangent(
 ) -> PointTangent:
     """Derivative of force and moment: by_position d/d(position) + by_velocity d/d(velocity).
 
-    Parameters
-    ----------
-    here
-        How the point stands and moves.
-    force
-        Result of `point_force`.
-    speed
-        Angular speed of the pulley, rad/s.
-    by_position, by_velocity
-        Factors of the two derivatives.
+    `here`: how the point stands and moves; `force`: result of `point_force`; `speed`: angular speed of the pulley,
+    rad/s; `by_position`, `by_velocity`: factors of the two derivatives.
     """
     tilt, push = by_position * here.curvature, by_position * force.normal.force
     sink = -(by_position * force.normal.by_penetration + by_velocity * force.normal.by_rate)

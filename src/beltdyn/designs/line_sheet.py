@@ -60,14 +60,8 @@ class LineSheet(NamedTuple):
 def line_sheet(given: Drive, columns: list[Column] | None, factors: FloatArray) -> LineSheet:
     """The sheet of a line, whose speeds and loads are those of an instant.
 
-    Parameters
-    ----------
-    given
-        A web line, or a belt that carries or slides over guides.
-    columns
-        The duty; none for the drive as it is.
-    factors
-        On friction, ascending.
+    `given`: a web line, or a belt that carries or slides over guides; `columns`: the duty; none for the drive as it is;
+    `factors`: on friction, ascending.
     """
     durations = durations_of(columns) if columns else np.ones(1)
     drives = [at_row(given, columns, number) for number in range(durations.size)] if columns else [given]

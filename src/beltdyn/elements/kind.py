@@ -63,12 +63,7 @@ def is_damped(section: Section) -> bool:
 def axial_force(law: StretchParameters, metric: float) -> float:
     """Tension carried by the stretch of the centerline, 2 sqrt(G) dW/dG, N.
 
-    Parameters
-    ----------
-    law
-        Parameters of the law of stretch.
-    metric
-        G = q . q with q = dr/dx, dimensionless.
+    `metric`: G = q . q with q = dr/dx, dimensionless.
     """
     return 2.0 * stretching(law, metric).slope * metric**0.5
 
@@ -77,12 +72,7 @@ def axial_force(law: StretchParameters, metric: float) -> float:
 def damping_tension(metric: float, metric_rate: float, section: Section) -> float:
     """Tension by the rate of stretch, EA alpha1 tau_s dg/dt with g = |q|, N: to be added to `axial_force`.
 
-    Parameters
-    ----------
-    metric, metric_rate
-        q . q and its rate, 1/s.
-    section
-        With its factors of damping.
+    `metric`, `metric_rate`: q . q and its rate, 1/s; `section`: with its factors of damping.
     """
     return 0.5 * section.axial_damping * metric_rate / sqrt(metric)
 

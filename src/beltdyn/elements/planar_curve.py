@@ -37,20 +37,8 @@ class Hysteretic(NamedTuple):
 def hysteretic(modulus: float, strain: float, rate: float, square: float, length: float) -> Hysteretic:
     """Stress of rate-independent damping (Reid 1956), smoothed at slow rates.
 
-    Parameters
-    ----------
-    modulus
-        c, N or N m^2.
-    strain, rate
-        x, and dx/dt (1/s times the unit of x).
-    square
-        v^2, m^2/s^2.
-    length
-        l, m.
-
-    Returns
-    -------
-    Hysteretic
+    `modulus`: c, N or N m^2; `strain`, `rate`: x, and dx/dt (1/s times the unit of x); `square`: v^2, m^2/s^2;
+    `length`: l, m.
     """
     if modulus == 0.0:
         return Hysteretic(0.0, 0.0, 0.0, 0.0)
@@ -131,22 +119,9 @@ def add_curve_damping(
 ) -> Two:
     """Add a point's part of the damping force, with the opposite sign, and of its exact tangent.
 
-    Parameters
-    ----------
-    damping
-        Factors.
-    slope, bend, third : tuple of float
-        Factors of the vectors in q, w and u.
-    motion
-        The point.
-    work
-        `gradient`, `by_square`, the derivative of the force by the square of the speed, and, with a tangent, `rows` and
-        `by_flow` are changed; fields of `curve_scratch` and `curve_damping_scratch`.
-
-    Returns
-    -------
-    tuple of 2 floats
-        Powers lost in stretch and in bending, W.
+    `slope`, `bend`, `third`: factors of the vectors in q, w and u; `work`: `gradient`, `by_square`, the derivative of
+    the force by the square of the speed, and, with a tangent, `rows` and `by_flow` are changed; fields of
+    `curve_scratch` and `curve_damping_scratch`. Returns powers lost in stretch and in bending, W.
     """
     q, w, q_rate, w_rate = motion.q, motion.w, motion.q_rate, motion.w_rate
     fill_slopes(q, w, work)
@@ -291,18 +266,8 @@ def add_density(
 ) -> None:
     """Add a point's part of the elastic force and of its exact tangent, between `begin_tangent` and `end_tangent`.
 
-    Parameters
-    ----------
-    density
-        Derivatives at the point.
-    slope, bend : tuple of float
-        Factors of the vectors in q and w.
-    q, w : tuple of 2 floats
-        Their values.
-    wanted
-        Whether the tangent is.
-    work
-        `gradient` and `rows` are changed; fields of `curve_scratch`.
+    `density`: derivatives at the point; `slope`, `bend`: factors of the vectors in q and w; `q`, `w`: their values;
+    `wanted`: whether the tangent is wanted; `work`: `gradient` and `rows` are changed; fields of `curve_scratch`.
     """
     fill_slopes(q, w, work)
     for k in range(4):

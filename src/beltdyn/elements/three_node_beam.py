@@ -33,12 +33,7 @@ class Direction(NamedTuple):
 def bend_angle(e: FloatArray, i: int) -> float:
     """Angle from the link between points i and j to that between j and k, rad, -pi to pi.
 
-    Parameters
-    ----------
-    e : ndarray
-        Places of points in turn, m.
-    i
-        Index of the first coordinate of point i; those of j and k follow.
+    `e`: places of points in turn, m; `i`: index of the first coordinate of point i; those of j and k follow.
     """
     ax, ay, bx, by = e[i + 2] - e[i], e[i + 3] - e[i + 1], e[i + 4] - e[i + 2], e[i + 5] - e[i + 3]
     return atan2(ax * by - ay * bx, ax * bx + ay * by)
@@ -55,16 +50,7 @@ def spring_energy(e: FloatArray, i: int, stiffness: float) -> float:
 def add_spring(e: FloatArray, i: int, stiffness: float, gradient: FloatArray, tangent: FloatArray) -> None:
     """Add gradient and exact tangent of `spring_energy`.
 
-    Parameters
-    ----------
-    e, i
-        As for `bend_angle`.
-    stiffness
-        EI / L, N m.
-    gradient : ndarray
-        dU/de, N.
-    tangent : ndarray
-        d2U/de2, N/m.
+    `e`, `i`: as for `bend_angle`; `stiffness`: EI / L, N m; `gradient`: dU/de, N; `tangent`: d2U/de2, N/m.
     """
     before = _direction(e[i + 2] - e[i], e[i + 3] - e[i + 1])
     after = _direction(e[i + 4] - e[i + 2], e[i + 5] - e[i + 3])

@@ -26,21 +26,8 @@ class Truss(NamedTuple):
 def link_energy(e: FloatArray, i: int, law: StretchParameters, length: float) -> float:
     """Strain energy L W(G) of the link between two points, with G = |r_j - r_i|^2 / L^2.
 
-    Parameters
-    ----------
-    e : ndarray
-        Places of points in turn, m.
-    i
-        Index of the first coordinate of point i; those of point j follow.
-    law
-        Parameters of the law of stretch.
-    length
-        Reference length L of the link, m.
-
-    Returns
-    -------
-    float
-        J.
+    `e`: places of points in turn, m; `i`: index of the first coordinate of point i; those of point j follow; `length`:
+    reference length L of the link, m. Returns J.
     """
     x, y = e[i + 2] - e[i], e[i + 3] - e[i + 1]
     return length * stretching(law, (x * x + y * y) / (length * length)).energy
@@ -52,14 +39,7 @@ def add_link(
 ) -> None:
     """Add gradient and exact tangent of `link_energy`.
 
-    Parameters
-    ----------
-    e, i, law, length
-        As for `link_energy`.
-    gradient : ndarray
-        dU/de, N.
-    tangent : ndarray
-        d2U/de2, N/m.
+    `e`, `i`, `law`, `length`: as for `link_energy`; `gradient`: dU/de, N; `tangent`: d2U/de2, N/m.
     """
     x, y = e[i + 2] - e[i], e[i + 3] - e[i + 1]
     square = length * length

@@ -123,16 +123,8 @@ def _pieces(time: FloatArray, when: FloatArray) -> FloatArray:
 def add_filtered(curves: Curves, pieces: FloatArray, outputs: Outputs, filtered: FloatArray) -> None:
     """Add the integrals of curves times K at some outputs.
 
-    Parameters
-    ----------
-    curves
-        What is filtered.
-    pieces : ndarray, shape (p + 1,)
-        Ends of the pieces of the integrals, each in one step, in intervals.
-    outputs
-        When outputs are.
-    filtered : ndarray, shape (m, channels)
-        The sums.
+    `curves`: what is filtered; `pieces`: ends of the pieces of the integrals, each in one step, in intervals, shape (p
+    + 1,); `outputs`: when outputs are; `filtered`: the sums, shape (m, channels).
     """
     constant, first, second = _WINDOW
     step, reached = 1, 0

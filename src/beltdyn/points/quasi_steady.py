@@ -40,12 +40,7 @@ class Running(NamedTuple):
 class QuasiSteady:
     """Steady running of a drive about its rest.
 
-    Parameters
-    ----------
-    prepared : Prepared
-        The drive, with a closed belt of known length, and with constant torques.
-    rest : Installation
-        It at rest.
+    `prepared`: the drive, with a closed belt of known length, and with constant torques; `rest`: it at rest.
     """
 
     def __init__(self, prepared: Prepared, rest: Installation) -> None:
@@ -86,14 +81,8 @@ class QuasiSteady:
     def at(self, speed: FloatArray, torque: FloatArray, acceleration: FloatArray) -> Running:
         """Find states.
 
-        Parameters
-        ----------
-        speed : ndarray, shape (n,)
-            Of the belt, m/s.
-        torque : ndarray, shape (n, P)
-            On the shafts, N m; that of the driver does not count.
-        acceleration : ndarray, shape (n,)
-            Of the belt, m/s^2, in the sense of its speed.
+        `speed`: of the belt, m/s, shape (n,); `torque`: on the shafts, N m; that of the driver does not count, shape
+        (n, P); `acceleration`: of the belt, m/s^2, in the sense of its speed, shape (n,).
         """
         running = np.sign(speed)[:, None]
         braked = torque - self.inertia * (running * acceleration[:, None]) / self._radii
@@ -159,14 +148,8 @@ def torques_of(drive: Drive, driver: int) -> Torques:
 def torques_between(rows: Sequence[tuple[float, FloatArray]], pulleys: Sequence[int], others: Torques) -> Torques:
     """Torques over the belt speed: of some pulleys by straight lines between rows, the largest ones of equal speed.
 
-    Parameters
-    ----------
-    rows
-        Belt speed, m/s, and torques, N m, of operating points.
-    pulleys
-        Numbers of those whose torques these rows give.
-    others
-        Of the other pulleys.
+    `rows`: belt speed, m/s, and torques, N m, of operating points; `pulleys`: numbers of those whose torques these rows
+    give; `others`: of the other pulleys.
     """
     largest: dict[float, FloatArray] = {}
     for speed, torque in rows:

@@ -172,18 +172,9 @@ def fill_mid_spans(
 ) -> None:
     """Find where the free belt crosses the middles of spans.
 
-    Parameters
-    ----------
-    lines : ndarray, shape (k, spans, 2, 2)
-        Ends of the straight spans, m.
-    places, touched
-        As for `mid_span_displacements`.
-    pulleys
-        Number of pulleys; an open belt has one span more.
-    following : ndarray of int, shape (spans,)
-        Pulley to which each span leads.
-    result : ndarray, shape (k, spans)
-        Overwritten where the belt does cross, m.
+    `lines`: ends of the straight spans, m, shape (k, spans, 2, 2); `places`, `touched`: as for
+    `mid_span_displacements`; `pulleys`: number of pulleys; an open belt has one span more; `following`: pulley to which
+    each span leads, shape (spans,); `result`: overwritten where the belt does cross, m, shape (k, spans).
     """
     spans, count = lines.shape[1], touched.shape[1]
     is_open = spans > pulleys

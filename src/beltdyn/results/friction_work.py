@@ -43,18 +43,10 @@ class MaterialWork:
 def spread_on_belt(grown: FloatArray, ways: FloatArray, ends: FloatArray, total: FloatArray, work: FloatArray) -> None:
     """Spread what work grows by from state to state on the belt that has passed.
 
-    Parameters
-    ----------
-    grown : ndarray, shape (m, P, E)
-        By piece of the mesh, J.
-    ways : ndarray, shape (m + 1,)
-        Length of belt that has passed, m, in the state before and in each of these.
-    ends : ndarray, shape (E + 1,)
-        Of the pieces, from zero, m.
-    total : ndarray, shape (P, E)
-        Work on each piece of the belt up to the state before, J; afterwards up to the last.
-    work : ndarray, shape (m, P, E)
-        Overwritten by the work up to each state, J.
+    `grown`: by piece of the mesh, J, shape (m, P, E); `ways`: length of belt that has passed, m, in the state before
+    and in each of these, shape (m + 1,); `ends`: of the pieces, from zero, m, shape (E + 1,); `total`: work on each
+    piece of the belt up to the state before, J; afterwards up to the last, shape (P, E); `work`: overwritten by the
+    work up to each state, J, shape (m, P, E).
     """
     states, pulleys, pieces = grown.shape
     length = ends[pieces]
@@ -171,22 +163,11 @@ def add_friction_work(
 ) -> None:
     """Integrate the work of friction over the steps to k states.
 
-    Parameters
-    ----------
-    touch
-        Contact in these states.
-    arcs : ndarray, shape (k, P, 3)
-        Of each pulley: angle of the inlet and wrap angle, rad; 1, or -1 for a pulley at the belt's back.
-    passed : ndarray, shape (k,)
-        Lengths of the steps, s.
-    cell : ndarray, shape (points,)
-        Length of belt that each contact point stands for, m.
-    shown : ndarray of bool, shape (k,)
-        After which steps the work is kept.
-    done
-        Up to the state before them, and afterwards up to the last of them.
-    work : ndarray, shape (m, P, ARC_PARTS + elements)
-        Overwritten by the work in the states that are shown.
+    `touch`: contact in these states; `arcs`: of each pulley: angle of the inlet and wrap angle, rad; 1, or -1 for a
+    pulley at the belt's back, shape (k, P, 3); `passed`: lengths of the steps, s, shape (k,); `cell`: length of belt
+    that each contact point stands for, m, shape (points,); `shown`: after which steps the work is kept, shape (k,);
+    `done`: up to the state before them, and afterwards up to the last of them; `work`: overwritten by the work in the
+    states that are shown, shape (m, P, ARC_PARTS + elements).
     """
     power, total = done.power, done.total
     pulleys, parts = total.shape

@@ -297,17 +297,8 @@ class TensionBalance:
     def held_at(self, number: int, position: float) -> tuple[float, float]:
         """The belt at rest that holds a tensioner at a position, with the others where they are in the known state.
 
-        Parameters
-        ----------
-        number
-            The tensioner.
-        position
-            m or rad.
-
-        Returns
-        -------
-        longer, tension : float
-            Unstretched length less that of the known state, m, and tension, N.
+        `number`: the tensioner; `position`: m or rad. Returns longer, tension: unstretched length less that of the
+        known state, m, and tension, N.
         """
         still = self.under(np.zeros((1, self.differences.shape[1])), 0.0)
         rows, factor, unknowns = np.zeros(1, dtype=int), np.ones(1), still.start

@@ -66,16 +66,8 @@ def method_of(rho: float) -> Method:
 def add_missed_impulses(system: System, method: Method, state: IntegratorState, length: float) -> None:
     """Let the impulses that a step misses act on the free bodies of the trial state, evenly over the step.
 
-    Parameters
-    ----------
-    system
-        The system.
-    method
-        Coefficients.
-    state
-        Its trial position and velocity are changed, and its impulses overwritten.
-    length
-        Length of the step, s.
+    `method`: coefficients; `state`: its trial position and velocity are changed, and its impulses overwritten;
+    `length`: length of the step, s.
     """
     missed_impulses(system, motion_of(state), length, state.impulse)
     first = system.first_body
@@ -101,16 +93,8 @@ def add_missed_impulses(system: System, method: Method, state: IntegratorState, 
 def follow_torques(system: System, method: Method, state: IntegratorState, length: float) -> None:
     """Bring what the method makes of the profiles, and of loads over the angle, to the end of a step.
 
-    Parameters
-    ----------
-    system
-        The system.
-    method
-        Coefficients.
-    state
-        At the beginning of the step, with its end on trial; `lagged` is changed.
-    length
-        Length of the step, s.
+    `method`: coefficients; `state`: at the beginning of the step, with its end on trial; `lagged` is changed; `length`:
+    length of the step, s.
     """
     start, end = motion_of(state), trial_motion(state, state.clock.time + length)
     profiles = system.profiles.table.size - 1
@@ -213,16 +197,8 @@ def _follow(method: Method, before: float, after: float, lagged: float) -> tuple
 def predict(system: System, method: Method, state: IntegratorState, length: float, end: float) -> None:
     """Overwrite the trial state by the first guess of a step.
 
-    Parameters
-    ----------
-    system
-        The system.
-    method
-        Coefficients.
-    state
-        At the beginning of the step; its trial state is overwritten.
-    length, end
-        Length of the step and where it ends, s.
+    `method`: coefficients; `state`: at the beginning of the step; its trial state is overwritten; `length`, `end`:
+    length of the step and where it ends, s.
     """
     expected = state.clock.persistence * length
     for i in range(state.position.size):
@@ -242,14 +218,8 @@ def predict(system: System, method: Method, state: IntegratorState, length: floa
 def follow_trend(system: System, state: IntegratorState, length: float) -> None:
     """Take the change of A over a step, and how much of it the change before foretold.
 
-    Parameters
-    ----------
-    system
-        The system.
-    state
-        At the beginning of the step, with its end on trial; trend and persistence are changed.
-    length
-        Length of the step, s.
+    `state`: at the beginning of the step, with its end on trial; trend and persistence are changed; `length`: length of
+    the step, s.
     """
     state.clock.persistence = _persistence(system.frame, system, state, length)
     for i in range(state.auxiliary.size):
@@ -312,16 +282,8 @@ class Step(NamedTuple):
 def new_step(method: Method, start: float, length: float, stop: float) -> Step:
     """A step to be tried.
 
-    Parameters
-    ----------
-    method
-        Coefficients.
-    start
-        Where it begins, s.
-    length
-        Its length, s.
-    stop
-        Instant on which it ends if rounding alone lies between, s.
+    `method`: coefficients; `start`: where it begins, s; `length`: its length, s; `stop`: instant on which it ends if
+    rounding alone lies between, s.
     """
     return Step(
         stop if abs(stop - start - length) < _SAME else start + length,
@@ -348,25 +310,9 @@ def try_step(
     Where they did not, the first change takes friction by its secant: where the first guess slides and the solution
     sticks, the slope would let the belt go.
 
-    Parameters
-    ----------
-    system
-        Belt, pulleys, supports.
-    settings
-        Tolerances.
-    method
-        Coefficients.
-    state
-        Its trial state is overwritten.
-    step
-        From `new_step`.
-    equations
-        Arrays to work in; afterwards its body forces are those of the last iterate but one.
-
-    Returns
-    -------
-    int
-        Iterations, or 0 if they did not converge.
+    `system`: belt, pulleys, supports; `settings`: tolerances; `method`: coefficients; `state`: its trial state is
+    overwritten; `step`: from `new_step`; `equations`: arrays to work in; afterwards its body forces are those of the
+    last iterate but one. Returns iterations, or 0 if they did not converge.
     """
     predict(system, method, state, step.length, step.end)
     allowed = max(settings.newton_fraction * allowed_error(settings, step.length), settings.rounding)

@@ -56,21 +56,8 @@ def dispatch(
 ) -> tuple[int, int]:
     """Execute the request.
 
-    Parameters
-    ----------
-    system
-        Belt, bodies, supports.
-    request
-        What to do.
-    settings, state, steps
-        As for `alpha_advance.advance`.
-    equations
-        Arrays to work in.
-
-    Returns
-    -------
-    status, filled : int
-        Those of `alpha_advance.advance`; of others 1, or 0 where the tangent is singular, and 0.
+    `request`: what to do; `settings`, `state`, `steps`: as for `alpha_advance.advance`; `equations`: arrays to work in.
+    Returns status, filled: those of `alpha_advance.advance`; of others 1, or 0 where the tangent is singular, and 0.
     """
     kind, trial = request.kind, state.trial
     if kind == ADVANCE:

@@ -205,21 +205,7 @@ _GROWTH = 10.0
 def resolved_length(system: System, settings: Settings, motion: Motion, wanted: float) -> float:
     """Shorten a step until what its ends miss moves no rim by more than the local error allowed.
 
-    Parameters
-    ----------
-    system
-        Belt, bodies, supports.
-    settings
-        Tolerances.
-    motion
-        Beginning of the step.
-    wanted
-        Its length, s.
-
-    Returns
-    -------
-    float
-        Length of the step, s.
+    `settings`: tolerances; `motion`: beginning of the step; `wanted`: its length, s. Returns length of the step, s.
     """
     length = wanted
     for source in range(system.pulleys.size + system.links.size):

@@ -92,28 +92,13 @@ def find_steady(
 ) -> tuple[int, int]:
     """Find steady running, or equilibrium at rest, from a state nearby.
 
-    Parameters
-    ----------
-    system
-        A closed belt in a staying mesh, or a web line; the speed of its frame, and the content, are changed in place.
-    motion
-        The state, changed in place.
-    anchor
-        What keeps the mesh in place.
-    tolerance
-        Size of the last step, m. It is known before it is made, and differences of states are the more exact with it.
-    most
-        Iterations, at most; with none of them the tangent at the state is factorized.
-    factorised
-        Whether the factors in `work` serve the first iteration: those of a state nearby, of which the first step is
-        that of the implicit function theorem.
-    work
-        From `steady_work`; the body forces in it are those of the state that was found, but for the last step.
-
-    Returns
-    -------
-    status, iterations : int
-        `FOUND`, `NOT_FOUND` or `SINGULAR`.
+    `system`: a closed belt in a staying mesh, or a web line; the speed of its frame, and the content, are changed in
+    place; `motion`: the state, changed in place; `anchor`: what keeps the mesh in place; `tolerance`: size of the last
+    step, m. It is known before it is made, and differences of states are the more exact with it; `most`: iterations, at
+    most; with none of them the tangent at the state is factorized; `factorised`: whether the factors in `work` serve
+    the first iteration: those of a state nearby, of which the first step is that of the implicit function theorem;
+    `work`: from `steady_work`; the body forces in it are those of the state that was found, but for the last step.
+    Returns status, iterations: `FOUND`, `NOT_FOUND` or `SINGULAR`.
     """
     equations = work.equations
     node_part, border_part = equations.node_part, equations.border_part
@@ -182,20 +167,9 @@ def make_step(
 ) -> None:
     """Add factor times a solution to the state.
 
-    Parameters
-    ----------
-    system
-        The system.
-    motion
-        The state, changed in place.
-    at_rest
-        Whether the belt stands still; otherwise the speed of its frame is changed too.
-    factor
-        Of the solution.
-    node_part : ndarray, shape (N, n)
-        Change of the coordinates of nodes.
-    border_part : ndarray, shape (m + 1,)
-        Change of the other unknowns.
+    `motion`: the state, changed in place; `at_rest`: whether the belt stands still; otherwise the speed of its frame is
+    changed too; `factor`: of the solution; `node_part`: change of the coordinates of nodes, shape (N, n);
+    `border_part`: change of the other unknowns, shape (m + 1,).
     """
     dof, first = len(system.scale), system.first_body
     for node in range(system.nodes):

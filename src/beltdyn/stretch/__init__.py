@@ -66,15 +66,7 @@ def as_common(law: StretchParameters) -> StretchParameters:
 
 @kernel
 def common_stretch(law: CommonStretch, metric: float) -> Stretching:
-    """Strain energy of stretch by the law that holds, and its derivatives in G.
-
-    Parameters
-    ----------
-    law
-        Parameters.
-    metric
-        G = q . q with q = dr/dx, dimensionless.
-    """
+    """Kernel of the common type: strain energy by the law that holds; see `StretchLaw.stretching`."""
     if law.law == _LINEAR:
         return linear(Linear(law.stiffness), metric)
     if law.law == _GREEN:

@@ -38,15 +38,7 @@ class Linear(NamedTuple):
 
 @kernel
 def linear(law: Linear, metric: float) -> Stretching:
-    """Strain energy EA / 2 (g - 1)^2 with g = sqrt(G), and its derivatives in G.
-
-    Parameters
-    ----------
-    law
-        Parameters.
-    metric
-        G = q . q with q = dr/dx, dimensionless.
-    """
+    """Kernel of `StretchLaw.stretching`: EA / 2 (g - 1)^2 with g = sqrt(G)."""
     g = metric**0.5
     strain = (metric - 1.0) / (g + 1.0)
     return Stretching(
@@ -92,15 +84,7 @@ class Green(NamedTuple):
 
 @kernel
 def green(law: Green, metric: float) -> Stretching:
-    """Strain energy EA / 8 (G - 1)^2 and its derivatives.
-
-    Parameters
-    ----------
-    law
-        Parameters.
-    metric
-        G = q . q with q = dr/dx, dimensionless.
-    """
+    """Kernel of `StretchLaw.stretching`: EA / 8 (G - 1)^2."""
     excess = metric - 1.0
     return Stretching(
         0.125 * law.stiffness * excess * excess,
@@ -178,15 +162,7 @@ def through(strains: ArrayLike, tensions: ArrayLike) -> Measured:
 
 @kernel
 def measured(law: Measured, metric: float) -> Stretching:
-    """Strain energy by the curve and its derivatives in G.
-
-    Parameters
-    ----------
-    law
-        Parameters.
-    metric
-        G = q . q with q = dr/dx, dimensionless.
-    """
+    """Kernel of `StretchLaw.stretching`: the integral of the curve."""
     g = metric**0.5
     strain = (metric - 1.0) / (g + 1.0)
     pieces = law.pieces

@@ -113,19 +113,9 @@ def add_machines(
 ) -> None:
     """Forces on the bodies and their powers, when all contact is summed, and what they add to the tangent.
 
-    Parameters
-    ----------
-    system
-        The system.
-    motion
-        The state.
-    factors
-        Of the derivatives in the tangent.
-    corner : ndarray, shape (m, m)
-        Tangent of the bodies' equations, changed in place.
-    forces
-        Contact is there already.  The torque on a free shaft is that applied to it; that on a prescribed one is the
-        reaction of its driver (Eq. 23).
+    `factors`: of the derivatives in the tangent; `corner`: tangent of the bodies' equations, changed in place, shape
+    (m, m); `forces`: contact is there already.  The torque on a free shaft is that applied to it; that on a prescribed
+    one is the reaction of its driver (Eq. 23).
     """
     for p in range(system.pulleys.size):
         forces.force[p] += forces.moment[p]
@@ -311,18 +301,8 @@ def find_body_forces(system: System, motion: Motion, work: np.record, corner: Fl
     Newton's method stops when the state is known well enough.  The body forces that it leaves are those before its last
     change, which in stiff contact are off by much more: they have to be found anew.
 
-    Parameters
-    ----------
-    system
-        Belt, bodies, supports.
-    motion
-        The state; prescribed bodies must already have their motion in it.
-    work
-        From `element_workspace`.
-    corner : ndarray, shape (m, m)
-        Left as it is.
-    forces
-        Overwritten.
+    `motion`: the state; prescribed bodies must already have their motion in it; `work`: from `element_workspace`;
+    `corner`: left as it is, shape (m, m).
     """
     clear_body_forces(forces)
     fit_mesh(system.frame, system, motion.position)

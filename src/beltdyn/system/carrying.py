@@ -364,21 +364,10 @@ def add_to_element(
 ) -> None:
     """Add what carries an element, and what it carries.
 
-    Parameters
-    ----------
-    carrying
-        That of the system.
-    system, motion
-        A belt on a staying mesh, and its state.
-    element
-        Which one; its coordinates, the velocities of its material points and what `find_accelerations` finds are in
-        the workspace.
-    factors
-        Of the tangent.
-    work
-        From `element_workspace`; residual, tangent and column of the element are changed.
-    forces
-        The power that supports and goods take is added.
+    `carrying`: that of the system; `system`, `motion`: a belt on a staying mesh, and its state; `element`: which one;
+    its coordinates, the velocities of its material points and what `find_accelerations` finds are in the workspace;
+    `factors`: of the tangent; `work`: from `element_workspace`; residual, tangent and column of the element are
+    changed; `forces`: the power that supports and goods take is added.
     """
     first, last = carrying.first_support[element], carrying.first_support[element + 1]
     first_goods, last_goods = carrying.first_goods[element], carrying.first_goods[element + 1]

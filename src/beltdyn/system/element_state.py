@@ -56,16 +56,7 @@ def carrying_record(count: int, vectors: int) -> np.dtype[np.void]:
 def gather(system: System, element: int, vector: FloatArray, coordinates: FloatArray) -> None:
     """Coordinates of an element from those of its nodes.
 
-    Parameters
-    ----------
-    system
-        The system.
-    element
-        Which one.
-    vector : ndarray, shape (n N + D,)
-        Positions, velocities or accelerations.
-    coordinates : ndarray, shape (2 n,)
-        Overwritten.
+    `vector`: positions, velocities or accelerations, shape (n N + D,); `coordinates`: shape (2 n,).
     """
     dof, node_j = len(system.scale), (element + 1) % system.nodes
     for c in range(dof):
@@ -79,16 +70,7 @@ def gather_motion(
 ) -> None:
     """Coordinates of an element and their rates, those of its material points.
 
-    Parameters
-    ----------
-    system
-        The system.
-    element
-        Which one.
-    position, velocity : ndarray, shape (n N + D,)
-        The state.
-    coordinates : ndarray, shape (3, 2 n)
-        The first two rows are overwritten.
+    `position`, `velocity`: shape (n N + D,); `coordinates`: the first two rows are overwritten, shape (3, 2 n).
     """
     gather(system, element, position, coordinates[0])
     gather(system, element, velocity, coordinates[1])
@@ -101,18 +83,8 @@ def add_material_damping(
 ) -> None:
     """Add damping and hysteresis of the belt to the residual and tangent of an element, and their losses to the powers.
 
-    Parameters
-    ----------
-    system
-        The system.
-    element
-        Which one.
-    factors
-        Of the derivatives in the tangent.
-    work
-        From `element_workspace`, with the coordinates of the element and their rates.
-    forces
-        Changed in place.
+    `factors`: of the derivatives in the tangent; `work`: from `element_workspace`, with the coordinates of the element
+    and their rates; `forces`: changed in place.
     """
     if loses_in_belt(system):
         by = DampingFactors(factors.by_position, factors.by_velocity, 0.0, factors.secant)
@@ -131,21 +103,9 @@ def loses_in_belt(system: System) -> bool:
 def material_forces(system: System, element: int, factors: DampingFactors, work: np.record) -> tuple[float, float]:
     """Add damping and hysteresis of the belt to the residual of an element, and their tangent.
 
-    Parameters
-    ----------
-    system
-        The system.
-    element
-        Which one.
-    factors
-        Of the tangent; hysteresis of the whole element has its part by the flow from `add_hysteresis_flow`.
-    work
-        From `element_workspace`, with the coordinates of the element and their rates.
-
-    Returns
-    -------
-    tuple of 2 floats
-        Powers lost in stretch and in bending, W.
+    `factors`: of the tangent; hysteresis of the whole element has its part by the flow from `add_hysteresis_flow`;
+    `work`: from `element_workspace`, with the coordinates of the element and their rates. Returns powers lost in
+    stretch and in bending, W.
     """
     stretch, bending = 0.0, 0.0
     if is_damped(system.element.section):
@@ -162,20 +122,9 @@ def material_forces(system: System, element: int, factors: DampingFactors, work:
 def centreline(system: System, element: int, curve: int, work: np.record) -> Curve:
     """A curve of the centerline of an element.
 
-    Parameters
-    ----------
-    system
-        The system.
-    element, curve
-        Which curve of which element.
-    work
-        From `element_workspace`, with the coordinates of the element and their rates; the control points are
-        written into them.
-
-    Returns
-    -------
-    Curve
-        Valid until `work` is used for the next curve.
+    `element`, `curve`: which curve of which element; `work`: from `element_workspace`, with the coordinates of the
+    element and their rates; the control points are written into them. Returns valid until `work` is used for the next
+    curve.
     """
     fill_control(system, element, curve, work.coordinates[0], work.control)
     fill_control(system, element, curve, work.coordinates[1], work.control_velocity)
@@ -188,16 +137,8 @@ def centreline(system: System, element: int, curve: int, work: np.record) -> Cur
 def fill_control(system: System, element: int, curve: int, coordinates: FloatArray, points: FloatArray) -> None:
     """Control points of a curve of the centerline from the coordinates of its element.
 
-    Parameters
-    ----------
-    system
-        The system.
-    element, curve
-        Which curve of which element.
-    coordinates : ndarray, shape (2 n,)
-        Nodal coordinates (or velocities) of the element.
-    points : ndarray, shape (n, 2)
-        Overwritten.
+    `element`, `curve`: which curve of which element; `coordinates`: nodal coordinates (or velocities) of the element,
+    shape (2 n,); `points`: shape (n, 2).
     """
     control, vectors = system.control[element, curve], system.vectors
     for a in range(points.shape[0]):

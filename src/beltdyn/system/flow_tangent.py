@@ -78,19 +78,9 @@ def find_rate(system: System, element: int, work: np.record) -> None:
 def add_flow_forces(system: System, motion: Motion, element: int, factors: FlowFactors, equations: Equations) -> None:
     """Add losses of the material and contact to residual and tangent of an element.
 
-    Parameters
-    ----------
-    system
-        A closed belt in a staying mesh.
-    motion
-        The state.
-    element
-        Which one; its coordinates and their rates are in the workspace.
-    factors
-        Of the tangent.
-    equations
-        Changed in place; the last unknown of the border is that of the flow. Its workspace has the rate D e, and the
-        column so far.
+    `system`: a closed belt in a staying mesh; `element`: which one; its coordinates and their rates are in the
+    workspace; `factors`: of the tangent; `equations`: changed in place; the last unknown of the border is that of the
+    flow. Its workspace has the rate D e, and the column so far.
     """
     if loses_in_belt(system):
         stretch, bending = _add_damping(system, motion, element, factors, equations.work)
@@ -203,17 +193,9 @@ def flowing_element(
 ) -> None:
     """Inertia, losses and contact of an element through which the belt flows.
 
-    Parameters
-    ----------
-    frame
-        That of the system.
-    system, motion, factors
-        As for `steady_assembly.assemble`.
-    element
-        Which one; position, velocity of its material points and second derivative over time of its coordinates are in
-        the workspace, and residual and tangent are those of its elasticity.
-    equations
-        Changed in place.
+    `frame`: that of the system; `system`, `motion`, `factors`: as for `steady_assembly.assemble`; `element`: which one;
+    position, velocity of its material points and second derivative over time of its coordinates are in the workspace,
+    and residual and tangent are those of its elasticity; `equations`: changed in place.
     """
     work, flow = equations.work, equations.work.flow
     wanted, differentiated = factors.by_acceleration != 0.0 or differentiates_forces(factors), flow_factors(factors)
@@ -272,16 +254,7 @@ def _add_inertia(
 def hold_mesh(frame: Flowing, motion: Motion, factors: TangentFactors, matrix: RingMatrix) -> None:
     """Let node 0 keep its place along the belt: of accelerations, or of steps where they do not move these.
 
-    Parameters
-    ----------
-    frame
-        Of the mesh.
-    motion
-        The state.
-    factors
-        Of the tangent.
-    matrix
-        Changed in place.
+    `frame`: of the mesh; `factors`: of the tangent; `matrix`: changed in place.
     """
     last = matrix.corner.shape[0] - 1
     tie = factors.by_acceleration if factors.by_acceleration != 0.0 else factors.by_position
@@ -302,17 +275,9 @@ def arcs_element(
 ) -> None:
     """Inertia, losses, contact, supports and goods of an element.
 
-    Parameters
-    ----------
-    frame
-        That of the system.
-    system, motion, factors
-        As for `steady_assembly.assemble`.
-    element
-        Which one; position, velocity of its material points and second derivative over time of its coordinates are in
-        the workspace, and residual and tangent are those of its elasticity.
-    equations
-        Changed in place.
+    `frame`: that of the system; `system`, `motion`, `factors`: as for `steady_assembly.assemble`; `element`: which one;
+    position, velocity of its material points and second derivative over time of its coordinates are in the workspace,
+    and residual and tangent are those of its elasticity; `equations`: changed in place.
     """
     work, flow = equations.work, equations.work.flow
     wanted, differentiated = factors.by_acceleration != 0.0 or differentiates_forces(factors), flow_factors(factors)

@@ -96,23 +96,11 @@ def add_hysteresis(
 ) -> tuple[float, float]:
     """Add the force of hysteresis on an element, with the opposite sign, and its exact tangent.
 
-    Parameters
-    ----------
-    own
-        Row of the element, of `hysteresis_record`.
-    vectors
-        Where among the coordinates of the element the vectors begin that carry its centerline.
-    by_position, by_velocity
-        The tangent is the sum of these times the derivatives with respect to e and to its rate; with both zero there
-        is none.
-    work
-        From `element_workspace`, with the coordinates e of the element and their rates. The force is added to
-        `element.gradient`, and the tangent to `element.tangent`; `hysteresis` is scratch.
-
-    Returns
-    -------
-    tuple of 2 floats
-        Powers lost in stretch and in bending, W; never negative.
+    `own`: row of the element, of `hysteresis_record`; `vectors`: where among the coordinates of the element the vectors
+    begin that carry its centerline; `by_position`, `by_velocity`: the tangent is the sum of these times the derivatives
+    with respect to e and to its rate; with both zero there is none; `work`: from `element_workspace`, with the
+    coordinates e of the element and their rates. The force is added to `element.gradient`, and the tangent to
+    `element.tangent`; `hysteresis` is scratch. Returns powers lost in stretch and in bending, W; never negative.
     """
     scratch, gradient, length = work.hysteresis, work.element.gradient, own.length
     _find_strains(own, vectors, work.coordinates, scratch)
@@ -135,18 +123,9 @@ def add_hysteresis_flow(
 ) -> None:
     """Add what the belt's flow through an element does to the tangent of its hysteresis, after `add_hysteresis`.
 
-    Parameters
-    ----------
-    vectors
-        As there.
-    derivative : ndarray, shape (v, v)
-        D, vectors of dr/dx from those of r, 1/m.
-    rate : ndarray, shape (v, 2)
-        D e.
-    by_flow
-        The tangent is this times d/d(de/dt) D.
-    work
-        As there; d/d(de/dt) D e is added to `element.by_flow`.
+    `vectors`: as there; `derivative`: D, vectors of dr/dx from those of r, 1/m, shape (v, v); `rate`: D e, shape (v,
+    2); `by_flow`: the tangent is this times d/d(de/dt) D; `work`: as there; d/d(de/dt) D e is added to
+    `element.by_flow`.
     """
     scratch, own = work.hysteresis, work.element
     pull_of_flow = moment_of_flow = 0.0

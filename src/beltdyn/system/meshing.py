@@ -395,16 +395,8 @@ def fill_tooth_forces(
 ) -> None:
     """Add the forces of teeth to zeros; see `tooth_forces`.
 
-    Parameters
-    ----------
-    system
-        With single teeth on a mesh that travels.
-    position, velocity : ndarray, shape (k, n N + D)
-        The states.
-    work
-        From `element_workspace`.
-    found : ndarray, shape (k, teeth)
-        Changed in place, N.
+    `system`: with single teeth on a mesh that travels; `position`, `velocity`: the states, shape (k, n N + D); `work`:
+    from `element_workspace`; `found`: changed in place, N, shape (k, teeth).
     """
     for k in range(position.shape[0]):
         for element in range(system.length.size):

@@ -39,24 +39,10 @@ _FINEST: Final = 1e-6
 def missed_action(system: System, source: int, motion: Motion, length: float, limit: float) -> tuple[float, float]:
     """Integral over a step of an action less the straight line between its values at the ends.
 
-    Parameters
-    ----------
-    system
-        The system.
-    source
-        A pulley, whose shaft has a prescribed speed or torques; or the number of pulleys and that of a link.
-    motion
-        Beginning of the step.
-    length
-        Length of the step, s.
-    limit
-        The search ends where the integral gets larger than this.
-
-    Returns
-    -------
-    largest, whole : float
-        Largest absolute integral from the beginning of the step to any instant in it, and the integral over the whole
-        step: rad for a prescribed speed, N m s else.
+    `source`: a pulley, whose shaft has a prescribed speed or torques; or the number of pulleys and that of a link;
+    `motion`: beginning of the step; `length`: length of the step, s; `limit`: the search ends where the integral gets
+    larger than this. Returns largest, whole: largest absolute integral from the beginning of the step to any instant in
+    it, and the integral over the whole step: rad for a prescribed speed, N m s else.
     """
     end = motion.time + length
     time = next_instant(system, source, motion, motion.time, length)
@@ -83,16 +69,8 @@ def missed_action(system: System, source: int, motion: Motion, length: float, li
 def missed_impulses(system: System, motion: Motion, length: float, impulse: FloatArray) -> None:
     """Angular impulses on the bodies that the ends of a step miss.
 
-    Parameters
-    ----------
-    system
-        The system.
-    motion
-        Beginning of the step.
-    length
-        Length of the step, s.
-    impulse : ndarray, shape (2, n N + D)
-        Overwritten by those of torques on the shafts, and those of links, in the places of the bodies, N m s.
+    `motion`: beginning of the step; `length`: length of the step, s; `impulse`: overwritten by those of torques on the
+    shafts, and those of links, in the places of the bodies, N m s, shape (2, n N + D).
     """
     impulse[:] = 0.0
     first = system.first_body
@@ -119,16 +97,8 @@ def missed_work(
     The impulse of torques on a free shaft does its work at the mean speed of the step, and the driver of a prescribed
     body does what the kinetic energy of the body changes by.
 
-    Parameters
-    ----------
-    system
-        The system.
-    motion, end
-        Beginning and end of the step.
-    impulse : ndarray, shape (2, n N + D)
-        From `missed_impulses`.
-    work : ndarray, shape (8,)
-        Overwritten, in the order of `POWERS`, J.
+    `motion`, `end`: beginning and end of the step; `impulse`: from `missed_impulses`, shape (2, n N + D); `work`:
+    overwritten, in the order of `POWERS`, J, shape (8,).
     """
     work[:] = 0.0
     first, length = system.first_body, end.time - motion.time
@@ -329,21 +299,9 @@ def numerical_loss(system: System, before: Motion, after: Motion, impulse: Float
     which is exactly its dissipation where forces are linear in the positions: the mean of their values at both ends,
     times the way, is then their work.
 
-    Parameters
-    ----------
-    system
-        Belt and bodies.
-    before, after
-        Both ends of the step.
-    impulse : ndarray, shape (2, n N + D)
-        What acts on the bodies beside the forces at the ends, from `missed_impulses`, N m s.
-    work
-        From `element_workspace`.
-
-    Returns
-    -------
-    float
-        J; of belt and free bodies.
+    `system`: belt and bodies; `before`, `after`: both ends of the step; `impulse`: what acts on the bodies beside the
+    forces at the ends, from `missed_impulses`, N m s, shape (2, n N + D); `work`: from `element_workspace`. Returns J;
+    of belt and free bodies.
     """
     way, change, mean = work.coordinates[0], work.coordinates[1], work.coordinates[2]
     speed, taken, dof = work.element.gradient, work.element.tangent[0], len(system.scale)

@@ -36,14 +36,7 @@ def tensioner_coordinate(system: System, tensioner: int) -> int:
 def pulley_state(system: System, pulley: int, position: FloatArray, velocity: FloatArray) -> PulleyState:
     """A pulley at a state.
 
-    Parameters
-    ----------
-    system
-        The system.
-    pulley
-        Which one.
-    position, velocity : ndarray, shape (n N + D,)
-        The state.
+    `position`, `velocity`: shape (n N + D,).
     """
     item, body = system.pulleys[pulley], system.first_body + pulley
     carrier, speed = item.carrier, velocity[body]
@@ -125,14 +118,8 @@ def moving_center(system: System, pulley: int, position: FloatArray, velocity: F
 def keep_drift(system: System, center: MovingCenter, contact: np.record, drift: np.record) -> None:
     """Overwrite drift by D and by its counterpart for the moment on the pulley.
 
-    Parameters
-    ----------
-    system, center
-        The system, and how the center moves.
-    contact
-        With the derivatives of force and moment with respect to the velocity.
-    drift
-        A row of the kind `drift_record`.
+    `system`, `center`: the system, and how the center moves; `contact`: with the derivatives of force and moment with
+    respect to the velocity; `drift`: a row of the kind `drift_record`.
     """
     x, y = center.drift_x, center.drift_y
     drift.moment = 0.0
@@ -164,22 +151,9 @@ def couple_center(
 ) -> None:
     """Couple the tensioner's coordinate to the nodes of an element and to the rim that they touch.
 
-    Parameters
-    ----------
-    system
-        The system.
-    element
-        Which one touches.
-    center
-        How the center moves.
-    drifting
-        Factor of the drift: that of the derivative with respect to position, zero where there is none.
-    contact
-        Forces with the tangent.
-    drift
-        From `keep_drift`.
-    matrix
-        Changed in place.
+    `element`: which one touches; `center`: how the center moves; `drifting`: factor of the drift: that of the
+    derivative with respect to position, zero where there is none; `contact`: forces with the tangent; `drift`: from
+    `keep_drift`; `matrix`: changed in place.
     """
     dof, node_j = len(system.scale), (element + 1) % system.nodes
     own, rim, x, y = center.unknown, center.rim, center.x, center.y

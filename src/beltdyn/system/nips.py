@@ -70,18 +70,8 @@ def fill_nips(
 ) -> None:
     """Fill what is zero or not a number; see `seen_nips`.
 
-    Parameters
-    ----------
-    system
-        With nips.
-    position, velocity : ndarray, shape (k, n N + D)
-        The states.
-    rollers
-        Numbers of the rollers beside the path.
-    work
-        From `element_workspace`.
-    found
-        Changed in place.
+    `system`: with nips; `position`, `velocity`: the states, shape (k, n N + D); `rollers`: numbers of the rollers
+    beside the path; `work`: from `element_workspace`; `found`: changed in place.
     """
     curves, count = system.control.shape[1], system.contact.points.size
     for k in range(position.shape[0]):

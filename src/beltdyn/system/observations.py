@@ -50,22 +50,9 @@ def next_curve(walk: np.record, length: float) -> None:
 def turned_at(walk: np.record, xi: float, number: int, pulley: PulleyState, work: np.record) -> float:
     """Walk on to the next place that touches.
 
-    Parameters
-    ----------
-    walk
-        Row of `WALK`; overwritten.
-    xi
-        The place on the curve, 0 to 1.
-    number, pulley
-        What it touches.
-    work
-        From `element_workspace`, with the control points of the curve.
-
-    Returns
-    -------
-    float
-        Angle around the pulley from the last place, rad; zero where that is on another pulley, or where half a turn of
-        belt or more lies between.
+    `walk`: row of `WALK`; overwritten; `xi`: the place on the curve, 0 to 1; `number`, `pulley`: what it touches;
+    `work`: from `element_workspace`, with the control points of the curve. Returns angle around the pulley from the
+    last place, rad; zero where that is on another pulley, or where half a turn of belt or more lies between.
     """
     fill_bernstein(xi, work.contact.weights)
     x, y = combine(work.control, work.contact.weights)
@@ -81,10 +68,7 @@ def turned_at(walk: np.record, xi: float, number: int, pulley: PulleyState, work
 def turned_at_the_end(walk: np.record) -> float:
     """Angle around the pulley from the last place of a closed belt to its first, as of `turned_at`, rad.
 
-    Parameters
-    ----------
-    walk
-        Row of `WALK`, at the end of the belt.
+    `walk`: row of `WALK`, at the end of the belt.
     """
     first = walk.first
     return _turned(walk.last, first.pulley, first.x, first.y, walk.along + walk.length + first.along)

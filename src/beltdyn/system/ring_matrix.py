@@ -21,16 +21,7 @@ def eliminate(square: FloatArray, pivots: IntArray, panel: FloatArray, size: int
 
     The factors are P^-1 L U with ones on the diagonal of U, and the inverse of L's diagonal in its place.
 
-    Parameters
-    ----------
-    square : ndarray, shape (size, size)
-        Overwritten.
-    pivots : ndarray of int, shape (size,)
-        Overwritten.
-    panel : ndarray, shape (size, any)
-        Overwritten.
-    size
-        Number of rows.
+    `square`: shape (size, size); `pivots`: shape (size,); `panel`: shape (size, any); `size`: number of rows.
     """
     width = panel.shape[1]
     for k in range(size):
@@ -197,10 +188,7 @@ def places(matrix: RingMatrix) -> tuple[IntArray, IntArray]:
 def solve_ring(matrix: RingMatrix, closed: bool, node_part: FloatArray, border_part: FloatArray) -> bool:
     """Factorize a matrix and solve for its right-hand side; see `factorise_ring` and `substitute`.
 
-    Returns
-    -------
-    bool
-        False if the matrix is singular to working precision; there is no solution then.
+    Returns false if the matrix is singular to working precision; there is no solution then.
     """
     if not factorise_ring(matrix, closed):
         return False
@@ -212,17 +200,8 @@ def solve_ring(matrix: RingMatrix, closed: bool, node_part: FloatArray, border_p
 def factorise_ring(matrix: RingMatrix, closed: bool) -> bool:
     """Factorize a matrix, whose entries are kept as they are.
 
-    Parameters
-    ----------
-    matrix
-        Its factors are overwritten.
-    closed
-        Whether `upper` and `lower` of the last node couple it to the first.
-
-    Returns
-    -------
-    bool
-        False if a pivot vanished (singular to working precision); the factors are then meaningless.
+    `matrix`: its factors are overwritten; `closed`: whether `upper` and `lower` of the last node couple it to the
+    first. Returns false if a pivot vanished (singular to working precision); the factors are then meaningless.
     """
     dof, nodes, extra = len(matrix.unknowns), matrix.diagonal.shape[0], matrix.corner.shape[0]
     cut, inner = (dof, nodes - 1) if closed else (0, nodes)
@@ -255,16 +234,9 @@ def factorise_ring(matrix: RingMatrix, closed: bool) -> bool:
 def substitute(matrix: RingMatrix, closed: bool, node_part: FloatArray, border_part: FloatArray) -> None:
     """Solve for the right-hand side with the factors that are there.
 
-    Parameters
-    ----------
-    matrix
-        Factorized by `factorise_ring`, since when its blocks between nodes and in the border's rows are the same.
-    closed
-        As there.
-    node_part : ndarray, shape (N, n)
-        Overwritten by the solution.
-    border_part : ndarray, shape (m,)
-        Overwritten by the solution.
+    `matrix`: factorized by `factorise_ring`, since when its blocks between nodes and in the border's rows are the same;
+    `closed`: as there; `node_part`: overwritten by the solution, shape (N, n); `border_part`: overwritten by the
+    solution, shape (m,).
     """
     dof, nodes, extra = len(matrix.unknowns), matrix.diagonal.shape[0], matrix.corner.shape[0]
     cut, inner = (dof, nodes - 1) if closed else (0, nodes)

@@ -91,16 +91,8 @@ def push_running(
 def gone_with_web(line: RunningWeb, system: System, before: Motion, after: Motion, work: np.record) -> float:
     """Kinetic energy that goes out with the web in a step, less what comes in, beyond that of a line of this content.
 
-    Parameters
-    ----------
-    line
-        The ends.
-    system
-        With the lengths of elements after the step.
-    before, after
-        Both ends of the step.
-    work
-        From `element_workspace`.
+    `line`: the ends; `system`: with the lengths of elements after the step; `before`, `after`: both ends of the step;
+    `work`: from `element_workspace`.
     """
     total, frame, vectors, dof = 0.0, system.frame, system.vectors, len(system.scale)
     for element in range(system.length.size):

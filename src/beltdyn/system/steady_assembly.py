@@ -253,20 +253,11 @@ def anchor_at(state: State, at_rest: bool) -> Anchor:
 def assemble_steady(system: System, motion: Motion, anchor: Anchor, wanted: bool, equations: Equations) -> None:
     """Residual of the equations of steady running, and its tangent.
 
-    Parameters
-    ----------
-    system
-        A closed belt in a staying mesh, or a web line; unknowns of its bodies are the speeds of pulleys, the
-        states of controllers, and the places of tensioners.
-    motion
-        The state; its nodes and tensioners have no velocity.
-    anchor
-        What keeps the mesh in place.
-    wanted
-        Whether the tangent is.
-    equations
-        With one unknown more than the system's bodies have, two of a web line. Residual and body forces are
-        overwritten, and the tangent if it is wanted.
+    `system`: a closed belt in a staying mesh, or a web line; unknowns of its bodies are the speeds of pulleys, the
+    states of controllers, and the places of tensioners; `motion`: the state; its nodes and tensioners have no velocity;
+    `anchor`: what keeps the mesh in place; `wanted`: whether the tangent is wanted; `equations`: with one unknown more
+    than the system's bodies have, two of a web line. Residual and body forces are overwritten, and the tangent if it is
+    wanted.
     """
     work, matrix, forces = equations.work, equations.matrix, equations.forces
     clear(matrix, wanted)
@@ -366,16 +357,8 @@ def no_multipliers(system: System) -> FloatArray:
 def subtract_solution(system: System, equations: Equations, factor: float, vector: FloatArray) -> None:
     """Take factor times the solution off a state vector.
 
-    Parameters
-    ----------
-    system
-        The system.
-    equations
-        With a solution.
-    factor
-        Dimensionless, or the factor between unknown and vector.
-    vector : ndarray, shape (n N + D,)
-        Positions, velocities or accelerations, changed in place; prescribed bodies keep theirs.
+    `equations`: with a solution; `factor`: dimensionless, or the factor between unknown and vector; `vector`:
+    positions, velocities or accelerations, changed in place; prescribed bodies keep theirs, shape (n N + D,).
     """
     dof = len(system.scale)
     for node in range(system.nodes):

@@ -64,16 +64,8 @@ def add_nodal_loads(system: System, position: FloatArray, by_position: float, ma
     d, so that it acts on d with m n / |d|, n normal to d.  (On r_x it would be a couple of opposite shears within one
     element, which grows with every refinement of the mesh, since the energy holds s but not its jumps.)
 
-    Parameters
-    ----------
-    system
-        With its supports.
-    position : ndarray, shape (n N + D,)
-        Nodal coordinates first.
-    by_position
-        Factor of the derivative with respect to position in the tangent.
-    matrix
-        Right-hand side and tangent, changed in place.
+    `system`: with its supports; `position`: nodal coordinates first, shape (n N + D,); `by_position`: factor of the
+    derivative with respect to position in the tangent; `matrix`: right-hand side and tangent, changed in place.
     """
     supports, dof = system.supports, len(system.scale)
     for node in range(system.nodes):
@@ -97,12 +89,8 @@ def add_nodal_loads(system: System, position: FloatArray, by_position: float, ma
 def hold_fixed(system: System, matrix: RingMatrix) -> None:
     """Replace the equations of fixed coordinates by "no change".
 
-    Parameters
-    ----------
-    system
-        With its supports.
-    matrix
-        Rows and columns of fixed coordinates become those of the identity, their right-hand side zero.
+    `system`: with its supports; `matrix`: rows and columns of fixed coordinates become those of the identity, their
+    right-hand side zero.
     """
     dof = len(system.scale)
     for node in range(system.nodes):

@@ -117,18 +117,8 @@ def _way_of_content(line: WebLine, border_part: FloatArray) -> float:
 def hold_web(line: WebLine, system: System, motion: Motion, at_rest: bool, wanted: bool, equations: Equations) -> None:
     """The tensions at both ends as equations of the last two unknowns; at rest these stay as they are.
 
-    Parameters
-    ----------
-    line
-        The ends.
-    system, motion
-        The state.
-    at_rest
-        Whether the web stands still, with the content that it has.
-    wanted
-        Whether the tangent is.
-    equations
-        Changed in place.
+    `line`: the ends; `at_rest`: whether the web stands still, with the content that it has; `wanted`: whether the
+    tangent is wanted; `equations`: changed in place.
     """
     matrix, dof = equations.matrix, len(system.scale)
     law = system.element.section.stretch

@@ -180,14 +180,8 @@ class LumpedDrive(NamedTuple):
     ) -> tuple[ComplexArray, ComplexArray]:
         """Complex amplitudes of exp(i w t) of the span tensions, N, and of all unknowns.
 
-        Parameters
-        ----------
-        frequency
-            w, rad/s.
-        angles, torques
-            Number of a pulley -> amplitude of the angle of its prescribed shaft, rad, or of a torque on it, N m.
-        dashpots : ndarray, shape (K,), optional
-            Damping of tensioners in addition.
+        `frequency`: w, rad/s; `angles`, `torques`: number of a pulley -> amplitude of the angle of its prescribed
+        shaft, rad, or of a torque on it, N m; `dashpots`: damping of tensioners in addition, shape (K,), optional.
         """
         rate = 1j * frequency
         spans: ComplexArray = (self.spans * (1.0 + 1j * self.loss_factor + rate * self.damping_time)).astype(
@@ -213,18 +207,9 @@ def lumped_drive(
 ) -> LumpedDrive:
     """Lump a drive in steady running.
 
-    Parameters
-    ----------
-    prepared : Prepared
-        The drive, with constant speeds and torques.
-    tension : ndarray, shape (spans,)
-        Of the spans, N.
-    centers : ndarray, shape (pulleys, 2)
-        Where the pulleys are, m.
-    positions : ndarray, shape (K,)
-        Places of the tensioners, m or rad.
-    speed : float
-        Of the belt, m/s, negative against the order of the pulleys.
+    `prepared`: the drive, with constant speeds and torques; `tension`: of the spans, N, shape (spans,); `centers`:
+    where the pulleys are, m, shape (pulleys, 2); `positions`: places of the tensioners, m or rad, shape (K,); `speed`:
+    of the belt, m/s, negative against the order of the pulleys.
     """
     refuse_nips(prepared.drive.nips, "the lumped model of a drive")
     return _Lumping(prepared, tension, centers, positions, speed).made()
@@ -448,16 +433,8 @@ def amplitudes(
 ) -> Amplitudes:
     """Find the amplitudes in a state.
 
-    Parameters
-    ----------
-    prepared
-        The drive, with constant torques and speeds.
-    drive
-        With the harmonics.
-    excitations
-        As of `excitations_of`.
-    states, row
-        Steady running.
+    `prepared`: the drive, with constant torques and speeds; `drive`: with the harmonics; `excitations`: as of
+    `excitations_of`; `states`, `row`: steady running.
     """
     lumped, radii = lumped_at(prepared, states, row), np.asarray(prepared.path.radii)
     given = [_wave(drive, one, float(states.speed[row] / radii[one.pulley])) for one in excitations]

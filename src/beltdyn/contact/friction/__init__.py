@@ -62,26 +62,7 @@ def as_common(law: FrictionParameters) -> FrictionParameters:
 def common_friction(
     law: CommonFriction, slip: float, normal: float, friction: float, rim: float
 ) -> tuple[float, float, float, float]:
-    """Friction force and its derivatives by the law that holds.
-
-    Parameters
-    ----------
-    law
-        Parameters.
-    slip
-        Slip velocity v_t, m/s.
-    normal
-        Normal force f_n, N/m, not negative.
-    friction
-        Coulomb coefficient mu.
-    rim
-        Speed of the rim v_r, m/s.
-
-    Returns
-    -------
-    tuple of 4 floats
-        f_t (N/m), df_t/dv_t (N s/m^2), df_t/df_n, df_t/dv_r (N s/m^2).
-    """
+    """Kernel of the common type: friction by the law that holds; see `FrictionLaw.force`."""
     if law.law == 1:
         return relative_creep(law.relative_creep, slip, normal, friction, rim)
     if law.law == 2:

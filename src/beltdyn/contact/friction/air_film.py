@@ -49,26 +49,7 @@ class AirFilm(NamedTuple):
 def air_film(
     law: AirFilm, slip: float, normal: float, friction: float, rim: float
 ) -> tuple[float, float, float, float]:
-    """Friction force and its derivatives.
-
-    Parameters
-    ----------
-    law
-        Parameters.
-    slip
-        Slip velocity v_t, m/s.
-    normal
-        Normal force f_n, N/m, not negative.
-    friction
-        Coulomb coefficient mu without a film.
-    rim
-        Speed of the rim v_r, m/s.
-
-    Returns
-    -------
-    tuple of 4 floats
-        f_t (N/m), df_t/dv_t (N s/m^2), df_t/df_n, df_t/dv_r (N s/m^2).
-    """
+    """Kernel of `FrictionLaw.force`: relative creep with the coefficient that the film leaves of mu."""
     entrained, tension = 2.0 * rim + slip, normal * law.film_radius / law.web_width
     shear, thickness = 6.0 * law.air_viscosity * abs(entrained), law.roughness / (0.643 * law.film_radius)
     dry = relative_creep(RelativeCreep(law.creep_ratio, law.standstill_creep), slip, normal, friction, rim)

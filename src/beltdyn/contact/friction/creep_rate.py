@@ -47,26 +47,7 @@ def creep_velocity(law: Any, rim: float) -> float:
 def relative_creep(
     law: RelativeCreep, slip: float, normal: float, friction: float, rim: float
 ) -> tuple[float, float, float, float]:
-    """Friction force and its derivatives.
-
-    Parameters
-    ----------
-    law
-        Parameters.
-    slip
-        Slip velocity v_t, m/s.
-    normal
-        Normal force f_n, N/m, not negative.
-    friction
-        Coulomb coefficient mu.
-    rim
-        Speed of the rim v_r, m/s.
-
-    Returns
-    -------
-    tuple of 4 floats
-        f_t (N/m), df_t/dv_t (N s/m^2), df_t/df_n, df_t/dv_r (N s/m^2).
-    """
+    """Kernel of `FrictionLaw.force`: friction saturates at v_c = sqrt((s v_r)^2 + v_0^2)."""
     creep = creep_velocity(law, rim)
     if slip > creep:
         return -friction * normal, 0.0, -friction, 0.0
@@ -106,26 +87,7 @@ class CoefficientSlope(NamedTuple):
 def coefficient_slope(
     law: CoefficientSlope, slip: float, normal: float, friction: float, rim: float
 ) -> tuple[float, float, float, float]:
-    """Friction force and its derivatives.
-
-    Parameters
-    ----------
-    law
-        Parameters.
-    slip
-        Slip velocity v_t, m/s.
-    normal
-        Normal force f_n, N/m, not negative.
-    friction
-        Coulomb coefficient mu.
-    rim
-        Speed of the rim, m/s, which does not matter here.
-
-    Returns
-    -------
-    tuple of 4 floats
-        f_t (N/m), df_t/dv_t (N s/m^2), df_t/df_n, df_t/dv_r (N s/m^2).
-    """
+    """Kernel of `FrictionLaw.force`: friction saturates at the slip velocity v_c, whatever the speed of the rim."""
     if slip > law.creep_velocity:
         return -friction * normal, 0.0, -friction, 0.0
     if slip < -law.creep_velocity:
@@ -158,26 +120,7 @@ class ForceSlope(NamedTuple):
 def force_slope(
     law: ForceSlope, slip: float, normal: float, friction: float, rim: float
 ) -> tuple[float, float, float, float]:
-    """Friction force and its derivatives (Eq. 20).
-
-    Parameters
-    ----------
-    law
-        Parameters.
-    slip
-        Slip velocity v_t, m/s.
-    normal
-        Normal force f_n, N/m, not negative.
-    friction
-        Coulomb coefficient mu.
-    rim
-        Speed of the rim, m/s, which does not matter here.
-
-    Returns
-    -------
-    tuple of 4 floats
-        f_t (N/m), df_t/dv_t (N s/m^2), df_t/df_n, df_t/dv_r (N s/m^2).
-    """
+    """Kernel of `FrictionLaw.force` (Eq. 20): the force rises by nu_s up to mu f_n, whatever the speed of the rim."""
     creep, limit = law.creep_rate_factor * slip, friction * normal
     if abs(creep) < limit:
         return -creep, -law.creep_rate_factor, 0.0, 0.0

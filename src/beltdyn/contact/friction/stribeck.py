@@ -49,26 +49,7 @@ class Stribeck(NamedTuple):
 def stribeck(
     law: Stribeck, slip: float, normal: float, friction: float, rim: float
 ) -> tuple[float, float, float, float]:
-    """Friction force and its derivatives.
-
-    Parameters
-    ----------
-    law
-        Parameters.
-    slip
-        Slip velocity v_t, m/s.
-    normal
-        Normal force f_n, N/m, not negative.
-    friction
-        Static coefficient mu.
-    rim
-        Speed of the rim v_r, m/s.
-
-    Returns
-    -------
-    tuple of 4 floats
-        f_t (N/m), df_t/dv_t (N s/m^2), df_t/df_n, df_t/dv_r (N s/m^2).
-    """
+    """Kernel of `FrictionLaw.force`: the coefficient falls from the static mu to r mu as the slip velocity rises."""
     creep = creep_velocity(law, rim)
     if abs(slip) <= creep:
         return relative_creep(RelativeCreep(law.creep_ratio, law.standstill_creep), slip, normal, friction, rim)

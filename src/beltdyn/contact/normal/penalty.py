@@ -18,17 +18,7 @@ class Published(NamedTuple):
 
 @kernel
 def published(law: Published, penetration: float, rate: float) -> NormalForce:
-    """Normal force and its derivatives (Eq. 17).
-
-    Parameters
-    ----------
-    law
-        Parameters.
-    penetration
-        d, m, not negative.
-    rate
-        dd/dt, m/s.
-    """
+    """Kernel of `NormalLaw.force` (Eq. 17): k_p d + c_p dd/dt, which may pull."""
     elastic = law.stiffness * penetration
     return NormalForce(elastic + law.damping * rate, law.stiffness, law.damping, elastic, 0.5 * elastic * penetration)
 
@@ -47,17 +37,7 @@ class NoPull(NamedTuple):
 
 @kernel
 def no_pull(law: NoPull, penetration: float, rate: float) -> NormalForce:
-    """Normal force and its derivatives.
-
-    Parameters
-    ----------
-    law
-        Parameters.
-    penetration
-        d, m, not negative.
-    rate
-        dd/dt, m/s.
-    """
+    """Kernel of `NormalLaw.force`: k_p d + c_p dd/dt, and none where that would pull."""
     elastic = law.stiffness * penetration
     force, energy = elastic + law.damping * rate, 0.5 * elastic * penetration
     if force <= 0.0:

@@ -22,17 +22,7 @@ register(SurfaceKind("circle", circle_gap, lambda _: 0.0, ()))
 
 @kernel
 def eccentric_gap(surface: np.record, x: float, y: float, radius: float) -> Gap:
-    """Gap of a point: as on a circle about its own center.
-
-    Parameters
-    ----------
-    surface
-        With `eccentricity` (m) and `eccentric_angle` (rad).
-    x, y
-        Place of the point against the shaft, in the frame of the pulley, m.
-    radius
-        Effective radius R, m.
-    """
+    """Kernel of `SurfaceKind.gap`: as on a circle about its own center, off the shaft by `eccentricity`."""
     dx = x - surface.eccentricity * cos(surface.eccentric_angle)
     dy = y - surface.eccentricity * sin(surface.eccentric_angle)
     distance = sqrt(dx * dx + dy * dy)

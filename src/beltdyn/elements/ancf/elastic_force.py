@@ -69,23 +69,9 @@ def energy_density(metric: float, turning: float, sine: float, sine_rate: float,
     where W is the energy of the law of stretch, EA alpha1 / 8 a^2 of the published one.  The terms odd in y vanish over
     the symmetric section, so the stray "-1" printed in Eq. 11 has no effect.
 
-    Parameters
-    ----------
-    metric
-        G = r_c,x . r_c,x, dimensionless (shear modulus G appears only inside `section`).
-    turning
-        theta, rate at which the tangent turns along the reference length, 1/m.
-    sine
-        s = sin(gamma), dimensionless (Eq. 7).
-    sine_rate
-        p = ds/dx, 1/m.
-    section
-        Stiffnesses of the section.
-
-    Returns
-    -------
-    float
-        psi, J/m.
+    `metric`: G = r_c,x . r_c,x, dimensionless (shear modulus G appears only inside `section`); `turning`: theta, rate
+    at which the tangent turns along the reference length, 1/m; `sine`: s = sin(gamma), dimensionless (Eq. 7);
+    `sine_rate`: p = ds/dx, 1/m. Returns psi, J/m.
     """
     excess = metric - 1.0
     bend = turning + sine_rate
@@ -151,14 +137,7 @@ def energy_curvature(metric: float, turning: float, sine: float, sine_rate: floa
 def thickness_energy(strain_i: float, strain_j: float, section: Section, length: float) -> float:
     """Energy of the thickness stretch, linear between its nodal values, J (second term of Eq. 8).
 
-    Parameters
-    ----------
-    strain_i, strain_j
-        eps_yy = (r_y . r_y - 1) / 2 at the two nodes.
-    section
-        Stiffnesses of the section.
-    length
-        Reference length of the element, m.
+    `strain_i`, `strain_j`: eps_yy = (r_y . r_y - 1) / 2 at the two nodes; `length`: reference length of the element, m.
     """
     return section.thickness * length / 6.0 * (strain_i * strain_i + strain_i * strain_j + strain_j * strain_j)
 
@@ -204,12 +183,8 @@ class _Strain(NamedTuple):
 def centreline(e: FloatArray, factors: Four) -> tuple[float, float]:
     """Combine the four centerline vectors of an element with the given factors.
 
-    Parameters
-    ----------
-    e : ndarray, shape (12,)
-        Nodal coordinates r (m), r_x, r_y of node i, then of node j (Eq. 6).
-    factors
-        `slopes` for q = r_c,x, `bends` for w = r_c,xx.
+    `e`: nodal coordinates r (m), r_x, r_y of node i, then of node j (Eq. 6), shape (12,); `factors`: `slopes` for q =
+    r_c,x, `bends` for w = r_c,xx.
     """
     return (
         factors[2] * (e[6] - e[0]) + factors[1] * e[2] + factors[3] * e[8],

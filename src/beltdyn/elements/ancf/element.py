@@ -20,17 +20,8 @@ Four = tuple[float, float, float, float]
 def slopes(xi: float, length: float) -> Four:
     """First derivatives of the shape functions with respect to x, whose combination is q = r_c,x.
 
-    Parameters
-    ----------
-    xi
-        Dimensionless element coordinate x / L, 0 to 1.
-    length
-        Reference length L of the element, m.
-
-    Returns
-    -------
-    tuple of 4 floats
-        Factors of r_i (1/m), r_x,i (1), r_j (1/m), r_x,j (1).
+    `xi`: dimensionless element coordinate x / L, 0 to 1; `length`: reference length L of the element, m. Returns
+    factors of r_i (1/m), r_x,i (1), r_j (1/m), r_x,j (1).
     """
     chord = 6.0 * xi * (1.0 - xi) / length
     return -chord, 1.0 - xi * (4.0 - 3.0 * xi), chord, xi * (3.0 * xi - 2.0)
@@ -40,15 +31,7 @@ def slopes(xi: float, length: float) -> Four:
 def bends(xi: float, length: float) -> Four:
     """Second derivatives of the shape functions with respect to x, whose combination is w = r_c,xx.
 
-    Parameters
-    ----------
-    xi, length
-        As for `slopes`.
-
-    Returns
-    -------
-    tuple of 4 floats
-        Factors of r_i (1/m^2), r_x,i (1/m), r_j (1/m^2), r_x,j (1/m).
+    `xi`, `length`: as for `slopes`. Returns factors of r_i (1/m^2), r_x,i (1/m), r_j (1/m^2), r_x,j (1/m).
     """
     chord = (6.0 - 12.0 * xi) / (length * length)
     return -chord, (6.0 * xi - 4.0) / length, chord, (6.0 * xi - 2.0) / length
@@ -88,17 +71,8 @@ def nodal_shear(gradient_x: float, gradient_y: float, section_x: float, section_
     Eq. 3 turns the tangent by 90 degrees and then by the shear angle, r_s = n - t sin(gamma), with cos(gamma) taken
     as 1; the nodal value is read from r_y, normalized so that a change of thickness is not taken for shear.
 
-    Parameters
-    ----------
-    gradient_x, gradient_y
-        r_x = dr/dx at the node.
-    section_x, section_y
-        r_y = dr/dy at the node.
-
-    Returns
-    -------
-    NodalShear
-        s and the directions that `shear_gradient` and `add_shear_curvature` need.
+    `gradient_x`, `gradient_y`: r_x = dr/dx at the node; `section_x`, `section_y`: r_y = dr/dy at the node. Returns s
+    and the directions that `shear_gradient` and `add_shear_curvature` need.
     """
     stretch = sqrt(gradient_x * gradient_x + gradient_y * gradient_y)
     thickness = sqrt(section_x * section_x + section_y * section_y)
@@ -113,10 +87,7 @@ def shear_gradient(shear: NodalShear) -> tuple[float, float, float, float]:
 
     With the directions a of r_x and b of r_y, s = -cos(a - b), da = n . dr_x / |r_x| and likewise for b.
 
-    Returns
-    -------
-    tuple of 4 floats
-        ds/d(r_x), ds/d(r_y).
+    Returns ds/d(r_x), ds/d(r_y).
     """
     along, across = shear.cosine / shear.stretch, shear.cosine / shear.thickness
     return (
@@ -131,16 +102,8 @@ def shear_gradient(shear: NodalShear) -> tuple[float, float, float, float]:
 def add_shear_curvature(shear: NodalShear, factor: float, tangent: FloatArray, first: int) -> None:
     """Add factor times the second derivative of s with respect to (r_x, r_y) to a block of an element tangent.
 
-    Parameters
-    ----------
-    shear
-        From `nodal_shear`.
-    factor
-        Derivative of the energy with respect to s, J.
-    tangent : ndarray, shape (12, 12)
-        Changed in place.
-    first
-        Index of the node's r_x in the element's coordinates.
+    `shear`: from `nodal_shear`; `factor`: derivative of the energy with respect to s, J; `tangent`: changed in place,
+    shape (12, 12); `first`: index of the node's r_x in the element's coordinates.
     """
     tx, ty, sx, sy = shear.tangent_x, shear.tangent_y, shear.section_x, shear.section_y
     s, c = factor * shear.sine, factor * shear.cosine

@@ -47,14 +47,7 @@ class LineForce(NamedTuple):
 def dry_resistance(limit: float, friction: float, speed: float, creep_speed: float) -> LineForce:
     """Friction that reaches 76 % of its limit at the creep speed (m/s); the limit grows by friction with normal force.
 
-    Parameters
-    ----------
-    limit
-        N/m.
-    friction
-        Derivative of the limit by the normal force.
-    speed, creep_speed
-        m/s.
+    `limit`: N/m; `friction`: derivative of the limit by the normal force; `speed`, `creep_speed`: m/s.
     """
     rise = tanh(speed / creep_speed)
     return LineForce(limit * rise, friction * rise, limit * (1.0 - rise * rise) / creep_speed)
@@ -139,17 +132,7 @@ IDLERS = record(
 
 @kernel
 def idler_resistance(constants: np.record, normal: float, speed: float) -> LineForce:
-    """Resistance of idlers.
-
-    Parameters
-    ----------
-    constants
-        A row of `IDLERS`.
-    normal
-        n, N/m.
-    speed
-        v, m/s.
-    """
+    """Kernel of `Support.resistance_at` for a row of `IDLERS`."""
     limit = constants.friction * normal + constants.constant
     dry = dry_resistance(limit, constants.friction, speed, constants.creep_speed)
     return LineForce(dry.force + constants.linear * speed, dry.by_normal, dry.by_speed + constants.linear)
@@ -213,17 +196,7 @@ GUIDE = record(
 
 @kernel
 def guide_resistance(constants: np.record, normal: float, speed: float) -> LineForce:
-    """Friction of a guide.
-
-    Parameters
-    ----------
-    constants
-        A row of `GUIDE`.
-    normal
-        n, N/m.
-    speed
-        v, m/s.
-    """
+    """Kernel of `Support.resistance_at` for a row of `GUIDE`: dry friction."""
     limit = constants.friction * (normal + constants.pressing)
     return dry_resistance(limit, constants.friction, speed, constants.creep_speed)
 

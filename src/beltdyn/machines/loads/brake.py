@@ -31,15 +31,7 @@ BRAKE = record(
 
 @kernel
 def braking_torque(constants: np.record, _numbers: FloatArray, shaft: ShaftState) -> LoadTorque:
-    """Torque against the motion.
-
-    Parameters
-    ----------
-    constants
-        A row of `BRAKE`.
-    shaft
-        Its speed counts, and its command, what clamps the brake.
-    """
+    """Kernel of `Load.torque_at` for a row of `BRAKE`: torque against the motion; the command clamps the brake."""
     rise = tanh(shaft.speed / constants.creep_speed)
     arm = constants.forward if shaft.speed > 0.0 else constants.backward
     by_speed = -arm * shaft.command * (1.0 - rise * rise) / constants.creep_speed

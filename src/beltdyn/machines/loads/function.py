@@ -28,15 +28,7 @@ _STEP = 1e-5
 
 @kernel
 def torque_of_function(constants: np.record, _numbers: FloatArray, shaft: ShaftState) -> LoadTorque:
-    """Torque of a function of time, angle and speed.
-
-    Parameters
-    ----------
-    constants
-        A row of `FUNCTION`.
-    shaft
-        Its time, angle and speed count.
-    """
+    """Kernel of `Load.torque_at` for a row of `FUNCTION`: a function of time, angle and speed."""
     time, angle, speed = shaft.time, constants.sense * shaft.angle, constants.sense * shaft.speed
     torque = constants.sense * call_at(constants.torque, time, angle, speed)
     if constants.by_angle != 0:

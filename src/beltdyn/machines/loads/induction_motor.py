@@ -50,14 +50,9 @@ _PULL_UP_SLIP = 6.0 / 7.0
 
 @kernel
 def induction_torque(constants: np.record, _numbers: FloatArray, shaft: ShaftState) -> LoadTorque:
-    """Torque in the sense of the synchronous speed: it drives below that of the supply, and brakes above.
+    """Kernel of `Load.torque_at` for a row of `INDUCTION_MOTOR`; the command is the frequency of the supply, Hz.
 
-    Parameters
-    ----------
-    constants
-        A row of `INDUCTION_MOTOR`.
-    shaft
-        Its speed counts, and its command, the frequency of the supply, Hz.
+    The torque is in the sense of the synchronous speed: it drives below that of the supply, and brakes above.
     """
     supply, synchronous = shaft.command / constants.frequency, constants.synchronous_speed
     sense = 1.0 if synchronous > 0.0 else -1.0

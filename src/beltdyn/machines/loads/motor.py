@@ -40,15 +40,7 @@ def kloss_over_slip(breakdown_torque: float, breakdown_slip: float, slip: float)
 
 @kernel
 def kloss(constants: np.record, _numbers: FloatArray, shaft: ShaftState) -> LoadTorque:
-    """Torque in the sense of the synchronous speed: it drives below that speed, and brakes above.
-
-    Parameters
-    ----------
-    constants
-        A row of `MOTOR`.
-    shaft
-        Its speed counts.
-    """
+    """Kernel of `Load.torque_at` for a row of `MOTOR`: it drives below the synchronous speed, and brakes above."""
     sense = 1.0 if constants.synchronous_speed > 0.0 else -1.0
     slip = 1.0 - shaft.speed / constants.synchronous_speed
     torque, by_slip = kloss_over_slip(sense * constants.breakdown_torque, constants.breakdown_slip, slip)
@@ -103,15 +95,7 @@ SERVO_MOTOR = record(
 
 @kernel
 def servo_torque(constants: np.record, _numbers: FloatArray, shaft: ShaftState) -> LoadTorque:
-    """Torque of the controller within its limits.
-
-    Parameters
-    ----------
-    constants
-        A row of `SERVO_MOTOR`.
-    shaft
-        Its speed counts, its command, the set speed, rad/s, and its state z, rad.
-    """
+    """Kernel of `Load.torque_at` for a row of `SERVO_MOTOR`; command: the set speed, rad/s; state: the angle z, rad."""
     gain, limit = constants.proportional_gain, constants.torque_limit
     wanted = gain * (shaft.command - shaft.speed) + constants.integral_gain * shaft.state
     sense = 1.0 if wanted >= 0.0 else -1.0
@@ -209,15 +193,7 @@ GENERATOR = record(
 
 @kernel
 def generator_torque(constants: np.record, _numbers: FloatArray, shaft: ShaftState) -> LoadTorque:
-    """Torque against the motion.
-
-    Parameters
-    ----------
-    constants
-        A row of `GENERATOR`.
-    shaft
-        Its speed, and its command, the demanded electrical power, W.
-    """
+    """Kernel of `Load.torque_at` for a row of `GENERATOR`; the command is the demanded electrical power, W."""
     speed, least = abs(shaft.speed), constants.cut_in_speed
     if speed <= least:
         return LoadTorque(0.0, 0.0, 0.0, 0.0)

@@ -27,15 +27,7 @@ RESISTANCE = record(
 
 @kernel
 def resistance(constants: np.record, _numbers: FloatArray, shaft: ShaftState) -> LoadTorque:
-    """Torque -(c tanh(omega / omega_c) + l omega + q omega |omega|).
-
-    Parameters
-    ----------
-    constants
-        A row of `RESISTANCE`.
-    shaft
-        Its speed omega counts.
-    """
+    """Kernel of `Load.torque_at`: -(c tanh(omega / omega_c) + l omega + q omega |omega|), a row of `RESISTANCE`."""
     speed = shaft.speed
     rise, size = tanh(speed / constants.creep_speed), abs(speed)
     torque = constants.constant * rise + (constants.linear + constants.quadratic * size) * speed

@@ -92,18 +92,8 @@ def shaft_torque(
 
     A load is schedule(t) f(t, theta, omega) (1 + sum a_k cos(k theta + phi_k)), with f of its kind.
 
-    Parameters
-    ----------
-    profiles, loads
-        Functions of time, and loads.
-    pulley
-        Which one.
-    time
-        s.
-    angle, speed
-        Angle theta and speed omega of the shaft, rad and rad/s, counter-clockwise.
-    states : ndarray, shape (D,)
-        Coordinates of the bodies, among them the states of controllers.
+    `time`: s; `angle`, `speed`: angle theta and speed omega of the shaft, rad and rad/s, counter-clockwise; `states`:
+    coordinates of the bodies, among them the states of controllers, shape (D,).
     """
     total, by_angle, by_speed = profile_value(profiles, pulley, time)[0], 0.0, 0.0
     for number in range(loads.first[pulley], loads.first[pulley + 1]):
@@ -178,21 +168,8 @@ def load_bend(
 ) -> tuple[float, float]:
     """Next kink of a load at constant acceleration and its present command.
 
-    Parameters
-    ----------
-    profiles, loads
-        Functions of time, and loads.
-    number
-        Which load.
-    time
-        s.
-    speed, rate
-        Speed of the shaft at that time, rad/s, and its rate, rad/s^2.
-
-    Returns
-    -------
-    kink, frequency : float
-        Next instant of a kink, s, infinite without any; the highest angular frequency of its waves, rad/s.
+    `time`: s; `speed`, `rate`: speed of the shaft at that time, rad/s, and its rate, rad/s^2. Returns kink, frequency:
+    next instant of a kink, s, infinite without any; the highest angular frequency of its waves, rad/s.
     """
     item, following = loads.table[number], loads.table[number + 1]
     kink, frequency = np.inf, item.order * abs(speed)

@@ -24,16 +24,9 @@ LOAD_TABLE = record(
 
 @kernel
 def interpolated(constants: np.record, numbers: FloatArray, shaft: ShaftState) -> LoadTorque:
-    """Linear between points, constant outside.
+    """Kernel of `Load.torque_at` for a row of `LOAD_TABLE`: linear between points, constant outside.
 
-    Parameters
-    ----------
-    constants
-        A row of `LOAD_TABLE`.
-    numbers : ndarray, shape (2 n,)
-        Speeds, rad/s, ascending, then torques, N m.
-    shaft
-        Its speed counts.
+    `numbers`, shape (2 n,), are ascending speeds, rad/s, then torques, N m.
     """
     count, speed = constants.count, shaft.speed
     above = first_above(numbers, 0, count, speed)
@@ -46,15 +39,7 @@ def interpolated(constants: np.record, numbers: FloatArray, shaft: ShaftState) -
 
 @kernel
 def next_point(constants: np.record, numbers: FloatArray, shaft: ShaftState, rising: bool) -> float:
-    """Speed of the nearest point above a speed, or below it if the speed falls, rad/s; infinite without any.
-
-    Parameters
-    ----------
-    constants, numbers, shaft
-        As for `interpolated`.
-    rising
-        Whether the speed rises.
-    """
+    """Kernel of `Load.next_kink`: the nearest point in the sense of the change of speed."""
     above = first_above(numbers, 0, constants.count, shaft.speed)
     if rising:
         return numbers[above] if above < constants.count else np.inf
@@ -185,17 +170,10 @@ ANGLE_TABLE = record(
 
 @kernel
 def torque_over_angle(constants: np.record, numbers: FloatArray, shaft: ShaftState) -> LoadTorque:
-    """Bicubic between points; constant over the speed outside of the speeds.
+    """Kernel of `Load.torque_at` for a row of `ANGLE_TABLE`: bicubic, constant beyond the speeds.
 
-    Parameters
-    ----------
-    constants
-        A row of `ANGLE_TABLE`, with a angles and b speeds.
-    numbers : ndarray, shape (a + b + 4 a b,)
-        Angles, rad, and speeds, rad/s, ascending; then for each angle and speed the torque M, dM/dtheta, dM/domega and
-        d2M/(dtheta domega).
-    shaft
-        Its angle and speed count.
+    With a angles and b speeds, `numbers`, shape (a + b + 4 a b,), are ascending angles, rad, and speeds,
+    rad/s; then for each angle and speed the torque M, dM/dtheta, dM/domega and d2M/(dtheta domega).
     """
     angles, speeds, start = constants.angles, constants.speeds, numbers[0]
     angle = start + (shaft.angle - start) % constants.cycle

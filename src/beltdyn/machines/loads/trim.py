@@ -39,14 +39,9 @@ def _trim(constants: np.record, shaft: ShaftState) -> tuple[float, float]:
 
 @kernel
 def trimmed_speed(constants: np.record, _numbers: FloatArray, shaft: ShaftState) -> LoadTorque:
-    """Torque of a motor that follows a trimmed speed.
+    """Kernel of `Load.torque_at` for a row of `TRIM`: a motor that follows a trimmed speed.
 
-    Parameters
-    ----------
-    constants
-        A row of `TRIM`.
-    shaft
-        Its speed counts, its command, the speed without trim, rad/s, its error, m or N, and its state, s.
+    The command is the speed without trim, rad/s; the error is in m or N, the state in s.
     """
     factor, gain = 1.0 + _trim(constants, shaft)[0], constants.speed_gain
     return LoadTorque(gain * (factor * shaft.command - shaft.speed), 0.0, -gain, gain * factor)

@@ -51,19 +51,8 @@ def profile_rows(profiles: Sequence[Profile | None], harmonics: Sequence[Sequenc
 def profile_value(profiles: Profiles, number: int, time: float) -> tuple[float, float]:
     """Value of a profile and its rate, without harmonics.
 
-    Parameters
-    ----------
-    profiles
-        The profiles.
-    number
-        Which one.
-    time
-        s.
-
-    Returns
-    -------
-    value, rate : float
-        Speed and angular acceleration (rad/s, rad/s^2), torque and its rate (N m, N m/s), or factor and rate (1/s).
+    `time`: s. Returns value, rate: speed and angular acceleration (rad/s, rad/s^2), torque and its rate (N m, N m/s),
+    or factor and rate (1/s).
     """
     segment = profiles.segment[_segment(profiles, number, time)]
     since = time - segment.start if segment.slope != 0.0 or segment.curvature != 0.0 else 0.0
@@ -93,19 +82,7 @@ def after_jump(time: float) -> float:
 def profile_integral(profiles: Profiles, number: int, time: float) -> float:
     """Integral of a profile from time zero, without harmonics: the angle of a mean speed.
 
-    Parameters
-    ----------
-    profiles
-        The profiles.
-    number
-        Which one.
-    time
-        s.
-
-    Returns
-    -------
-    float
-        rad, where the profile is a speed.
+    `time`: s. Returns rad, where the profile is a speed.
     """
     k = _segment(profiles, number, time)
     begin = profiles.segment[k].start if k > profiles.table[number].segment else 0.0
@@ -123,19 +100,8 @@ def go_on(profiles: Profiles, numbers: Sequence[int], time: float, values: Seque
 def profile_bend(profiles: Profiles, number: int, time: float) -> tuple[float, float]:
     """The next kink of a profile, and the angular frequency of its wave until then.
 
-    Parameters
-    ----------
-    profiles
-        The profiles; harmonics are left out.
-    number
-        Which one.
-    time
-        s.
-
-    Returns
-    -------
-    kink, frequency : float
-        s, infinite after the last kink; rad/s, zero where the profile is straight.
+    `profiles`: the profiles; harmonics are left out; `time`: s. Returns kink, frequency: s, infinite after the last
+    kink; rad/s, zero where the profile is straight.
     """
     k = _segment(profiles, number, after_jump(time))
     last = k + 1 == profiles.table[number + 1].segment
@@ -148,19 +114,8 @@ def profile_bend(profiles: Profiles, number: int, time: float) -> tuple[float, f
 def prescribed_motion(profiles: Profiles, number: int, time: float) -> tuple[float, float, float]:
     """Prescribed speed with its harmonics: omega = m (1 + sum a_k cos(k theta + phi_k)), theta the integral of m.
 
-    Parameters
-    ----------
-    profiles
-        The profiles; the value is the mean speed m.
-    number
-        Which one.
-    time
-        s.
-
-    Returns
-    -------
-    angle, speed, acceleration : float
-        rad since time zero, rad/s, rad/s^2.
+    `profiles`: the profiles; the value is the mean speed m; `time`: s. Returns angle, speed, acceleration: rad since
+    time zero, rad/s, rad/s^2.
     """
     mean, rate = profile_value(profiles, number, time)
     angle = profile_integral(profiles, number, time)
@@ -193,19 +148,8 @@ def _segment(profiles: Profiles, number: int, time: float) -> int:
 def first_above(numbers: FloatArray, first: int, end: int, value: float) -> int:
     """Index of the first of ascending numbers above a value.
 
-    Parameters
-    ----------
-    numbers : ndarray, shape (n,)
-        Numbers.
-    first, end
-        Places of the first number to be looked at, and behind the last.
-    value
-        The value.
-
-    Returns
-    -------
-    int
-        The place, `end` where none is above.
+    `numbers`: shape (n,); `first`, `end`: places of the first number to be looked at, and behind the last. Returns the
+    place, `end` where none is above.
     """
     while first < end:
         middle = (first + end) // 2

@@ -56,14 +56,7 @@ def harmonic_rows(groups: Sequence[Sequence[Harmonic]]) -> tuple[IntArray, Recor
 def harmonic_factor(harmonics: Records, first: int, end: int, angle: float) -> tuple[float, float]:
     """1 + sum a_k cos(k theta + phi_k), and its derivative with respect to theta.
 
-    Parameters
-    ----------
-    harmonics
-        Rows of `HARMONIC`.
-    first, end
-        The first one, and that after the last.
-    angle
-        theta, rad.
+    `harmonics`: rows of `HARMONIC`; `first`, `end`: the first one, and that after the last; `angle`: theta, rad.
     """
     factor, change = 1.0, 0.0
     for h in range(first, end):

@@ -125,14 +125,7 @@ PROFILES = Registry[type[Profile]]("profile", Profile)
 def segment_value(segment: Any, since: Any, time: Any) -> Any:
     """Value of a profile at an instant.
 
-    Parameters
-    ----------
-    segment
-        The row of `SEGMENT` that holds there.
-    since
-        Time since its start, s; zero in the first.
-    time
-        s.
+    `segment`: the row of `SEGMENT` that holds there; `since`: time since its start, s; zero in the first; `time`: s.
     """
     wave = segment.amplitude * np.cos(segment.frequency * time + segment.phase)
     return segment.offset + (segment.slope + 0.5 * segment.curvature * since) * since + wave
@@ -145,12 +138,7 @@ def segment_integral(segment: np.record, begin: float, end: float) -> float:
     (t - s) (offset + slope (t - s) / 2 + curvature (t - s)^2 / 6 + amplitude cos(omega (s + t) / 2 + phase) sin(x) / x)
     from s to t, x = omega (t - s) / 2.
 
-    Parameters
-    ----------
-    segment
-        A row of `SEGMENT`.
-    begin, end
-        s and t, s.
+    `segment`: a row of `SEGMENT`; `begin`, `end`: s and t, s.
     """
     since = end - begin
     half = 0.5 * segment.frequency * since

@@ -67,12 +67,8 @@ class TensionerForce(NamedTuple):
 def spring_force(constants: np.record, q: float, velocity: float) -> TensionerForce:
     """Force preload - k q - c v - dry friction + stops.
 
-    Parameters
-    ----------
-    constants
-        A row with a field `spring`, a row of `SPRING`.
-    q, velocity
-        Coordinate and its rate v, m and m/s, or rad and rad/s.
+    `constants`: a row with a field `spring`, a row of `SPRING`; `q`, `velocity`: coordinate and its rate v, m and m/s,
+    or rad and rad/s.
     """
     spring = constants.spring
     friction, friction_slope = dry_friction(spring, velocity)
@@ -104,17 +100,8 @@ def spring_force(constants: np.record, q: float, velocity: float) -> TensionerFo
 def dry_friction(spring: np.record, velocity: float) -> tuple[float, float]:
     """Dry friction against the motion of a tensioner: f tanh(v / v_c), with an f for each sense.
 
-    Parameters
-    ----------
-    spring
-        A row of `SPRING`.
-    velocity
-        v, m/s or rad/s, positive where the path gets longer.
-
-    Returns
-    -------
-    friction, slope : float
-        Friction, N or N m, which has the sign of the velocity, and its derivative, that for positive ones at zero.
+    `spring`: a row of `SPRING`; `velocity`: v, m/s or rad/s, positive where the path gets longer. Returns friction,
+    slope: friction, N or N m, which has the sign of the velocity, and its derivative, that for positive ones at zero.
     """
     largest = spring.tensioning_friction if velocity >= 0.0 else spring.yielding_friction
     rise = tanh(velocity / spring.creep_speed)
