@@ -239,10 +239,14 @@ class Drive(Part):
         return self.unwinder is not None and self.winder is not None
 
     @property
+    def web_ends(self) -> tuple[Unwinder | Winder, ...]:
+        """Unwinder and winder of a web line."""
+        return tuple(one for one in (self.unwinder, self.winder) if one is not None)
+
+    @property
     def rolls(self) -> tuple[Unwinder | Winder, ...]:
-        """Unwinder and winder of a web line, as far as they have rolls."""
-        ends = (self.unwinder, self.winder)
-        return tuple(one for one in ends if one is not None and one.roll is not None)
+        """Those that have rolls."""
+        return tuple(one for one in self.web_ends if one.roll is not None)
 
     @property
     def ends(self) -> tuple[End, ...]:
@@ -422,7 +426,8 @@ class Drive(Part):
         graded = self.frame.stays and self.simulation.mesh == "auto"
         belt = self.belt.replace(discretization=self.element_kind.name)
         if self.unwinder is not None and belt.length is None and belt.installed_tension is None:
-            belt = belt.replace(installed_tension=self.unwinder.tension)
+            tension = self.unwinder.tension_at(self.simulation.begin, self.belt.thickness)
+            belt = belt.replace(installed_tension=tension)
         return lay_out(Given(belt, self.pulleys, self.contact, self.tensioners, self.path_ends, graded, self.nips))
 
     @cached_property
@@ -506,6 +511,7 @@ class Drive(Part):
         """Instants of kinks and jumps in prescribed functions of time, s, ascending."""
         profiles = [profile for pulley in self.pulleys for profile in pulley.profiles]
         profiles += [one.schedule for one in self.goods if one.schedule is not None]
+        profiles += [one.torque for one in self.rolls if one.torque is not None]
         return tuple(sorted({float(t) for profile in profiles for t in profile.breakpoints()}))
 
     @cached_property

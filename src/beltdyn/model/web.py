@@ -7,6 +7,7 @@ import numpy as np
 from pydantic import Field, model_validator
 
 from beltdyn.arrays import FloatArray
+from beltdyn.machines.profiles.profile_types import TorqueProfile
 from beltdyn.model.end import FixedEnd
 from beltdyn.model.pulley import Pulley
 from beltdyn.parts.part import Part
@@ -61,21 +62,46 @@ class Roll(Part):
 
 
 class WebEnd(Part):
-    """Where the web of a line leaves its unwinder, or reaches its winder, with a controlled tension."""
+    """Where the web of a line leaves its unwinder, or reaches its winder, by a controlled tension or a torque."""
 
     name: Name
     point: tuple[Coordinate, Coordinate]
-    tension: Force
+    tension: Force | None
+    torque: TorqueProfile | None
     roll: Roll | None
+
+    @model_validator(mode="after")
+    def _pulls_the_web(self) -> Self:
+        if (self.tension is None) == (self.torque is None):
+            raise ValueError("needs one of tension, which a drive keeps, and torque, on the roll. Give one of the two")
+        if self.torque is None:
+            return self
+        if self.roll is None:
+            raise ValueError("torque acts on a roll, which is missing. Give the group roll, or tension instead")
+        starts = np.maximum(self.torque.segments().start, 0.0)  # within a piece all kinds are monotonic
+        least = float(np.min(self.torque.at([*starts, *np.nextafter(starts, np.inf)])))
+        if least <= 0.0:
+            raise ValueError(
+                f"torque = {least:g} N m must be positive: it tightens the web, at the unwinder and at the winder. "
+                "Correct it"
+            )
+        return self
 
     @property
     def end(self) -> FixedEnd:
         """The end of the path."""
         return FixedEnd(name=self.name, kind="fixed", point=self.point)
 
+    def tension_at(self, time: float, thickness: float) -> float:
+        """Tension of a web of a thickness (m) in steady running, N: as kept, or M/R of the roll as it begins."""
+        if self.torque is None or self.roll is None:
+            return float(self.tension or 0.0)
+        length = np.array([self.roll.length_of(thickness)])
+        return float(self.torque.at(np.array([time]))[0] / self.roll.radius_at(length, thickness)[0])
+
 
 class Unwinder(WebEnd):
-    """The unwinder of a web line, which keeps the tension of the web that it gives off.
+    """The unwinder of a web line: a drive that keeps the tension of the web, or a roll with a brake.
 
     Examples
     --------
@@ -87,12 +113,17 @@ class Unwinder(WebEnd):
     point: tuple[Coordinate, Coordinate] = Field(
         description="the point at which the web leaves the unwinder, as [x, y], in m"
     )
-    tension: Force = Field(gt=0, description="the tension of the web that enters the line, in N")
+    tension: Force | None = Field(
+        None, gt=0, description="the tension of the web that enters the line, which a drive keeps, in N; or torque"
+    )
+    torque: TorqueProfile | None = Field(
+        None, description="the torque of the brake, over time, in N m; inertia of the roll then acts on the web"
+    )
     roll: Roll | None = Field(None, description="the roll, a group [unwinder.roll]; by default none")
 
 
 class Winder(WebEnd):
-    """The winder of a web line, which keeps the tension of the web that it takes up.
+    """The winder of a web line: a drive that keeps the tension of the web, or a roll with a torque.
 
     Examples
     --------
@@ -104,7 +135,12 @@ class Winder(WebEnd):
     point: tuple[Coordinate, Coordinate] = Field(
         description="the point at which the web reaches the winder, as [x, y], in m"
     )
-    tension: Force = Field(gt=0, description="the tension of the web that is wound up, in N")
+    tension: Force | None = Field(
+        None, gt=0, description="the tension of the web that is wound up, which a drive keeps, in N; or torque"
+    )
+    torque: TorqueProfile | None = Field(
+        None, description="the torque of the drive, over time, in N m; inertia of the roll then acts on the web"
+    )
     roll: Roll | None = Field(None, description="the roll, a group [winder.roll]; by default none")
 
 

@@ -412,12 +412,15 @@ class Recording:
         prepared, belt, found = self._prepared, self._prepared.belt, list[FloatArray]()
         for one in prepared.drive.rolls:
             assert one.roll is not None
-            sense, passed, flow = self._through_end(one is prepared.drive.winder, position, velocity)
+            winds = one is prepared.drive.winder
+            sense, passed, flow = self._through_end(winds, position, velocity)
             length = one.roll.length_of(belt.thickness) + sense * passed
             radius = one.roll.radius_at(length, belt.thickness)
             inertia = one.roll.inertia_at(length, belt.thickness, belt.mass_per_length)
-            speed = flow * float(belt.stretch_parameters.stretch(one.tension)) / radius
-            found.append(np.stack([length, radius, inertia, speed, one.tension * radius]))
+            at = winds * (self._system.nodes - 1) * len(self._system.scale) + self._system.turned
+            stretch = np.hypot(position[:, at], position[:, at + 1])
+            tension = belt.stretch_parameters.tension(stretch) if one.tension is None else one.tension
+            found.append(np.stack([length, radius, inertia, flow * stretch / radius, tension * radius]))
         return dict(zip(_OF_ROLLS, np.stack(found, axis=-1), strict=True)) if found else {}
 
     def _through_end(

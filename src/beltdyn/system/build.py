@@ -32,7 +32,7 @@ from beltdyn.system.material_loss import hysteresis_rows
 from beltdyn.system.meshing import meshing, on_lengths, with_teeth
 from beltdyn.system.running_web import RunningWeb, running_web
 from beltdyn.system.state import Discretization, discretize
-from beltdyn.system.web import WebLine, web_line
+from beltdyn.system.web import WebLine, web_ends, web_line
 
 # Weight of the belt as nodal forces (gravity is not in the paper)
 
@@ -302,7 +302,8 @@ def on_other_mesh(prepared: Prepared, system: System, lengths: FloatArray) -> Sy
     """The arrays of `staying_system` on another mesh, with the same machines."""
     if prepared.ends:
         given = ("law", "profiles", "shaft_loads", "bodies", "tensioners")
-        return staying_system(prepared, lengths)._replace(**{name: getattr(system, name) for name in given})
+        other = staying_system(prepared, lengths)._replace(**{name: getattr(system, name) for name in given})
+        return other._replace(carriage=other.carriage._replace(ends=system.carriage.ends))
     belt = _staying_belt(prepared, lengths.size)
     mesh = discretize(belt, lengths)
     passing = passing_strains(prepared) if belt.has_hysteresis else None
@@ -322,11 +323,7 @@ def on_other_mesh(prepared: Prepared, system: System, lengths: FloatArray) -> Sy
 
 def _as_web(prepared: Prepared, system: System) -> System:
     """The arrays of an open belt as those of a web line."""
-    drive = prepared.drive
-    assert drive.unwinder is not None
-    assert drive.winder is not None
-    orders = np.array([0.0, 1.0, 2.0, 0.0, 1.0, 2.0])
-    return web_line(system, np.array([drive.unwinder.tension, drive.winder.tension]), orders)
+    return web_line(system, web_ends(prepared), np.array([0.0, 1.0, 2.0, 0.0, 1.0, 2.0]))
 
 
 def _staying_belt(prepared: Prepared, elements: int) -> Belt:

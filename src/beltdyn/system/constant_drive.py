@@ -1,6 +1,7 @@
 """A system whose speeds, torques and loads stay as they are at an instant, as steady running takes it."""
 
 from collections.abc import Sequence
+from typing import Any
 
 import numpy as np
 
@@ -15,6 +16,7 @@ from beltdyn.records import Records, records
 from beltdyn.system.arrays import Carrying, System
 from beltdyn.system.body_forces import controls
 from beltdyn.system.state import State
+from beltdyn.system.web import WebLine, ends_at
 
 # The speed at which motors and loads balance where nothing slips: the start of a search for steady running
 
@@ -98,7 +100,13 @@ def constant_drive(system: System, time: float) -> System:
         ),
         shaft_loads=loads._replace(table=table),
         tensioners=without_motion(system.tensioners),
+        carriage=_with_tensions(system.carriage, time),
     )
+
+
+def _with_tensions(carriage: Any, time: float) -> Any:
+    """A web line with the tensions that the torques of its rolls give at an instant; any other carriage as it is."""
+    return carriage._replace(ends=ends_at(carriage.ends, time)) if isinstance(carriage, WebLine) else carriage
 
 
 def without_motion(tensioners: Records) -> Records:

@@ -33,7 +33,7 @@ from beltdyn.system.arrays import (
     TangentFactors,
 )
 from beltdyn.system.ring_matrix import hold_at_end
-from beltdyn.system.running_web import RunningWeb, carry_web, push_running
+from beltdyn.system.running_web import RunningWeb, carry_web, push_running, rolls_energy_of
 from beltdyn.system.web import WebLine, push_web
 
 GUIDE = record(
@@ -119,12 +119,16 @@ push_carriage: Callable[..., None] = by_type(
 
 
 @kernel(inline=True)
-def _carry_nothing(carriage: NoCarriage, system: System, motion: Motion, wanted: bool, matrix: RingMatrix) -> None:
+def _carry_nothing(
+    carriage: NoCarriage, system: System, motion: Motion, factors: TangentFactors, wanted: bool, matrix: RingMatrix
+) -> None:
     pass
 
 
 @kernel
-def _carry(carriage: Guided, system: System, motion: Motion, wanted: bool, matrix: RingMatrix) -> None:
+def _carry(
+    carriage: Guided, system: System, motion: Motion, factors: TangentFactors, wanted: bool, matrix: RingMatrix
+) -> None:
     """Give equations and increments of the ends to the carriage; ends of one that is held stay."""
     row = carriage.table[0]
     own = system.bodies[row.body].unknown
@@ -174,6 +178,17 @@ carry_ends: Callable[..., None] = by_type(
     {NoCarriage: _carry_nothing, Guided: _carry, RunningWeb: carry_web}, "carry_ends"
 )
 """Let a carriage carry the ends of the belt, when all else is assembled."""
+
+
+@kernel(inline=True)
+def _no_rolls(carriage: Any, system: System, position: FloatArray, velocity: FloatArray) -> float:
+    return 0.0
+
+
+rolls_energy: Callable[[Any, System, FloatArray, FloatArray], float] = by_type(
+    {NoCarriage: _no_rolls, Guided: _no_rolls, WebLine: _no_rolls, RunningWeb: rolls_energy_of}, "rolls_energy"
+)
+"""Kinetic energy of the rolls of a web line at a state, J."""
 
 
 def rows_of_ties(system: System, size: int) -> IntArray:

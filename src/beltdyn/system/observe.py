@@ -24,6 +24,7 @@ from beltdyn.system.arc_mesh import fit_mesh
 from beltdyn.system.arrays import BodyForces, System
 from beltdyn.system.body_forces import body_forces_at
 from beltdyn.system.element_state import centreline, gather_motion
+from beltdyn.system.guide import rolls_energy
 from beltdyn.system.material_loss import hysteresis_tension
 from beltdyn.system.moving_center import pulley_state, tensioner_coordinate
 from beltdyn.system.observations import (
@@ -84,6 +85,7 @@ def fill_observations(
         _observe_spans(system, samples, result, k)
         _observe_bodies(system, position[k], result, k)
         if shown[k]:
+            result.kinetic_energy[show] += rolls_energy(system.carriage, system, position[k], velocity[k])
             for body in range(system.bodies.size):
                 speed = velocity[k, system.first_body + body]
                 result.kinetic_energy[show] += 0.5 * system.bodies[body].kinetic * speed**2

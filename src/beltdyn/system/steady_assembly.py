@@ -115,7 +115,7 @@ def assemble(
     add_nodal_loads(system, motion.position, factors.by_position, matrix)
     if system.supports.any_fixed:
         hold_fixed(system, matrix)
-    carry_ends(system.carriage, system, motion, wanted, matrix)
+    carry_ends(system.carriage, system, motion, factors, wanted, matrix)
 
 
 @kernel(inline=True)

@@ -10,21 +10,89 @@ goes out with the web: -/+ N c |r'| of the tension, +/- (W + rho A c^2 |r'|^2 / 
 """
 
 from collections.abc import Callable
+from math import pi
 from typing import Any, NamedTuple
 
 import numpy as np
 
 from beltdyn.arrays import FloatArray
-from beltdyn.kernel import by_type, kernel
+from beltdyn.kernel import by_type, interpreted, kernel
+from beltdyn.machines.profiles.functions import Profiles, profile_rows, profile_value
+from beltdyn.model import Prepared
+from beltdyn.records import Records, record, records
 from beltdyn.stretch import stretching
 from beltdyn.system.arrays import TORQUE_WORK, BodyForces, Equations, Motion, NoCarriage, System
 
+ROLL = record(
+    driven="i8",  # whether its torque is given, and not the tension of the web
+    core_radius="f8",
+    core_inertia="f8",
+    length="f8",  # unstretched, at the beginning
+    thickness="f8",
+    mass="f8",  # of a meter of web
+)
+"""A roll of a web line."""
 
-class WebLine(NamedTuple):
-    """Both ends of a web that flows through a staying mesh."""
+
+class WebEnds(NamedTuple):
+    """Unwinder and winder of a web line."""
 
     tensions: FloatArray
-    """Of the web at the unwinder and at the winder, N, shape (2,)."""
+    """Of the web there, of rolls with a torque in steady running, N, shape (2,)."""
+    rolls: Records
+    """Rows of `ROLL`, shape (2,)."""
+    torque: Profiles
+    """On the rolls, N m."""
+
+
+def web_ends(prepared: Prepared) -> WebEnds:
+    """The ends of a web line, as a run begins."""
+    belt, ends = prepared.belt, prepared.drive.web_ends
+    rolls = records(ROLL, driven=[one.torque is not None for one in ends])
+    for row, one in zip(rolls, ends, strict=True):
+        if one.roll is not None:
+            row.core_radius, row.core_inertia = one.roll.core_radius, one.roll.core_inertia
+            row.length, row.thickness = one.roll.length_of(belt.thickness), belt.thickness
+            row.mass = belt.mass_per_length
+    tensions = [one.tension_at(prepared.simulation.begin, belt.thickness) for one in ends]
+    return WebEnds(np.array(tensions), rolls, profile_rows([one.torque for one in ends], [(), ()]))
+
+
+def ends_at(ends: WebEnds, time: float) -> WebEnds:
+    """The same with the tensions that torques on the rolls, as they begin, give at an instant (s)."""
+    tensions = ends.tensions.copy()
+    for end, roll in enumerate(ends.rolls):
+        if roll.driven:
+            tensions[end] = (
+                interpreted(profile_value)(ends.torque, end, time)[0] / interpreted(size_of)(roll, 0.0).radius
+            )
+    return ends._replace(tensions=tensions)
+
+
+class RollSize(NamedTuple):
+    """What follows from the length that is wound."""
+
+    radius: float
+    """m."""
+    inertia: float
+    """kg m^2."""
+    growth: float
+    """Of the radius, over it, by a meter of web, 1/m."""
+
+
+@kernel(inline=True)
+def size_of(roll: np.record, gained: float) -> RollSize:
+    """A roll with the length of web that it has gained since the beginning, m; negative if it has given it off."""
+    length, core = max(0.0, roll.length + gained), roll.core_radius * roll.core_radius
+    square = core + roll.thickness * length / pi
+    inertia = roll.core_inertia + 0.5 * roll.mass * length * (square + core)
+    return RollSize(square**0.5, inertia, 0.5 * roll.thickness / (pi * square))
+
+
+class WebLine(NamedTuple):
+    """A web that flows through a staying mesh, as much at both ends."""
+
+    ends: WebEnds
     content: FloatArray
     """Lengths of the elements over those below, shape (1,)."""
     orders: FloatArray
@@ -40,12 +108,12 @@ class WebLine(NamedTuple):
     """Weight on the nodal coordinates, as in `Supports`."""
 
 
-def web_line(system: System, tensions: FloatArray, orders: FloatArray) -> System:
+def web_line(system: System, ends: WebEnds, orders: FloatArray) -> System:
     """A system in a staying mesh with the ends of a web line, and arrays of its own that its content changes."""
     frame = system.frame._replace(derivative=system.frame.derivative.copy(), inertia=system.frame.inertia.copy())
     supports = system.supports._replace(force=system.supports.force.copy())
     given = system.length, system.control, system.mass, frame.derivative, frame.inertia, supports.force
-    line = WebLine(tensions, np.ones(1), orders, *(array.copy() for array in given))
+    line = WebLine(ends, np.ones(1), orders, *(array.copy() for array in given))
     own = {name: getattr(system, name).copy() for name in ("length", "control", "mass")}
     return system._replace(frame=frame, carriage=line, supports=supports, **own)
 
@@ -58,7 +126,7 @@ def content(system: System) -> FloatArray:
 def rebased(system: System) -> System:
     """The same web line with a content of 1; a belt as it is."""
     line = system.carriage
-    return web_line(system, line.tensions, line.orders) if isinstance(line, WebLine) else system
+    return web_line(system, line.ends, line.orders) if isinstance(line, WebLine) else system
 
 
 @kernel
@@ -132,7 +200,7 @@ def hold_web(line: WebLine, system: System, motion: Motion, at_rest: bool, wante
         x, y = motion.position[at], motion.position[at + 1]
         metric = x * x + y * y
         own, stretch = stretching(law, metric), metric**0.5
-        matrix.border_side[row] = (2.0 * own.slope * stretch - line.tensions[end]) / law.stiffness
+        matrix.border_side[row] = (2.0 * own.slope * stretch - line.ends.tensions[end]) / law.stiffness
         if wanted:
             by_square = (own.slope / stretch + 2.0 * own.curvature * stretch) / law.stiffness
             matrix.row[node, row, system.turned] = 2.0 * by_square * x

@@ -53,6 +53,7 @@ from beltdyn.system.guide import Guided
 from beltdyn.system.meshing import JumpWatch
 from beltdyn.system.running_web import RunningWeb
 from beltdyn.system.state import State
+from beltdyn.system.web import WebEnds
 
 # Objects as bytes and back: JSON, arrays behind it, and a checksum before both
 
@@ -249,7 +250,7 @@ _SYSTEM = (
     *(System, Supports, Section, Quadrature, ContactLaw, RoundRims, ShapedRims, ToothedRims, PolygonRims),
     *(ShaftLoads,),
     *(Travelling, Staying, Flowing, StayingByArcs, FlowingByArcs, ArcMesh, Bare, Carrying, State),
-    *(NoCarriage, Guided, RunningWeb),
+    *(NoCarriage, Guided, RunningWeb, WebEnds),
 )
 _INTEGRATION = (AlphaIntegration, GeneralizedAlpha, Settings, Task, Statistics, Instants, Chunk, BodyForces)
 _RECORDING = (

@@ -19,6 +19,7 @@ BELT = {
 }
 
 END = {"point": [0.0, 0.3], "tension": 100.0}
+BRAKED = {"point": [0.0, 0.3], "torque": 9.0, "roll": {"core_radius": 0.05, "radius": 0.1}}
 
 
 def line(**changes: Any) -> Drive:
@@ -62,6 +63,14 @@ def line(**changes: Any) -> Drive:
             "needs one of radius and length",
         ),
         ({"unwinder": END | {"roll": {"core_radius": 0.1, "radius": 0.05}}}, r"radius = 0\.05 m is below core_radius"),
+        ({"unwinder": {"point": [0.0, 0.3]}}, "needs one of tension, which a drive keeps, and torque, on the roll"),
+        ({"unwinder": END | {"torque": 9.0}}, "needs one of tension, which a drive keeps, and torque, on the roll"),
+        ({"unwinder": BRAKED | {"roll": None}}, "torque acts on a roll, which is missing"),
+        ({"unwinder": BRAKED | {"torque": -9.0}}, r"torque = -9 N m must be positive: it tightens the web"),
+        (
+            {"unwinder": BRAKED | {"torque": {"kind": "table", "times": [0, 1, 2], "values": [9, 0, 9]}}},
+            "torque = 0 N m must be positive",
+        ),
         ({"belt": BELT | {"stretch_loss_factor": 0.05}}, "loss factors of the belt are incompatible with"),
     ],
 )
@@ -82,9 +91,18 @@ def test_a_web_at_rest_has_the_tension_of_the_unwinder() -> None:
     assert prepare(line()).installation.tension == pytest.approx(100.0, rel=1e-9)
 
 
+def test_a_web_at_rest_has_the_torque_of_a_brake_over_the_radius() -> None:
+    rising = {"kind": "step", "time": 0.5, "before": 9.0, "value": 12.0}
+    drive = line(unwinder=BRAKED | {"torque": rising})
+    assert prepare(drive).installation.tension == pytest.approx(90.0, rel=1e-9)
+    assert drive.breakpoints == (0.5,)
+    assert drive.web_ends[0].tension_at(0.75, 1e-4) == pytest.approx(120.0, rel=1e-12)
+
+
 def test_a_file_keeps_both_ends() -> None:
-    again = loads(dumps(line()))
-    assert (again.unwinder, again.winder) == (line().unwinder, line().winder)
+    for drive in (line(), line(unwinder=BRAKED)):
+        again = loads(dumps(drive))
+        assert (again.unwinder, again.winder) == (drive.unwinder, drive.winder)
 
 
 def test_a_given_length_serves_as_it_is() -> None:

@@ -71,6 +71,20 @@ def test_rollers_change_the_tension_by_their_moments(torque: float) -> None:
     assert rims == pytest.approx(SPEED / law.stretch(ENTERS) * law.stretch(arrives), rel=1e-5)
 
 
+def test_torques_of_rolls_set_the_tensions_of_the_ends() -> None:
+    """M/R, to 0.1 %, at the instant asked for."""
+    roll = {"core_radius": 0.05, "radius": 0.1}
+    rising = {"kind": "step", "time": 0.5, "before": 10.0, "value": 12.0}
+    drive = line({}, {"speed": 1.002 * SPEED / RADIUS}).replace(
+        unwinder={"point": [0.0, 0.3], "torque": rising, "roll": roll},
+        winder={"point": [2.0, 0.3], "torque": 15.0, "roll": roll},
+    )
+    for instant, enters in ((0.0, 100.0), (1.0, 120.0)):
+        found = bd.steady_state(drive, at=instant).dataset
+        assert found.span_tension.values[-1, 2:] == pytest.approx([LEAVES, enters], rel=1e-3)
+        assert found.roll_torque.values[-1] == pytest.approx([0.1 * enters, 15.0], rel=1e-3)
+
+
 def test_a_roller_that_cannot_hold_the_draw_slips() -> None:
     """To 0.1 %: the tensions before and behind it have the ratio of Euler and Eytelwein."""
     run = bd.steady_state(line({}, {"speed": 0.998 * SPEED / RADIUS}, friction=0.4))

@@ -389,3 +389,140 @@ def test_two_rollers_in_an_s_hold_by_the_sum_of_their_arcs() -> None:
     carried = MASS * float(run.dataset.attrs["belt_parameter"]) ** 2
     before, after = run.dataset.span_tension.values[-1, [3, 1]] - carried
     assert after / before == pytest.approx(np.exp(0.2 * sum(run.prepared.path.wrap_angles[:2])), rel=1e-3)
+
+
+# Rolls with torques: masses J/R^2 at the ends of the line
+
+BRAKE = {"core_radius": 0.05, "radius": 0.1, "core_inertia": 2e-3}
+PULLS = {"core_radius": 0.01, "length": 0.0, "core_inertia": 1e-4}
+STOP = (0.2, 0.6)
+"""When the line slows down to half of its speed."""
+
+
+def rolled(speed: Any, **more: Any) -> Drive:
+    """Two driven rollers between a roll with a brake and one with a motor, both of the same tension at first."""
+    rollers = [{"name": name, "center": [x, 0.0], "speed": speed} for name, x in (("first", 0.5), ("last", 1.5))]
+    settings = {"duration": 1.0, "start": "steady", "output_interval": 2e-3, "rtol": 1e-4} | more
+    return line(rollers, 2.0, simulation=settings).replace(
+        unwinder={"point": [0.0, 0.3], "torque": TENSION * BRAKE["radius"], "roll": BRAKE},
+        winder={"point": [2.0, 0.3], "torque": TENSION * PULLS["core_radius"], "roll": PULLS},
+    )
+
+
+@pytest.fixture(scope="module")
+def stopping() -> Run:
+    times = np.linspace(*STOP, 81)
+    slower = SPEED / RADIUS * (0.75 + 0.25 * np.cos(np.pi * (times - STOP[0]) / (STOP[1] - STOP[0])))
+    table = {"kind": "table", "times": [0.0, *times, 10.0], "values": [slower[0], *slower, slower[-1]]}
+    return bd.simulate(rolled(table))
+
+
+def test_rolls_with_torques_in_a_stop(stopping: Run) -> None:
+    """Tensions at both ends, to 1 % of their largest change, by roll radii, J/R^2 dv/dt and the contents of spans.
+
+    Half of the web of a span moves with its roll; a span has what slides where it leaves its roller.
+    """
+    drive, time = stopping.drive, stopping.dataset.time.values
+    law, spans = stopping.prepared.belt.stretch_parameters, stopping.prepared.path.span_lengths
+    lengths = np.array([spans[2], spans[0], spans[1]])
+    begins = np.array([one.roll.length_of(THICKNESS) for one in drive.rolls if one.roll is not None])
+    cores, sense = np.array([0.05, 0.01]), np.array([-1.0, 1.0])
+    core_inertias, torques = np.array([2e-3, 1e-4]), TENSION * np.array([0.1, 0.01])
+    speed = drive.pulleys[0].speed
+    assert speed is not None
+
+    def rolls(wound: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray]:
+        square = cores**2 + THICKNESS * wound / np.pi
+        inertia = core_inertias + 0.5 * MASS * wound * (square + cores**2)
+        return np.sqrt(square), inertia / square, 0.5 * THICKNESS / np.pi / square
+
+    def spans_of(contents: FloatArray) -> tuple[FloatArray, FloatArray]:
+        stretch = lengths / contents
+        for _ in range(2):
+            tension, thin = law.tension(stretch), 1.0 / stretch
+            slides = 0.5 * RADIUS / FRICTION * np.diff(thin) * np.abs(np.diff(tension)) / tension[1:]
+            stretch = lengths / (contents - np.append(0.0, slides))
+        return stretch, np.asarray(law.tension(stretch))
+
+    def rates(at: float, state: FloatArray) -> FloatArray:
+        contents, moves, wound = state[:3], state[3:5], state[5:]
+        stretch, tension = spans_of(contents)
+        flow = moves / stretch[[0, 2]]
+        radius, mass, grows = rolls(wound)
+        roller = RADIUS * float(speed.at(at))
+        passes = np.array([flow[0], roller / stretch[0], roller / stretch[1], flow[1]])
+        push = sense * (torques / radius - tension[[0, 2]])
+        gains = (push + sense * mass * grows * flow * moves) / (mass + 0.5 * MASS * lengths[[0, 2]])
+        return np.array([*(passes[:-1] - passes[1:]), *gains, *(sense * flow)])
+
+    first = np.concatenate([lengths / float(law.stretch(TENSION)), [SPEED, SPEED], begins])
+    found = solve_ivp(rates, (0.0, time[-1]), first, t_eval=time, rtol=1e-9, atol=1e-12, max_step=1e-3)
+    expected = np.array([spans_of(one)[1] for one in found.y[:3].T])[:, [0, 2]]
+    tensions = stopping.dataset.span_tension.values[:, [2, 1]]
+    change = np.abs(expected - TENSION).max(axis=0)
+    assert np.all(np.abs(tensions - expected).max(axis=0) < 0.01 * change)
+
+
+def test_energy_of_a_stop_with_rolls(stopping: Run) -> None:
+    """To 1e-6, with the kinetic energy of the rolls, of which little is lost by the steps."""
+    found = stopping.dataset
+    assert abs(largest_closure(found).error) < 1e-6
+    kinetic, speed = found.kinetic_energy.values, found.roll_speed.values
+    assert kinetic == pytest.approx((0.5 * found.roll_inertia.values * speed**2).sum(axis=1), rel=0.05)
+    assert abs(found.numerical_loss.values[-1]) < 1e-6 * kinetic[0]
+
+
+def test_modes_of_a_line_between_rolls() -> None:
+    """To 0.5 %: a roll on its span, which at the winder loses what flows through it.
+
+    m dv = -/+ EA dg, and the content of the span L/g changes by dv/g, less v dg/g^2 where it is wound.
+    """
+    drive = rolled(SPEED / RADIUS)
+    stretch, spans = 1.0 + TENSION / STIFFNESS, drive.path.span_lengths
+    found = bd.modes(drive, count=8).dataset
+    values = found.growth_rate.values + 2j * np.pi * found.frequency.values
+    for end, span in ((0, 2), (1, 1)):
+        roll = drive.rolls[end].roll
+        assert roll is not None
+        length = np.array([roll.length_of(THICKNESS)])
+        mass = float(roll.inertia_at(length, THICKNESS, MASS)[0] / roll.radius_at(length, THICKNESS)[0] ** 2)
+        mass += MASS * spans[span] / 3.0
+        decay, rate = end * SPEED / spans[span], STIFFNESS * stretch / spans[span] / mass
+        expected = np.roots([1.0, decay, rate])[0]
+        assert np.abs(values - expected).min() < 5e-3 * abs(expected)
+
+
+@pytest.mark.parametrize("braked", [False, True])
+def test_a_dancer_beside_an_unwinder(braked: bool) -> None:
+    """To 0.2 %, with a kept tension and with a roll of the mass J/R^2 on a brake."""
+    mass, rate, damping, inertia, span = 8.0, 500.0, 60.0, 1e-3, 2.0
+    dancer = {"name": "dancer", "center": [span, 0.3], "side": "outside", "inertia": inertia, "mass": mass}
+    slide = {"kind": "sliding", "pulley": "dancer", "direction": [0, 1], "rate": rate, "damping": damping}
+    rollers: list[dict[str, Any]] = [dancer, {"name": "last", "center": [2.0 * span, 0.0], "speed": SPEED / RADIUS}]
+    settings = {"duration": 1.0, "start": "steady"}
+    path = line(rollers, 3.0 * span, mass=1e-3, simulation=settings).path
+    rises = np.array([path.span_directions[2][1], -path.span_directions[0][1]])
+    lengths = np.array([path.span_lengths[2], path.span_lengths[0]])
+    slide["preload"] = TENSION * float(rises.sum())
+    drive = line(rollers, 3.0 * span, mass=1e-3, tensioner=[slide], simulation=settings)
+    roll, held = {"core_radius": 0.05, "length": 0.0, "core_inertia": 0.02}, 0.0
+    if braked:
+        drive = drive.replace(unwinder={"point": [0.0, 0.3], "torque": 0.05 * TENSION, "roll": roll})
+        held = 0.05**2 / 0.02
+    along, sideways = STIFFNESS / lengths, float(np.sum(TENSION * (1.0 - rises**2) / lengths))
+    turning, flow = RADIUS**2 / inertia, SPEED / lengths[1]
+    motion = np.array(
+        [
+            [0.0, 1.0, 0.0, 0.0, 0.0, 0.0],
+            [-(rate + sideways) / mass, -damping / mass, 0.0, -rises[0] / mass, -rises[1] / mass, 0.0],
+            [0.0, 0.0, 0.0, -turning, turning, 0.0],
+            [0.0, along[0] * rises[0] * braked, along[0] * braked, 0.0, 0.0, -along[0] * braked],
+            [0.0, along[1] * rises[1], -along[1], flow, -flow, 0.0],
+            [0.0, 0.0, 0.0, held, 0.0, 0.0],
+        ]
+    )
+    expected = np.linalg.eigvals(motion)
+    slow = expected[expected.imag > 1.0][np.argmin(expected[expected.imag > 1.0].imag)]
+    found = bd.modes(drive, count=3).dataset
+    value = complex(found.growth_rate.values[0], 2.0 * np.pi * found.frequency.values[0])
+    assert abs(value - slow) < 2e-3 * abs(slow)
