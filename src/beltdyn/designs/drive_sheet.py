@@ -33,6 +33,8 @@ from beltdyn.state.staying import bring_to_stand
 from beltdyn.vibration.excitation import averaged
 from beltdyn.vibration.peaks import amplitudes, excitations_of, lumped_at
 
+_INSTANTS = 2001
+"""At which the speed of a driver is looked at for its acceleration."""
 _MODES = 6
 """Modes on the sheet."""
 _MOVES = 0.15
@@ -86,7 +88,8 @@ def sheet(
     points
         Number of speeds of a range.
     acceleration
-        Angular acceleration of the driver, such as "3000 rpm/s", or in rad/s^2; by default none.
+        Angular acceleration of the driver, such as "3000 rpm/s", or in rad/s^2; by default none, and of a conveyor that
+        of its speed over time, or by the largest torque of its motor.
     light_load
         Factor on all loads for light load, such as 0.1.
     friction
@@ -142,9 +145,7 @@ def sheet(
     chosen = _Options(
         factors=numbers_in("friction", friction, "", 3),
         light=_light(light_load),
-        acceleration=number_in(
-            "acceleration", acceleration if isinstance(acceleration, str) else float(acceleration), "rad/s^2"
-        ),
+        acceleration=_acceleration(acceleration),
         lengths=(
             length_of("tolerance", tolerance, rest.prepared.belt_length),
             length_of("wear", wear, rest.prepared.belt_length),
@@ -169,14 +170,15 @@ def _sheet_of_line(
     drive: Drive, table: Path | str | None, friction: Numbers, at: float | str | None, options: Mapping[str, object]
 ) -> Result:
     """The sheet of a web line, or of a belt that carries or slides over guides."""
+    rising = _acceleration(options["acceleration"]) or _steepest(drive)
     for name, value in options.items():
-        if value != signature(sheet).parameters[name].default:
+        if (name != "acceleration" or not drive.carries) and value != signature(sheet).parameters[name].default:
             raise ModelError(
                 f"{name} = {value} is an option for belts between pulleys alone. A sheet of a web line, a conveyor or "
                 "a guided belt has operating points: give them as groups [[duty]], or as a CSV file with table."
             )
     columns, factors = duty_of(drive, table), numbers_in("friction", friction, "", 3)
-    made = line_sheet(held_at(drive, at), columns, factors)
+    made = line_sheet(held_at(drive, at), columns, factors, rising)
     result = build_result("sheet", drive, made.variables, made.coordinates, made.warnings)
     result.dataset.attrs |= {"drive_as_given": drive.text, "axes": _ROW, "title": f"Drive sheet of {drive.title}"}
     return result
@@ -192,6 +194,19 @@ class _Options(NamedTuple):
     """rad/s^2."""
     lengths: tuple[float, float]
     """Tolerance and wear, m."""
+
+
+def _acceleration(given: Any) -> float:
+    return number_in("acceleration", given if isinstance(given, str) else float(given), "rad/s^2")
+
+
+def _steepest(drive: Drive) -> float:
+    """The largest acceleration in the speed of the driver over time, rad/s^2."""
+    speed = None if drive.driver is None else drive.pulleys[drive.driver].speed
+    if speed is None:
+        return 0.0
+    times = np.linspace(drive.simulation.begin, drive.simulation.end, _INSTANTS)
+    return float(np.max(np.diff(np.abs(speed.at(times)))) / (times[1] - times[0]))
 
 
 def _light(given: float) -> float:

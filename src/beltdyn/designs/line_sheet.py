@@ -15,6 +15,7 @@ from beltdyn.arrays import FloatArray
 from beltdyn.kernel import interpreted
 from beltdyn.machines import Idlers
 from beltdyn.machines.carrying.support import Support
+from beltdyn.machines.loads.shaft import shaft_torque
 from beltdyn.model import Drive, Prepared, prepare
 from beltdyn.model.carrying import stretch_of, upper_side
 from beltdyn.points.duty import Column, at_row, durations_of
@@ -26,9 +27,18 @@ from beltdyn.results.schema import COORDINATES
 from beltdyn.results.summary import Means, means_of
 from beltdyn.state.staying import bring_to_stand
 from beltdyn.state.steady import steady_state
+from beltdyn.system.build_machines import machine_arrays
 
 LARGEST_SAG = 0.01
 """Sag between idlers over their spacing to which the least tension belongs (DIN 22101)."""
+
+_SPEEDS = 50
+"""At which the torque of a motor is looked at."""
+STRETCHES = {
+    "running_stretch": "Stretch of the belt in steady running",
+    "start_stretch": "Stretch of the belt in starts",
+}
+"""Over the travel of the take-up by its ratio, m."""
 
 Values = dict[str, tuple[Variable, Any]]
 _ROW, _PULLEY, _SPAN, _TENSIONER, _ROLL, _NIP = "row", "pulley", "span", "tensioner", "roll", "nip"
@@ -57,11 +67,12 @@ class LineSheet(NamedTuple):
     warnings: list[str]
 
 
-def line_sheet(given: Drive, columns: list[Column] | None, factors: FloatArray) -> LineSheet:
+def line_sheet(given: Drive, columns: list[Column] | None, factors: FloatArray, rising: float) -> LineSheet:
     """The sheet of a line, whose speeds and loads are those of an instant.
 
     `given`: a web line, or a belt that carries or slides over guides; `columns`: the duty; none for the drive as it is;
-    `factors`: on friction, ascending.
+    `factors`: on friction, ascending; `rising`: largest acceleration of the driver in starts, rad/s^2; zero for that of
+    its motor.
     """
     durations = durations_of(columns) if columns else np.ones(1)
     drives = [at_row(given, columns, number) for number in range(durations.size)] if columns else [given]
@@ -69,7 +80,7 @@ def line_sheet(given: Drive, columns: list[Column] | None, factors: FloatArray) 
     rows, run = list[_Row](), None
     for one in drives:
         run = steady_state(one, start=run)
-        rows.append(_Row(run, factors))
+        rows.append(_Row(run, factors, rising))
     first = rows[0]
     coordinates: Values = {
         _ROW: (
@@ -93,8 +104,9 @@ def line_sheet(given: Drive, columns: list[Column] | None, factors: FloatArray) 
         for name, (variable, _) in found[0].items()
     }
     variables["duration"] = Variable((_ROW,), "s", "Duration"), durations
-    variables |= _geometry(first.prepared) | {
-        "tension_at_rest": (Variable((), "N", "Tension at rest"), np.array(bring_to_stand(prepare(given)).tension))
+    at_rest = bring_to_stand(prepare(given)).tension
+    variables |= _geometry(first.prepared, at_rest) | {
+        "tension_at_rest": (Variable((), "N", "Tension at rest"), np.array(at_rest))
     }
     meaning = "Running direction: 1 in the order of the pulleys, -1 against it"
     variables["running_sense"] = Variable((), "1", meaning), np.array(first.sense)
@@ -104,10 +116,20 @@ def line_sheet(given: Drive, columns: list[Column] | None, factors: FloatArray) 
     return LineSheet(variables, coordinates, warnings)
 
 
-def _geometry(prepared: Prepared) -> Values:
-    """What is alike at all operating points."""
-    drive, path = prepared.drive, prepared.installation.path
-    return {
+def _geometry(prepared: Prepared, at_rest: float) -> Values:
+    """What is alike at all operating points, with the tension at rest, N."""
+    drive, path, law = prepared.drive, prepared.installation.path, prepared.belt.stretch_parameters
+    stretched: Values = {
+        "stretch_at_rest": (
+            Variable((), "m", "Stretch of the belt at rest"),
+            (float(law.stretch(at_rest)) - 1.0) * prepared.belt_length,
+        ),
+        "take_up_ratio": (
+            Variable((), "1", "Length taken up, over the travel of the take-up"),
+            take_up_ratio(prepared),
+        ),
+    }
+    return (stretched if drive.carries else {}) | {
         "belt_length": (Variable((), "m", "Belt length, unstretched"), prepared.belt_length),
         "pitch_diameter": (Variable((_PULLEY,), "m", "Diameter of the tension line"), 2.0 * np.abs(path.radii)),
         "friction_coefficient": (Variable((_PULLEY,), "1", "Friction with the wedge effect"), prepared.frictions),
@@ -125,8 +147,8 @@ def _geometry(prepared: Prepared) -> Values:
 class _Row:
     """An operating point."""
 
-    def __init__(self, run: Run, factors: FloatArray) -> None:
-        self.run, self.prepared, self.factors = run, run.prepared, factors
+    def __init__(self, run: Run, factors: FloatArray, rising: float) -> None:
+        self.run, self.prepared, self.factors, self.rising = run, run.prepared, factors, rising
         self.drive: Drive = run.drive
         self.at = run.dataset.isel(time=-1, field_time=-1)
         self.means: Means = means_of(run)
@@ -138,6 +160,8 @@ class _Row:
         """Its variables, without the dimension of operating points."""
         yield from self._of_pulleys()
         yield from self._of_spans()
+        if self.drive.carries:
+            yield from self._of_starts()
         if self.drive.moving_tensioners:
             yield from self._of_tensioners()
         if self.drive.rolls:
@@ -229,6 +253,37 @@ class _Row:
         ends[reached] = self.before
         return (starts, ends) if self.sense > 0.0 else (ends, starts)
 
+    def _of_starts(self) -> Iterator[tuple[str, tuple[Variable, Any]]]:
+        """Start at constant acceleration of a belt that moves as a whole, holdback, and what a take-up takes."""
+        start = self.start
+        running, starting = float(np.sum(start.pulls)), float(np.sum(start.starting_pulls))
+        yield "moved_mass", (Variable((), "kg", "Mass moved by the belt, with rotating ones"), start.mass)
+        yield "acceleration", (Variable((), "m/s^2", "Acceleration of the belt in starts"), start.acceleration)
+        yield "running_pull", (Variable((), "N", "Pull of the drives in steady running"), running)
+        yield "start_pull", (Variable((), "N", "Pull of the drives in starts"), starting)
+        slack, needed = start.slack
+        yield "start_slack_tension", (Variable((_PULLEY,), "N", "Slack tension of drives in starts"), slack)
+        yield "least_start_slack_tension", (Variable((_PULLEY,), "N", "Least of it, by Euler's formula"), needed)
+        lift = sum(float(np.sum(self.resistances()[name])) for name in ("slope_resistance", "goods_resistance"))
+        holds = max(0.0, lift) * float(np.abs(self.prepared.installation.path.radii)[self.drive.reference])
+        meaning = "Torque of a holdback at the driver, without friction of idlers and guides"
+        yield "holdback_torque", (Variable((), "N m", meaning), holds)
+        for (name, meaning), part in zip(STRETCHES.items(), (0.0, 1.0), strict=True):
+            ends = np.array(self.span_ends) + part * np.array(start.rises)
+            yield name, (Variable((), "m", meaning), self._stretch(ends))
+
+    def _stretch(self, ends: FloatArray) -> float:
+        """Stretch of the belt, m, by tensions at starts and ends of spans, linear between; arcs have their mean."""
+        path = self.prepared.installation.path
+        thinner = 1.0 - 1.0 / self.prepared.belt.stretch_parameters.stretch(ends)
+        around = float(np.sum(np.abs(path.radii) * path.wrap_angles))
+        return float(np.sum(thinner.mean(axis=0) * path.span_lengths) + thinner.mean() * around)
+
+    @cached_property
+    def start(self) -> "_Start":
+        """How it starts."""
+        return _Start(self)
+
     def _of_tensioners(self) -> Iterator[tuple[str, tuple[Variable, Any]]]:
         places, ones = [one.position for one in self.means.tensioners], self.drive.moving_tensioners
         units = "rad" if all(one.turns for one in ones) else "m or rad"
@@ -293,6 +348,101 @@ class _Row:
         return needed, LARGEST_SAG * needed / least
 
 
+def take_up_ratio(prepared: Prepared) -> float:
+    """Change of the path's length over the travel of the first tensioner along a line; not a number without one."""
+    path = prepared.installation.path
+    for one in prepared.drive.tensioners:
+        along = getattr(one, "direction", None)
+        if along is not None:
+            p = prepared.drive.carried(one)
+            return abs(float(np.dot(path.span_directions[p] - path.span_directions[p - 1], along)))
+    return np.nan
+
+
+class _Start:
+    """A belt that starts as a whole: the pull of its drives, and the tensions that come with the acceleration.
+
+    Every mass takes its part of the tension behind it. Drives share the start as they share the pull in steady running.
+    A weight, or another tensioner that moves, keeps its tension; with a fixed one the belt keeps its stretch.
+    """
+
+    def __init__(self, row: _Row) -> None:
+        self.row, drive = row, row.drive
+        self.drives = np.array([one.prescribed or any(load.driven_speed for load in one.load) for one in drive.pulleys])
+        reached, left = (row.before, row.after)[:: int(row.sense)]
+        self.pulls = np.where(self.drives, reached - left, 0.0)
+        self.radii = np.abs(row.prepared.rolling_radii)
+        self.inertia = np.array([one.inertia for one in drive.pulleys]) / self.radii**2
+        self.masses = _span_masses(row)
+        self.mass = float(np.sum(self.masses) + np.sum(self.inertia[~self.drives]))
+        self.acceleration = max(0.0, self._acceleration())
+
+    def _acceleration(self) -> float:
+        """As asked for at the driver, or what the largest torques of motors give at speeds up to the present one."""
+        row, drive = self.row, self.row.drive
+        if row.rising > 0.0 or drive.driver is None or drive.pulleys[drive.driver].prescribed:
+            return row.rising * float(self.radii[drive.reference])
+        machines = machine_arrays(row.prepared.pulleys, (), row.prepared.path)
+        speeds, states = row.at["pulley_speed"].values, np.zeros(row.run.dataset.sizes["body"])
+        torque, pull = interpreted(shaft_torque), 0.0
+        for p in np.flatnonzero(self.drives):
+            given = (
+                torque(machines.profiles, machines.shaft_loads, int(p), 0.0, 0.0, part * speeds[p], states).torque
+                for part in np.linspace(0.0, 1.0, _SPEEDS)
+            )
+            pull += max(np.sign(speeds[p]) * one for one in given) / float(self.radii[p])
+        return float((pull - np.sum(self.pulls)) / (self.mass + np.sum(self.inertia[self.drives])))
+
+    @cached_property
+    def starting_pulls(self) -> FloatArray:
+        """Pulls of the drives with the acceleration, N, shape (pulleys,)."""
+        whole = float(np.sum(self.pulls))
+        shares = self.pulls / whole if whole > 0.0 else self.drives / np.count_nonzero(self.drives)
+        return np.asarray(self.pulls + shares * self.mass * self.acceleration)
+
+    @cached_property
+    def rises(self) -> tuple[FloatArray, FloatArray]:
+        """By how much the tensions at start and end of each span are above those in steady running, N."""
+        row, count = self.row, len(self.pulls)
+        first, last, tension, forward = np.zeros(count), np.zeros(count), 0.0, row.sense > 0.0
+        taken = self.acceleration * np.where(self.drives, 0.0, self.inertia) - (self.starting_pulls - self.pulls)
+        for step in range(count):
+            p = (row.drive.reference + (step if forward else -step)) % count
+            span = p if forward else (p - 1) % count
+            tension += float(taken[p])
+            first[span] = tension
+            tension += self.acceleration * float(self.masses[span])
+            last[span] = tension
+        kept = float(np.average(0.5 * (first + last), weights=row.prepared.installation.path.span_lengths))
+        if row.drive.moving_tensioners:
+            p = row.drive.carried(row.drive.moving_tensioners[0])
+            kept = 0.5 * float(first[p] + last[p - 1] if forward else first[p - 1] + last[p])
+        return first - kept, last - kept
+
+    @cached_property
+    def slack(self) -> tuple[FloatArray, FloatArray]:
+        """Tension behind each drive in a start, and what Euler's formula needs there, N, shape (pulleys,)."""
+        row, spans = self.row, np.arange(len(self.pulls)) - (0 if self.row.sense > 0.0 else 1)
+        needed = self.starting_pulls / np.expm1(row.prepared.frictions * row.at["wrap_angle"].values)
+        slack = (row.span_ends[0] + self.rises[0])[spans]
+        return np.where(self.drives, slack, np.nan), np.where(self.drives, needed, np.nan)
+
+
+def _span_masses(row: _Row) -> FloatArray:
+    """Mass that moves with each span, kg, of belt, goods and idlers; half of the arcs at either end counts to it."""
+    drive, path = row.drive, row.prepared.installation.path
+    around = np.abs(path.radii) * path.wrap_angles
+    lengths = np.asarray(path.span_lengths) + 0.5 * (around + np.roll(around, -1))
+    masses = lengths / float(np.sum(lengths)) * row.prepared.belt.mass_per_length * row.prepared.belt_length
+    for one in drive.goods:
+        place = stretch_of(one, drive.spans, path)
+        masses[place.span] += one.mass_per_length * place.length
+    for support in drive.supports:
+        place = stretch_of(support, drive.spans, path)
+        masses[place.span] += support.rotating_mass * place.length
+    return np.asarray(masses)
+
+
 def _row_warnings(name: str, point: _Row, factors: FloatArray) -> Iterator[str]:
     """What a designer has to look after at an operating point."""
     slack = np.minimum(point.before, point.after)
@@ -304,6 +454,13 @@ def _row_warnings(name: str, point: _Row, factors: FloatArray) -> Iterator[str]:
             "Raise the tension or the wrap angle, or share the pull with another drive."
         )
     if point.drive.carries:
+        slack, needed = point.start.slack
+        for number in np.flatnonzero((slack < needed) & (point.start.acceleration > 0.0)):
+            yield (
+                f"{point.drive.pulleys[number].name} slips in starts at operating point {name}: its slack tension "
+                f"is {slack[number]:.4g} N, Euler's formula needs {needed[number]:.4g} N. Raise the tension, or start "
+                "more slowly."
+            )
         needed, sag = point.sag
         for number in np.flatnonzero(sag > LARGEST_SAG):
             yield (

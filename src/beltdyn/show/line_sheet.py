@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from beltdyn.arrays import BoolArray
-from beltdyn.designs.line_sheet import LARGEST_SAG, RESISTANCES
+from beltdyn.designs.line_sheet import LARGEST_SAG, RESISTANCES, STRETCHES
 from beltdyn.parts.messages import aligned
 from beltdyn.parts.quantity import RPM
 from beltdyn.results import Result
@@ -26,6 +26,8 @@ def line_sheet(result: Result) -> Sheet:
     """Give the sheet of a line."""
     dataset, parts = result.dataset, list[Table | Facts]()
     parts += [Facts(tuple(_facts(dataset))), _points(dataset)]
+    if "moved_mass" in dataset:
+        parts.append(_starts(dataset))
     for number, name in enumerate(dataset["row"].values):
         at, where = dataset.isel(row=number), f", operating point {name}" if dataset.sizes["row"] > 1 else ""
         stands = np.array(result.drive.guides, dtype=bool)
@@ -46,6 +48,9 @@ def line_sheet(result: Result) -> Sheet:
 def _facts(dataset: "xr.Dataset") -> Iterator[tuple[str, str]]:
     yield "belt length", f"{float(dataset['belt_length']):.5g} m unstretched"
     yield "tension at rest", f"{float(dataset['tension_at_rest']):.4g} N"
+    if "take_up_ratio" in dataset and np.isfinite(dataset["take_up_ratio"]):
+        taken = 1e3 * float(dataset["stretch_at_rest"] / dataset["take_up_ratio"])
+        yield "take-up", f"{taken:.4g} mm for the stretch of the belt at rest"
     factors = ", ".join(f"{one:.3g}" for one in dataset["friction"].values)
     yield "slack tension needed", f"by Euler's formula, with {factors} times the friction of the pulleys"
     if "main_resistance" in dataset:
@@ -82,6 +87,33 @@ def _points(dataset: "xr.Dataset") -> Table:
         columns.append(aligned(flow.tolist(), 4))
         headings = (*headings, "goods\nt/h")
     return Table("Operating points", headings, tuple(zip(*columns, strict=True)))
+
+
+def _starts(dataset: "xr.Dataset") -> Table:
+    """Pull, slack tension and take-up in starts, and the torque of a holdback."""
+    slack, needed = dataset["start_slack_tension"].values, dataset["least_start_slack_tension"].values
+    drive = np.nanargmin(slack - needed, axis=1)  # the drive that is nearest to slipping
+    rows, ratio = np.arange(len(drive)), float(dataset["take_up_ratio"])
+    running, starting = dataset["running_pull"].values, dataset["start_pull"].values
+    columns: list[Sequence[str]] = [
+        [str(one) for one in dataset["row"].values],
+        aligned(dataset["moved_mass"].values.tolist(), 4),
+        aligned(dataset["acceleration"].values.tolist(), 3),
+        aligned(running.tolist(), 4),
+        aligned(starting.tolist(), 4),
+        [f"{one / by:.2f}" if by > 0.0 else "–" for one, by in zip(starting, running, strict=True)],
+        aligned(slack[rows, drive].tolist(), 4),
+        aligned(needed[rows, drive].tolist(), 4),
+        aligned(dataset["holdback_torque"].values.tolist(), 4),
+    ]
+    headings: tuple[str, ...] = (
+        *("", "moved\nkg", "start\nm/s²", "pull, running\nN", "start\nN", "start\nfactor"),
+        *("slack, start\nN", "needed\nN", "holdback\nN m"),
+    )
+    if np.isfinite(ratio):
+        columns += [aligned((1e3 / ratio * dataset[one].values).tolist(), 4) for one in STRETCHES]
+        headings = (*headings, "take-up, running\nmm", "start\nmm")
+    return Table("Starts", headings, tuple(zip(*columns, strict=True)))
 
 
 def _pulleys(at: "xr.Dataset", where: str, stands: BoolArray) -> Table:

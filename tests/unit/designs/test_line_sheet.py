@@ -39,6 +39,18 @@ def test_a_conveyor_has_the_pull_of_din_22101() -> None:
     expected = float(head.tension_before - head.tension_after) / np.expm1(np.array([0.7, 1.0, 1.3]) * 0.35 * wrap)
     np.testing.assert_allclose(least, expected + 25.0 * 3.998**2, rtol=1e-3)
     np.testing.assert_allclose(upper.sag[0] * upper.least_tension[0] * 8.0, 129.0 * 9.81 * 1.2, rtol=1e-3)
+    # the start: belt, goods, idlers and tail drum at 0.1571 m/s^2; the tail drum takes half of the stretch up
+    mass = 25.0 * 2001.4 + 1000.11 * (104.0 * np.array([1.0, 0.0]) + 22.0 / 1.2 + 18.0 / 3.0) + 60.0 / 0.4**2
+    np.testing.assert_allclose(found.moved_mass, mass, rtol=2e-3)
+    np.testing.assert_allclose(found.start_pull - found.running_pull, mass * 4.0 * np.pi / 80.0, rtol=3e-3)
+    assert float(found.holdback_torque[0]) == pytest.approx(15.0 * 9.81 * 104.0 * 0.5, rel=0.02)
+    behind = 1000.11 * (25.0 + 18.0 / 3.0) + 0.5 * 60.0 / 0.4**2
+    more = found.start_slack_tension.sel(pulley="head") - found.tension_after.sel(pulley="head")
+    np.testing.assert_allclose(more, -behind * 4.0 * np.pi / 80.0, rtol=0.01)
+    travel = found.running_stretch / found.take_up_ratio
+    assert float(travel[0] - travel[1]) == pytest.approx(
+        float(found.tensioner_position[0, 0] - found.tensioner_position[1, 0]), rel=0.01
+    )
     numbers = {one.key: one for one in bd.results.key_numbers(result)}
     assert numbers["largest_tension"].value == pytest.approx(float(head.tension_before), rel=1e-3)
     text = as_text(sheet(result))
@@ -47,6 +59,24 @@ def test_a_conveyor_has_the_pull_of_din_22101() -> None:
     with pytest.raises(ModelError, match="no curves over speed"):
         bd.plot.sheet_tensions(result)
     assert bd.plot.line_tensions(result).get_legend_handles_labels()[1] == ["full", "empty"]
+
+
+@pytest.mark.slow
+def test_a_motor_starts_a_conveyor_by_its_breakdown_torque() -> None:
+    """At fixed drums the belt keeps its stretch, and both strands share what the start adds."""
+    found = bd.sheet(example("package_conveyor")).dataset.isel(row=0)
+    radius, rotor = 0.5 * float(found.pitch_diameter[0]), 2.6
+    moved = float(found.moved_mass)
+    pull = float(found.running_pull)
+    gain = (150.0 / radius - pull) / (moved + rotor / radius**2)
+    assert float(found.acceleration) == pytest.approx(gain, rel=2e-3)
+    assert float(found.start_pull) == pytest.approx(pull + moved * gain, rel=2e-3)
+    assert float(found.holdback_torque) == 0.0
+    assert float(found.start_stretch) == pytest.approx(float(found.running_stretch), rel=1e-3)
+    assert float(found.stretch_at_rest) == pytest.approx(float(found.running_stretch), rel=1e-2)
+    given = bd.sheet(example("package_conveyor"), acceleration="500 rad/s^2")
+    assert any("drive slips in starts at operating point 1" in one for one in given.warnings)
+    assert float(given.dataset.acceleration[0]) == pytest.approx(500.0 * radius, rel=1e-3)
 
 
 @pytest.mark.slow
@@ -78,3 +108,5 @@ def test_options_of_closed_belts_are_refused() -> None:
     for options, said in refused:
         with pytest.raises(ModelError, match=said):
             bd.sheet(example("package_conveyor"), **options)
+    with pytest.raises(ModelError, match="acceleration = 2 is an option"):
+        bd.sheet(bd.load(TASKS / "coater.toml"), acceleration=2)

@@ -234,6 +234,40 @@ def test_the_first_longitudinal_mode_is_that_of_two_rods_and_the_take_up() -> No
 
 
 @pytest.mark.slow
+def test_a_sheet_has_the_pull_and_the_slack_tension_of_a_start() -> None:
+    """To 1 % of what they change by, of a short and stiff conveyor on a slope, that gains speed smoothly."""
+    begin, end, rise = 2.0, 8.0, (0.1, 1.5)
+    instants = np.linspace(*rise, 81)
+    speeds = begin + (end - begin) * 0.5 * (1.0 - np.cos(math.pi * (instants - rise[0]) / (rise[1] - rise[0])))
+    pulleys = [
+        {
+            "name": "head",
+            "center": [0.0, 2.0],
+            "radius": 0.25,
+            "speed": {"kind": "table", "times": [0.0, *instants], "values": [begin, *speeds]},
+        },
+        {"name": "tail", "center": [20.0, 0.0], "radius": 0.25, "inertia": 2.0},
+    ]
+    drive = bd.Drive(
+        gravity=[0.0, -GRAVITY],
+        belt=STRIP | {"axial_stiffness": 2e7, "mass_per_length": 12.0, "installed_tension": 2e4},
+        pulley=pulleys,
+        tensioner=[{"kind": "fixed", "pulley": "tail", "direction": [1.0, 0.0]}],
+        support=[idlers("tail", "head", CARRYING, COEFFICIENT), idlers("head", "tail", CARRYING, COEFFICIENT)],
+        goods=[{"span": ["tail", "head"], "mass_per_length": 60.0}],
+        contact={"friction": 0.4},
+        simulation={"duration": 1.7, "output_interval": 2e-3, "start": "steady"},
+    )
+    sheet, run = bd.sheet(drive).dataset.isel(row=0), bd.simulate(drive).dataset
+    pull = run.shaft_torque.values[:, 0] / (0.5 * float(sheet.pitch_diameter[0]))
+    at = int(np.argmin(np.abs(run.time.values - np.mean(rise))))
+    found = float(np.mean(pull[at - 75 : at + 76]))  # over a period of the longitudinal vibration, near the steepest
+    spread = np.sin(0.15 * math.pi / 1.4) / (0.15 * math.pi / 1.4)
+    gained = float(sheet.start_pull - sheet.running_pull)
+    assert found - float(sheet.running_pull) == pytest.approx(gained * spread, rel=0.01)
+
+
+@pytest.mark.slow
 @pytest.mark.parametrize("ends", [(0.0, 0.2), (0.2, 0.0)], ids=["start", "stop"])
 def test_the_wave_of_a_start_or_stop_arrives_at_the_tail_after_the_length_over_its_speed(
     ends: tuple[float, float], curve: Callable[..., None], measured: Callable[..., None]
