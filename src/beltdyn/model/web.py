@@ -7,7 +7,7 @@ import numpy as np
 from pydantic import Field, model_validator
 
 from beltdyn.arrays import FloatArray
-from beltdyn.machines.profiles.profile_types import TorqueProfile
+from beltdyn.machines.profiles import TorqueProfile
 from beltdyn.model.end import FixedEnd
 from beltdyn.model.pulley import Pulley
 from beltdyn.parts.part import Part
