@@ -6,7 +6,7 @@ import numpy as np
 from example_numbers import Number
 
 from beltdyn import Run
-from beltdyn.model.carriage import free_stroke
+from beltdyn.model.end import free_stroke
 
 
 def printer_axis(run: Run) -> Iterator[Number]:

@@ -39,7 +39,6 @@ from beltdyn.model import (
     Winder,
 )
 from beltdyn.model.belt_form import Nominal, Sold, Stiffnesses
-from beltdyn.model.fatigue import CordFatigue, RibFatigue
 from beltdyn.model.parameter_study import (
     DutyPoint,
     FreeNumber,
@@ -53,7 +52,7 @@ from beltdyn.model.parameter_study import (
     VariedNumber,
 )
 from beltdyn.model.pulley import Diameter, surface_part
-from beltdyn.model.stretch_curve import StretchCurve
+from beltdyn.model.rating import CordFatigue, RibFatigue, StretchCurve
 from beltdyn.parts.kind_fields import NameOf
 from beltdyn.parts.part import Part
 from beltdyn.show.plot import FIGURES

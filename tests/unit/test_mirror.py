@@ -33,7 +33,6 @@ ELSEWHERE = {
     "system/carrying.py": "unit/system/test_arc_mesh.py",
     "results/derived/nip_profile.py": "unit/system/test_nips.py",
     "model/cover.py": "unit/theory/test_nip.py",
-    "system/element_state.py": "unit/system/test_state_discretization.py",
     "system/observations.py": "unit/system/test_observe.py",
     "solvers/engine.py": "unit/solvers/test_alpha_advance.py",
     "show/line_sheet.py": "unit/designs/test_line_sheet.py",

@@ -1,13 +1,13 @@
 """Compiled code: the decorator of kernels and the cache of their machine code."""
 
-from beltdyn.kernel.by_type import by_type
-from beltdyn.kernel.compilation_progress import (
+from beltdyn.kernel.decorator import Kernel, interpreted, kernel, runs_compiled
+from beltdyn.kernel.dispatch import (
     CompilationReport,
+    by_type,
     observe_compilation,
     report_compilation,
     watch_compilation,
 )
-from beltdyn.kernel.decorator import Kernel, interpreted, kernel, runs_compiled
 from beltdyn.kernel.fingerprint import (
     CACHE_VARIABLE,
     PACKAGE,

@@ -10,8 +10,7 @@ import numba
 from numba.core import event
 from numba.extending import overload
 
-from beltdyn.kernel.by_type import Dispatch
-from beltdyn.kernel.compilation_progress import CompilationCount
+from beltdyn.kernel.dispatch import CompilationCount, Dispatch
 from beltdyn.kernel.fingerprint import SealedFolder, compiles_quickly, holds_kernels, kernel_cache, own_classes, setting
 
 OPTIONS = {"nogil": True, "error_model": "numpy", "fastmath": {"contract", "nsz"}}

@@ -48,20 +48,18 @@ from beltdyn.machines.tensioners.tensioner import TENSIONERS
 from beltdyn.model.advice import advise, describe_time, off_the_stop, unstable_balance
 from beltdyn.model.alignment import Alignment, alignment
 from beltdyn.model.belt import Belt
-from beltdyn.model.carriage import Carriage
 from beltdyn.model.catalogue import Entry, read_catalogue
 from beltdyn.model.contact import Contact
 from beltdyn.model.cover import Cover
 from beltdyn.model.drive import Drive
-from beltdyn.model.end import FixedEnd, PulledEnd, WeightEnd
-from beltdyn.model.fatigue import CordFatigue, RibFatigue
+from beltdyn.model.end import Carriage, FixedEnd, PulledEnd, WeightEnd
 from beltdyn.model.installation import Installation
 from beltdyn.model.nip import Nip
 from beltdyn.model.parameter_study import CalibrationStudy, DutyPoint, OptimizationStudy, ParameterStudy
 from beltdyn.model.path import Path
 from beltdyn.model.prepared import Prepared, install, prepare, tensioner_balances
 from beltdyn.model.pulley import Pulley
-from beltdyn.model.rating import Rating
+from beltdyn.model.rating import CordFatigue, Rating, RibFatigue
 from beltdyn.model.resolution import ERROR_LIMITS, Running, elements_needed, layer_lengths, mesh_errors, unresolved
 from beltdyn.model.rest_estimate import estimate_at_rest
 from beltdyn.model.simulation import Limits, Simulation, Steady

@@ -38,9 +38,7 @@ from beltdyn.model.belt_form import (
     without_section,
 )
 from beltdyn.model.catalogue import Entry, read_catalogue
-from beltdyn.model.fatigue import CordFatigue, RibFatigue
-from beltdyn.model.rating import RatedBelt
-from beltdyn.model.stretch_curve import StretchCurve
+from beltdyn.model.rating import CordFatigue, RatedBelt, RibFatigue, StretchCurve
 from beltdyn.model.toothing import DISCRETE, FEWEST_TEETH, MOST_OFF, MOST_TEETH, RatedTeeth, Toothing
 from beltdyn.parts.kind_fields import LawKeys, NameOf
 from beltdyn.parts.part import Part

@@ -15,7 +15,7 @@ from pydantic import Field
 
 from beltdyn.errors import ModelError
 from beltdyn.model.catalogue import Entry, find_entry, read_catalogue
-from beltdyn.model.stretch_curve import with_initial_slope
+from beltdyn.model.rating import with_initial_slope
 from beltdyn.model.toothing import FEWEST_TEETH, LARGEST_PITCH_ERROR, MOST_TEETH, Toothing
 from beltdyn.parts.part import Part
 from beltdyn.parts.quantity import AxialStiffness, BendingStiffness, Count, Length, MassPerLength, number_in

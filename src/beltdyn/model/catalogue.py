@@ -11,9 +11,7 @@ from typing import Any, Literal, Self
 
 from pydantic import Field, ValidationError, ValidationInfo, model_validator
 
-from beltdyn.model.fatigue import CordFatigue, RibFatigue
-from beltdyn.model.rating import Rating
-from beltdyn.model.stretch_curve import StretchCurve, with_initial_slope
+from beltdyn.model.rating import CordFatigue, Rating, RibFatigue, StretchCurve, with_initial_slope
 from beltdyn.model.toothing import Toothing, ToothRating
 from beltdyn.parts.messages import explain, reason
 from beltdyn.parts.part import Part

@@ -18,13 +18,11 @@ from beltdyn.machines.carrying import AnySupport
 from beltdyn.machines.tensioners import AnyTensioner
 from beltdyn.model.as_supplied import Rotation, as_supplied
 from beltdyn.model.belt import Belt
-from beltdyn.model.carriage import Carriage, check_carriage
 from beltdyn.model.carrying import check_carrying, check_lift
 from beltdyn.model.completion import Completed, complete
 from beltdyn.model.contact import Contact
-from beltdyn.model.end import AnyEnd, End, PathEnd, ends_on_path
-from beltdyn.model.layout import Given, Layout, lay_out
-from beltdyn.model.mesh_choice import check_teeth
+from beltdyn.model.end import AnyEnd, Carriage, End, PathEnd, check_carriage, ends_on_path
+from beltdyn.model.layout import Given, Layout, check_teeth, lay_out
 from beltdyn.model.nip import Nip, rim_ratios
 from beltdyn.model.parameter_study import DutyPoint, check_duty
 from beltdyn.model.path import Path

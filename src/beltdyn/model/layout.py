@@ -1,10 +1,11 @@
-"""The layout of a drive: path of the belt, and take-up of fixed tensioners."""
+"""The layout of a drive: path of the belt, take-up of fixed tensioners, and whether belt and pulleys mesh."""
 
 from collections.abc import Mapping, Sequence
 from typing import Any, NamedTuple
 
 import numpy as np
 
+from beltdyn.arrays import FloatArray
 from beltdyn.errors import ModelError
 from beltdyn.machines import FixedTensioner, MovingTensioner, Tensioner
 from beltdyn.machines.tensioners.tensioner import LEAST_LEVERAGE
@@ -285,3 +286,25 @@ def check_length(length: float, path: float, tensioned: bool = False) -> None:
             f"it would be stretched by {path / length - 1:.0%}; the limit is {LARGEST_STRAIN:.0%}. "
             f"Lengthen it, or {'reduce the preload' if tensioned else 'move the pulleys closer together'}."
         )
+
+
+def check_teeth(belt: Belt, pulleys: Sequence[Pulley], path_length: float | None) -> None:
+    """Refuse teeth that no groove holds, and a belt with teeth that is too short for its path, unless that moves."""
+    if belt.teeth is None or belt.toothing is None:
+        return
+    if not any(pulley.teeth for pulley in pulleys):
+        raise ValueError(
+            f"the belt has {belt.teeth} teeth, but no pulley has any. Give pulleys their teeth, or omit belt.teeth and "
+            "belt.toothing for a flat belt"
+        )
+    pitches = 0.0 if path_length is None else path_length / belt.given_pitch
+    if pitches > belt.teeth + 1:
+        raise ValueError(
+            f"belt.teeth = {belt.teeth} is too short to mesh: the path around the pulleys has {pitches:.2f} pitches of "
+            f"{1e3 * belt.toothing.pitch:.5g} mm. Give {round(pitches)} teeth, or move the pulleys closer together"
+        )
+
+
+def teeth_in_mesh(belt: Belt, path: Path) -> FloatArray:
+    """Pitches of the belt on the arc of each pulley, shape (pulleys,)."""
+    return np.asarray(np.abs(path.radii) * path.wrap_angles / belt.given_pitch)

@@ -11,7 +11,7 @@ from beltdyn.machines.loads.load import Load
 from beltdyn.model.alignment import judge_alignment
 from beltdyn.model.drive import Drive
 from beltdyn.model.installation import Installation
-from beltdyn.model.mesh_choice import teeth_in_mesh
+from beltdyn.model.layout import teeth_in_mesh
 from beltdyn.model.prepared import install, prepare
 from beltdyn.model.pulley import Pulley, fastest_rim
 from beltdyn.model.toothing import RatedTeeth

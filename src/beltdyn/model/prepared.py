@@ -14,14 +14,13 @@ from beltdyn.errors import ModelError
 from beltdyn.machines import Goods, MovingTensioner, Support, Tensioner
 from beltdyn.machines.carrying.support import OnSpan
 from beltdyn.model.belt import Belt
-from beltdyn.model.carriage import Carriage
 from beltdyn.model.carrier import Carrier, carriers_of, moved
 from beltdyn.model.carrying import Stretch, stretch_of, swinging_lengths
 from beltdyn.model.completion import take_up
 from beltdyn.model.contact import Contact
 from beltdyn.model.defaults import Choice, critical_damping
 from beltdyn.model.drive import Drive
-from beltdyn.model.end import End, PathEnd
+from beltdyn.model.end import Carriage, End, PathEnd
 from beltdyn.model.installation import Installation, span_frequencies
 from beltdyn.model.layout import loaded
 from beltdyn.model.path import Path

@@ -11,7 +11,7 @@ from beltdyn.errors import ConvergenceError, SlipError
 from beltdyn.model import Prepared
 from beltdyn.parts.quantity import RPM
 from beltdyn.results.belt_history import mid_span_displacements
-from beltdyn.results.checks.sliding import SWEEP_REMEDY
+from beltdyn.results.checks.creep import SWEEP_REMEDY
 from beltdyn.results.friction_work import FrictionWork, MaterialWork, Touch
 from beltdyn.results.incidents import JUMPS
 from beltdyn.results.mechanics import across

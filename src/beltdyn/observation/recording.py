@@ -13,7 +13,7 @@ from beltdyn.arrays import FloatArray, IntArray
 from beltdyn.errors import SlipError
 from beltdyn.model import Prepared
 from beltdyn.model.advice import other_creep
-from beltdyn.model.carriage import carriage_rate
+from beltdyn.model.end import carriage_rate
 from beltdyn.model.simulation import Frame, FrameName
 from beltdyn.observation.band_limit import BandLimit
 from beltdyn.observation.compilation import compile_kernels

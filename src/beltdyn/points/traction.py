@@ -16,7 +16,7 @@ from beltdyn.parts.quantity import Numbers, numbers_in
 from beltdyn.points.changed_drive import at_speed, driver_of, held_at, require_belt, sense_of, with_pulley
 from beltdyn.points.operating_points import Axes, OperatingPoints
 from beltdyn.results import Result, Run, Variable, summarize
-from beltdyn.results.checks.sliding import gross_slip, near_gross_slip
+from beltdyn.results.checks.creep import gross_slip, near_gross_slip
 from beltdyn.solvers.run_progress import Report
 from beltdyn.state.steady import steady_state
 

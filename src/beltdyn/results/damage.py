@@ -8,7 +8,7 @@ import numpy as np
 
 from beltdyn.arrays import FloatArray, IntArray
 from beltdyn.model import Drive, Prepared
-from beltdyn.model.fatigue import CordFatigue
+from beltdyn.model.rating import CordFatigue
 from beltdyn.results.belt_history import BeltHistory, belt_history, turn_history
 from beltdyn.results.mechanics import across
 from beltdyn.results.run import Run

@@ -25,7 +25,7 @@ from beltdyn.model import (
 from beltdyn.model.alignment import is_given
 from beltdyn.model.hysteresis import bending_resistance, compression_losses
 from beltdyn.model.installation import DEFLECTION, TensionCheck, tension_checks
-from beltdyn.model.mesh_choice import teeth_in_mesh
+from beltdyn.model.layout import teeth_in_mesh
 from beltdyn.model.plausibility import other_diameters
 from beltdyn.model.simulation import unused_settings
 from beltdyn.model.toothing import RatedTeeth

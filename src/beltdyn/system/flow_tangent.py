@@ -28,7 +28,7 @@ from beltdyn.system.arc_mesh import first_arc
 from beltdyn.system.arrays import BENDING_LOSS, STRETCH_LOSS, Equations, Motion, RingMatrix, System, TangentFactors
 from beltdyn.system.body_forces import add_contact, differentiates_forces
 from beltdyn.system.carrying import CarryingFactors, add_carried, find_accelerations
-from beltdyn.system.element_state import centreline, loses_in_belt, material_forces
+from beltdyn.system.element_state import centreline, couple_rim, loses_in_belt, material_forces, take_contact
 from beltdyn.system.frame import (
     ArcMesh,
     Flowing,
@@ -41,7 +41,6 @@ from beltdyn.system.frame import (
 )
 from beltdyn.system.material_loss import add_hysteresis_flow
 from beltdyn.system.moving_center import couple_center, keep_drift, moving_center, pulley_state
-from beltdyn.system.supports import couple_rim, take_contact
 
 
 class FlowFactors(NamedTuple):

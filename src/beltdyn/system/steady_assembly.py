@@ -47,7 +47,18 @@ from beltdyn.system.body_forces import (
     new_body_forces,
 )
 from beltdyn.system.carrying import CarryingFactors, add_carrying
-from beltdyn.system.element_state import add_material_damping, centreline, element_workspace, gather, gather_motion
+from beltdyn.system.element_state import (
+    add_material_damping,
+    add_nodal_loads,
+    centreline,
+    couple_rim,
+    element_workspace,
+    gather,
+    gather_motion,
+    hold_fixed,
+    scatter,
+    take_contact,
+)
 from beltdyn.system.flow_tangent import (
     NO_FLOW_TANGENT,
     FlowFactors,
@@ -66,7 +77,6 @@ from beltdyn.system.meshing import add_steady_machines, clear_last_row, flow_unk
 from beltdyn.system.moving_center import couple_center, keep_drift, moving_center, pulley_state
 from beltdyn.system.ring_matrix import clear, ring_matrix
 from beltdyn.system.state import State
-from beltdyn.system.supports import add_nodal_loads, couple_rim, hold_fixed, scatter, take_contact
 from beltdyn.system.web import WebLine, hold_web
 
 

@@ -7,7 +7,7 @@ import numpy as np
 from beltdyn.arrays import FloatArray
 from beltdyn.errors import ModelError
 from beltdyn.model import Drive, Prepared, prepare
-from beltdyn.model.carriage import free_stroke
+from beltdyn.model.end import free_stroke
 from beltdyn.parts.quantity import Numbers, numbers_in
 from beltdyn.results import Result, Variable, build_result
 from beltdyn.solvers.flutter import Vibrations

@@ -16,7 +16,15 @@ from beltdyn.results.checks.contact import (
     lifted_by_speed,
     slack_spans,
 )
-from beltdyn.results.checks.creep import impossible_slip, regularized_slip, smoothed_friction
+from beltdyn.results.checks.creep import (
+    ended_by_slip,
+    gross_slip,
+    gross_slip_before,
+    impossible_slip,
+    near_gross_slip,
+    regularized_slip,
+    smoothed_friction,
+)
 from beltdyn.results.checks.ending import NOTHING_RECORDED, empty_rolls, unfinished, unsettled
 from beltdyn.results.checks.evidence import Check, Evidence
 from beltdyn.results.checks.machines import (
@@ -38,7 +46,6 @@ from beltdyn.results.checks.power import (
     open_account,
     unbalanced_powers,
 )
-from beltdyn.results.checks.sliding import ended_by_slip, gross_slip, gross_slip_before, near_gross_slip
 from beltdyn.results.provenance import Resolution
 from beltdyn.results.schema import Recorded
 

@@ -10,9 +10,9 @@ from beltdyn.model import Belt, Drive
 from beltdyn.solvers.engine import linearise
 from beltdyn.system.arrays import Equations, RingMatrix, System, TangentFactors
 from beltdyn.system.build import belt_system
+from beltdyn.system.element_state import add_nodal_loads
 from beltdyn.system.state import straight
 from beltdyn.system.steady_assembly import new_equations, no_multipliers
-from beltdyn.system.supports import add_nodal_loads
 
 Dense = Callable[[RingMatrix, bool], tuple[FloatArray, FloatArray]]
 FIXED = [(0, 0), (2, 3), (-1, 5)]

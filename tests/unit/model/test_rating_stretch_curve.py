@@ -10,7 +10,7 @@ from beltdyn.errors import ModelError
 from beltdyn.model import Belt, Drive, dumps, loads
 from beltdyn.model.advice import advise
 from beltdyn.model.prepared import install
-from beltdyn.model.stretch_curve import StretchCurve
+from beltdyn.model.rating import StretchCurve
 from beltdyn.stretch import Green, Linear
 
 STRAINS, TENSIONS = (0.0, 0.01, 0.02, 0.05), (0.0, 70.0, 120.0, 200.0)

@@ -5,7 +5,7 @@ import pytest
 
 from beltdyn.errors import ModelError
 from beltdyn.model import Carriage, Drive, FixedEnd, dumps, example, loads
-from beltdyn.model.carriage import carriage_rate, free_stroke, turned
+from beltdyn.model.end import carriage_rate, free_stroke, turned
 
 AXIS = example("printer_axis")
 TEXT = AXIS.text

@@ -3,7 +3,7 @@
 from typing import NamedTuple
 
 from beltdyn.kernel import by_type, kernel, report_compilation, watch_compilation
-from beltdyn.kernel.compilation_progress import CompilationCount, _kernels_below
+from beltdyn.kernel.dispatch import CompilationCount, _kernels_below
 
 
 class Disc(NamedTuple):
