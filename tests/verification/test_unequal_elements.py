@@ -15,7 +15,7 @@ from beltdyn.arrays import FloatArray
 from beltdyn.model import Belt, Drive, Path, prepare
 from beltdyn.observation.recording import Recording, result_layout
 from beltdyn.results import Run
-from beltdyn.results.derived.arc import wear_by_belt
+from beltdyn.results.derived.contact_profile import wear_by_belt
 from beltdyn.solvers.trajectory import drive_task
 from beltdyn.state.static import find_equilibrium, standing
 from beltdyn.system.arrays import NO_TANGENT, Equations, System, TangentFactors

@@ -1,8 +1,7 @@
 """Quantities derived from a run: functions of a `Run` that return labeled arrays with units."""
 
-from beltdyn.results.derived.arc import contact_arc, wear_by_arc, wear_by_belt
+from beltdyn.results.derived.contact_profile import contact_arc, nip_profile, nips, wear_by_arc, wear_by_belt
 from beltdyn.results.derived.labels import pulley_number
-from beltdyn.results.derived.nip_profile import nip_profile, nips
 from beltdyn.results.derived.pulley_means import (
     balance,
     hub_loads,
