@@ -1,14 +1,15 @@
-"""A run: its dataset, the drive it belongs to and how it ended."""
+"""A run: its dataset, the drive it belongs to and how it ended; its outputs in a time range."""
 
 from collections.abc import Iterator
 from contextlib import contextmanager
 from dataclasses import replace
 from functools import cached_property
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import h5py
 import numpy as np
+from numpy.typing import NDArray
 
 from beltdyn.analyses import EQUILIBRIUM, RUN
 from beltdyn.errors import ModelError
@@ -25,7 +26,7 @@ from beltdyn.results.provenance import (
     mesh_resolution,
 )
 from beltdyn.results.result import Result, build_result, drive_of
-from beltdyn.results.schema import COORDINATES, DERIVED, VARIABLES, InMemory, Recorded, Variable, runs_steadily
+from beltdyn.results.schema import COORDINATES, DERIVED, TIMES, VARIABLES, InMemory, Recorded, Variable, runs_steadily
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -348,3 +349,52 @@ def open_result(path: Path | str) -> Result:
         dataset.close()
         raise
     return _run(path, complete_dataset(path, dataset))
+
+
+def labelled(values: NDArray[Any], like: "xr.DataArray", units: str, long_name: str) -> "xr.DataArray":
+    """Give an array the dimensions and coordinates of another one, and its own unit and name."""
+    return like.copy(data=values).assign_attrs(units=units, long_name=long_name)
+
+
+def window(run: Run, start: float | None = None, end: float | None = None) -> "xr.Dataset":
+    """Take the outputs from one instant to another, both included, and those of fields between them."""
+    run.require_output()
+    dataset = run.dataset.sel({name: slice(start, end) for name in TIMES})
+    if dataset.sizes["time"] == 0:
+        times = run.dataset["time"].values
+        raise ModelError(
+            f"there is no output from {in_words(start, end)}; the run was recorded from {times[0]:g} to "
+            f"{times[-1]:g} s. Choose a time range between these."
+        )
+    return dataset
+
+
+def in_words(start: float | None, end: float | None) -> str:
+    """A time range whose ends may be open."""
+    first = "the start" if start is None else f"{start:g} s"
+    return f"{first} to the end" if end is None else f"{first} to {end:g} s"
+
+
+def pulley_number(run: Result, pulley: str | int) -> int:
+    """Give the number of a pulley.
+
+    Parameters
+    ----------
+    run : Result
+        What was computed of a drive.
+    pulley : str or int
+        Its name or number.
+
+    Raises
+    ------
+    ModelError
+        If there is no such pulley.
+
+    Examples
+    --------
+    >>> bd.derived.pulley_number(run, "driven")
+    1
+    """
+    if isinstance(pulley, int) and 0 <= pulley < len(run.drive.pulleys):
+        return pulley
+    return run.drive.number_of(pulley)

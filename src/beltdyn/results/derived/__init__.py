@@ -1,7 +1,6 @@
 """Quantities derived from a run: functions of a `Run` that return labeled arrays with units."""
 
 from beltdyn.results.derived.contact_profile import contact_arc, nip_profile, nips, wear_by_arc, wear_by_belt
-from beltdyn.results.derived.labels import pulley_number
 from beltdyn.results.derived.pulley_means import (
     balance,
     hub_loads,
@@ -23,6 +22,7 @@ from beltdyn.results.derived.spectrum import (
     transmission_error,
     waterfall,
 )
+from beltdyn.results.run import pulley_number
 
 __all__ = [
     "amplitude_spectrum",

@@ -6,10 +6,9 @@ import xarray as xr
 from beltdyn.arrays import BoolArray, FloatArray
 from beltdyn.errors import ModelError
 from beltdyn.model import Prepared
-from beltdyn.results.derived.labels import in_words, pulley_number, window
 from beltdyn.results.friction_work import ARC_PARTS, BEYOND
 from beltdyn.results.mechanics import angle_from_inlet, arc_ends, cells, element_lengths, rim_speeds, sliding_velocity
-from beltdyn.results.run import Run, StaticResult
+from beltdyn.results.run import Run, StaticResult, in_words, pulley_number, window
 
 # Wear intensity: friction work over the arc and over the belt, to which wear is proportional (Archard 1953)
 

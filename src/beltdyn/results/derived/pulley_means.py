@@ -4,9 +4,8 @@ import numpy as np
 import xarray as xr
 
 from beltdyn.results.cycles import Cycle, Window, plain_window, turn_window
-from beltdyn.results.derived.labels import labelled, window
 from beltdyn.results.mechanics import rim_speeds, tensions_at_arcs
-from beltdyn.results.run import Run
+from beltdyn.results.run import Run, labelled, window
 from beltdyn.results.slip_safety import slip_parts, slip_safety_of
 from beltdyn.results.tension_balance import Balance, power_balance
 

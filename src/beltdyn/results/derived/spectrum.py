@@ -10,8 +10,7 @@ from scipy.interpolate import CubicSpline
 from beltdyn.arrays import BoolArray, FloatArray, IntArray
 from beltdyn.errors import ModelError
 from beltdyn.model import Drive, prepare
-from beltdyn.results.derived.labels import labelled, pulley_number, window
-from beltdyn.results.run import Run
+from beltdyn.results.run import Run, labelled, pulley_number, window
 from beltdyn.results.schema import PASS_BAND
 
 if TYPE_CHECKING:

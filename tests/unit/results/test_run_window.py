@@ -5,7 +5,7 @@ import pytest
 
 from beltdyn.errors import ModelError
 from beltdyn.results import Run
-from beltdyn.results.derived.labels import labelled, pulley_number, window
+from beltdyn.results.run import labelled, pulley_number, window
 
 
 def test_what_is_derived_has_its_own_unit_along_the_same_dimensions(run: Run) -> None:
