@@ -87,7 +87,7 @@ def _of_steady(frame: StayingByArcs, system: System, motion: Motion, element: in
 
 @kernel
 def _of_flow(frame: FlowingByArcs, system: System, motion: Motion, element: int, work: np.record) -> None:
-    """dv/dt and a = dv/dt + A v."""
+    """dv/dt and a = dv/dt + A v, and derivatives by the rate of the shift at the second node, by which G is in A."""
     gather(system, element, motion.acceleration, work.coordinates[2])
     flow, vectors, length = work.flow, system.vectors, system.length[element]
     place, velocity, second = work.coordinates[0], work.coordinates[1], work.coordinates[2]
@@ -98,16 +98,24 @@ def _of_flow(frame: FlowingByArcs, system: System, motion: Motion, element: int,
     for a in range(len(vectors)):
         for axis in range(2):
             still, turned = second[vectors[a] + axis], 0.0
+            grown = still_by_end = moved_by_end = 0.0
             for b in range(len(vectors)):
                 c = vectors[b] + axis
                 own = first * derivative[a, b] + change * growth[a, b]
-                grown = own * change * (b % 3 - a % 3 - 1.0) / length
+                order = (b % 3 - a % 3 - 1.0) / length
                 own_rate = velocity[c]
                 for d in range(len(vectors)):
                     own_rate -= (first * derivative[b, d] + change * growth[b, d]) * place[vectors[d] + axis]
-                still += (rise * derivative[a, b] + bend * growth[a, b] - grown) * place[c] + own * own_rate
+                still += (rise * derivative[a, b] + bend * growth[a, b] - own * change * order) * place[
+                    c
+                ] + own * own_rate
                 turned += own * velocity[c]
+                grown += growth[a, b] * place[c]
+                still_by_end += growth[a, b] * (own_rate - change * order * place[c]) - own * order * place[c]
+                moved_by_end += 2.0 * (growth[a, b] * velocity[c] - own * order * place[c])
             flow.still[a, axis], flow.moved[a, axis] = still, still + turned
+            flow.grown[a, axis] = grown
+            flow.still_by_end[a, axis], flow.moved_by_end[a, axis] = still_by_end, moved_by_end
 
 
 find_accelerations: Callable[[Any, System, Motion, int, np.record], None] = by_type(
@@ -139,6 +147,49 @@ def _to_end(frame: FlowingByArcs, flow: np.record, index: int, value: float) -> 
     flow.by_end[index] += value
 
 
+@kernel(inline=True)
+def _no_force(
+    frame: StayingByArcs,
+    system: System,
+    here: _Point,
+    place: float,
+    inertia: "_Inertia",
+    factors: CarryingFactors,
+    work: np.record,
+) -> tuple[float, float]:
+    return 0.0, 0.0
+
+
+@kernel(inline=True)
+def _force_by_end(
+    frame: FlowingByArcs,
+    system: System,
+    here: _Point,
+    place: float,
+    inertia: "_Inertia",
+    factors: CarryingFactors,
+    work: np.record,
+) -> tuple[float, float]:
+    """Derivative of force and inertia at a point by the shift at the second node."""
+    carry, flow, ux, uy = work.carrying, work.flow, inertia.x, inertia.y
+    x = y = still = 0.0
+    rate_x, rate_y = -place * here.slope_x, -place * here.slope_y  # of the place of the mesh, which grows
+    for a in range(len(system.vectors)):
+        shape, grown = carry.functions[a], flow.grown[a]
+        x += shape * (factors.acceleration * grown[0] + factors.flow * flow.moved_by_end[a, 0])
+        y += shape * (factors.acceleration * grown[1] + factors.flow * flow.moved_by_end[a, 1])
+        along = grown[0] * ux + grown[1] * uy
+        gained = flow.still_by_end[a, 0] * ux + flow.still_by_end[a, 1] * uy
+        still += shape * (factors.acceleration * along + factors.flow * gained)
+        rate_x, rate_y = rate_x + shape * grown[0], rate_y + shape * grown[1]
+    speed = (rate_x + place * here.slope_x) * ux + (rate_y + place * here.slope_y) * uy
+    against = inertia.rotating * still + factors.flow * carry.by_speed * speed
+    x = factors.flow * (carry.by_rate[0, 0] * rate_x + carry.by_rate[0, 1] * rate_y) - inertia.riding * x
+    y = factors.flow * (carry.by_rate[1, 0] * rate_x + carry.by_rate[1, 1] * rate_y) - inertia.riding * y
+    return x - against * ux, y - against * uy
+
+
+_by_end = by_type({StayingByArcs: _no_force, FlowingByArcs: _force_by_end}, "by_end")
 _add_to_end = by_type({StayingByArcs: _no_end, FlowingByArcs: _to_end}, "add_to_end")
 
 
@@ -332,12 +383,13 @@ def _add_column(
     against = inertia.rotating * (still_x * ux + still_y * uy) + carry.by_speed * (vx * ux + vy * uy)
     fx = -inertia.riding * (own_x + 2.0 * factors.flow * here.turn_x) - against * ux
     fy = -inertia.riding * (own_y + 2.0 * factors.flow * here.turn_y) - against * uy
+    end_x, end_y = _by_end(system.frame, system, here, flow.place, inertia, factors, work)
     for a in range(len(vectors)):
         share = weight * carry.functions[a]
         column[vectors[a]] -= share * fx
         column[vectors[a] + 1] -= share * fy
-        _add_to_end(system.frame, work.flow, vectors[a], -flow.place * share * fx)
-        _add_to_end(system.frame, work.flow, vectors[a] + 1, -flow.place * share * fy)
+        _add_to_end(system.frame, work.flow, vectors[a], -share * end_x)
+        _add_to_end(system.frame, work.flow, vectors[a] + 1, -share * end_y)
 
 
 @kernel(inline=True)

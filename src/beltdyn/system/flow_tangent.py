@@ -362,11 +362,10 @@ def _add_inertia_at_arcs(
                 for axis in range(2):
                     tangent[vectors[k] + axis, vectors[b] + axis] += mass[vectors[k], vectors[a]] * part
         for axis in range(2):
-            by_flow, by_end = factors.by_acceleration * flow.rate[a, axis], 0.0
+            by_flow = factors.by_acceleration * flow.rate[a, axis]
+            by_end = factors.by_acceleration * flow.grown[a, axis] + factors.by_velocity * flow.moved_by_end[a, axis]
             for b in range(len(vectors)):
-                turn = 2.0 * factors.by_velocity * velocity[vectors[b] + axis]
-                by_flow += derivative[a, b] * turn
-                by_end += growth[a, b] * (turn + factors.by_acceleration * work.coordinates[0, vectors[b] + axis])
+                by_flow += 2.0 * factors.by_velocity * derivative[a, b] * velocity[vectors[b] + axis]
             for k in range(len(vectors)):
                 flow.by_speed[vectors[k] + axis] += mass[vectors[k], vectors[a]] * by_flow
                 flow.by_end[vectors[k] + axis] += mass[vectors[k], vectors[a]] * by_end

@@ -217,6 +217,9 @@ def flow_record(frame: Any, vectors: int, coordinates: int) -> np.dtype[np.void]
     more = {
         "still": pair,  # vectors of dv/dt at places of the mesh
         "moved": pair,  # of the acceleration of material points
+        "grown": pair,  # derivative of velocity by the rate of the shift at the second node, G e
+        "still_by_end": pair,  # of dv/dt
+        "moved_by_end": pair,  # of the acceleration
         "by_end": f"{coordinates}f8",  # derivative of the residual with respect to the shift at the second node
         "powers": f"({vectors},{vectors})f8",  # A A
     }

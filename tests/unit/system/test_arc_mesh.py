@@ -6,14 +6,23 @@ import pytest
 from beltdyn.arrays import FloatArray
 from beltdyn.model import prepare
 from beltdyn.state.newton import steady_work
+from beltdyn.state.settling import with_passage
 from beltdyn.state.staying import Standing, bring_to_stand
 from beltdyn.system.arc_mesh import arc_count, base_coordinates, fitted, shifts_of, zones_of
-from beltdyn.system.arrays import Carrying, Motion, RingMatrix, System
+from beltdyn.system.arrays import NO_TANGENT, Carrying, Motion, RingMatrix, System, TangentFactors
 from beltdyn.system.build import flowing_system, staying_system
 from beltdyn.system.build_machines import carrying_arrays, with_resistance
 from beltdyn.system.constant_drive import constant_drive, with_speeds_unknown
 from beltdyn.system.frame import FlowingByArcs, StayingByArcs
-from beltdyn.system.steady_assembly import Anchor, anchor_at, assemble_steady
+from beltdyn.system.state import State
+from beltdyn.system.steady_assembly import (
+    Anchor,
+    anchor_at,
+    assemble,
+    assemble_steady,
+    new_equations,
+    no_multipliers,
+)
 from tests.unit.model.test_carrying import conveyor
 
 SPEED = 1.0
@@ -119,6 +128,35 @@ def test_flows_are_coordinates_of_a_system_over_time(standing: Standing) -> None
     assert isinstance(system.frame, FlowingByArcs)
     assert system.bodies.size == standing.system.bodies.size + 3
     assert system.bodies.unknown.max() == np.asarray(system.bodies.unknown)[system.frame.place - system.first_body]
+
+
+@pytest.mark.parametrize(
+    ("kind", "factors"),
+    [("velocity", TangentFactors(by_velocity=1.0)), ("acceleration", TangentFactors(by_acceleration=1.0))],
+)
+def test_goods_move_with_flows_that_differ(standing: Standing, kind: str, factors: TangentFactors) -> None:
+    """Columns of flow and shifts are the derivatives of the residual: goods have the acceleration of the material."""
+    system = flowing_system(standing.system, anchor_at(standing.state, True).direction)
+    state = with_passage(standing.system, standing.state, SPEED)
+    assert isinstance(system.frame, FlowingByArcs)
+    assert isinstance(system.carrying, Carrying)
+    assert system.carrying.goods.size
+    equations, no_joint = new_equations(system), no_multipliers(system)
+    assemble(system, state.at(0.0), no_joint, factors, equations)
+    unknowns = np.asarray(system.bodies.unknown)[system.frame.place - system.first_body + np.arange(-2, 1)]
+    arcs = system.frame.arcs
+    between = arcs.before != arcs.after  # on spans: friction on arcs is no straight line
+    columns = equations.matrix.column[:, :, unknowns].copy()
+    for number, place in enumerate(system.frame.place + np.arange(-2, 1)):
+        sides = []
+        for sense in (1.0, -1.0):
+            moved = State(state.position.copy(), state.velocity.copy(), state.acceleration.copy())
+            getattr(moved, kind)[place] += sense * 1e-3
+            assemble(system, moved.at(0.0), no_joint, NO_TANGENT, equations)
+            sides.append(equations.matrix.node_side.copy())
+        found = (sides[0] - sides[1]) / 2e-3
+        assert np.abs(found[between, 0]).max() > 0.1
+        np.testing.assert_allclose(columns[between, :4, number], found[between, :4], rtol=1e-4, atol=1e-4)
 
 
 def test_a_mesh_without_a_node_on_the_arc_of_the_driver_holds_the_belt_there_too() -> None:
