@@ -218,10 +218,10 @@ def _pieces(path: Path, names: Sequence[str]) -> tuple[list[float], tuple[tuple[
         places.append(max(reached, 0.0))
         reached += float(lengths[span])
         places.append(reached)
-        arc = (int(span) + 1) % path.spans
-        if arc < path.count:
-            arcs.append((names[arc], reached, reached + float(turned[arc])))
-            reached += float(turned[arc])
+        pulley = int(path.span_pulleys[span, 1])
+        if pulley >= 0:
+            arcs.append((names[pulley], reached, reached + float(turned[pulley])))
+            reached += float(turned[pulley])
     return [*places, path.length] if closed else places, tuple(arcs)
 
 

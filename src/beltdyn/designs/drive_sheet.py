@@ -501,7 +501,8 @@ class _DriveSheet:
         positions = self._rest.tensioner_positions.copy()
         positions[number] = position
         path, pulley = self._steady.balance.path_at(positions), self._prepared.carriers[number].pulley
-        return path[pulley - 1], path[pulley]
+        own = self._prepared.path
+        return path[own.reaching[pulley]], path[own.leaving[pulley]]
 
     def add_belts(self) -> None:
         """Belts of standard length beside the one that the drive has."""

@@ -241,16 +241,14 @@ class _Row:
     @property
     def _entry(self) -> int:
         """The span where a web enters; of a closed belt that behind the driver."""
-        return len(self.drive.spans) - 1 if self.drive.ends else self.drive.reference
+        return -1 if self.drive.ends else int(self.drive.path.leaving[self.drive.reference])
 
     @cached_property
     def span_ends(self) -> tuple[FloatArray, FloatArray]:
         """Tensions at start and end of each span in running direction, shape (spans,), N."""
         starts, ends = self.at["span_tension"].values.copy(), self.at["span_tension"].values.copy()
-        pulleys = len(self.before)
-        starts[:pulleys] = self.after
-        reached = np.arange(pulleys) - 1
-        ends[reached] = self.before
+        path = self.drive.path
+        starts[path.leaving[path.on]], ends[path.reaching[path.on]] = self.after[path.on], self.before[path.on]
         return (starts, ends) if self.sense > 0.0 else (ends, starts)
 
     def _of_starts(self) -> Iterator[tuple[str, tuple[Variable, Any]]]:

@@ -109,10 +109,9 @@ def _slopes(path: Path) -> FloatArray:
 
     Shape (spans, 2, 3 pulleys): at the pulley that a span leaves, and at that which it reaches.
     """
-    spans, pulleys = path.spans, path.count
-    found = np.zeros((spans, 2, pulleys, 3))
-    for span in range(spans):
-        first, last = span, (span + 1) % pulleys
+    spans = path.spans
+    found = np.zeros((spans, 2, path.count, 3))
+    for span, (first, last) in enumerate(path.span_pulleys.tolist()):
         length, along = path.span_lengths[span], path.span_directions[span]
         for number, point, sense in ((last, 1, 1.0), (first, 0, -1.0)):
             x, y = path.span_points[span, point] - path.centers[number]

@@ -23,7 +23,7 @@ from beltdyn.model.completion import Completed, complete
 from beltdyn.model.contact import Contact
 from beltdyn.model.end import AnyEnd, Carriage, End, PathEnd, check_carriage, ends_on_path
 from beltdyn.model.layout import Given, Layout, check_teeth, lay_out
-from beltdyn.model.nip import Nip, rim_ratios
+from beltdyn.model.nip import Nip, on_slides, rim_ratios
 from beltdyn.model.parameter_study import DutyPoint, check_duty
 from beltdyn.model.path import Path
 from beltdyn.model.pulley import Pulley, friction_on
@@ -402,6 +402,13 @@ class Drive(Part):
     def path_ends(self) -> tuple[PathEnd, ...]:
         """The ends of an open belt as its path sees them."""
         return ends_on_path(self.ends, self.gravity)
+
+    def with_slides(self) -> "Drive":
+        """The drive with the rollers of nips that forces press on slides: they move over time and in vibrations."""
+        if all(nip.force is None for nip in self.nips):
+            return self
+        nips, slides = on_slides(self.nips, self.pulleys)
+        return self.replace(nip=nips, tensioner=(*self.tensioners, *slides))
 
     @property
     def spans(self) -> tuple[tuple[str, str], ...]:

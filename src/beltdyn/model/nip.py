@@ -112,26 +112,16 @@ def refuse_nips(nips: Sequence[Nip], what: str) -> None:
         )
 
 
-def refuse_web_nips(nips: Sequence[Nip], what: str) -> None:
-    """Make sure that a web line with nips is only asked for rest and steady running."""
-    if nips:
-        raise ModelError(
-            f"{what} of a web line with nips cannot be computed: its mesh stays by the arcs of rollers, of which "
-            f'"{nips[0].roller}" in a nip has none. Use `beltdyn steady-state` or `beltdyn operating-map`, or remove '
-            "its [[nip]]."
-        )
-
-
 def on_slides(nips: Sequence[Nip], pulleys: Sequence[Pulley]) -> tuple[tuple[Nip, ...], list[SlidingTensioner]]:
-    """Nips without forces, and slides that press their rollers with these: in a run over time they move."""
+    """Nips without forces, and slides that press their rollers with these: over time and in vibrations they move."""
     free, slides = list[Nip](), list[SlidingTensioner]()
     for number, (nip, (one, other)) in enumerate(zip(nips, numbered(nips, pulleys), strict=True), 1):
         if nip.force is not None:
             if pulleys[one].mass == 0.0:
                 raise ModelError(
-                    f"nip[{number}].force = {nip.force:.4g} N moves the roller in a run over time, but it has no mass. "
-                    f'Give mass for the pulley "{nip.roller}", or gap, which `beltdyn.derived.nips` has of steady '
-                    "running."
+                    f"nip[{number}].force = {nip.force:.4g} N moves the roller over time and in vibrations, but it has "
+                    f'no mass. Give mass for the pulley "{nip.roller}", or gap, which `beltdyn.derived.nips` has of '
+                    "steady running."
                 )
             way = np.subtract(pulleys[other].center, pulleys[one].center).tolist()
             slides.append(SlidingTensioner(kind="sliding", pulley=nip.roller, direction=way, preload=nip.force))

@@ -20,11 +20,11 @@ _EQUAL = 1e-6  # difference of spans, relative, up to which they count as equall
 class Path:
     """A path of straight spans and circular arcs, closed and counter-clockwise, or open between two ends.
 
-    Span i leaves pulley i and reaches pulley i + 1; the last span reaches pulley 0. Arc lengths of a closed path start
-    with zero where the belt leaves pulley 0, and follow span 0, the arc of pulley 1, span 1, and so on to the arc of
-    pulley 0. An open path has one span more than pulleys: span n - 1 leaves the last pulley for the second end, and
-    span n comes from the first end. Its arc lengths start there. A pulley with the belt around its outside has a
-    positive radius; a negative radius means that the pulley turns clockwise.
+    Of the pulleys on the path, span i leaves number i and reaches number i + 1; the last span reaches the first. Arc
+    lengths of a closed path start with zero where the belt leaves the first pulley, and follow span 0, the arc of the
+    second pulley, span 1, and so on to the arc of the first. An open path has a span more: the last but one leaves the
+    last pulley for the second end, and the last comes from the first end. Its arc lengths start there. A pulley with
+    the belt around its outside has a positive radius; a negative radius means that the pulley turns clockwise.
 
     Parameters
     ----------
@@ -36,7 +36,7 @@ class Path:
         Where an open path begins and where it ends; none for a closed path.
     nips : tuple of (int, int)
         Rollers beside the path, each with the pulley against which it presses the belt. Such a roller has neither wrap
-        nor a span of its own: that behind it has no length, at the end of the span before.
+        nor spans of its own.
 
     Raises
     ------
@@ -57,8 +57,7 @@ class Path:
     nips: tuple[tuple[int, int], ...] = ()
 
     def __post_init__(self) -> None:
-        on = _on_path(len(self.radii), self.beside)
-        centers, radii = _circles(self.centers[on], self.radii[on], self.ends)
+        centers, radii = _circles(self.centers[self.on], self.radii[self.on], self.ends)
         distance = np.linalg.norm(_next(centers, -2) - centers, axis=1)
         apart = distance <= np.abs(_next(radii, -1) - radii)
         if np.any(_of_belt(apart, self.ends, axis=0)):
@@ -73,6 +72,11 @@ class Path:
     def beside(self) -> tuple[int, ...]:
         """Numbers of the rollers beside the path."""
         return tuple(roller for roller, _ in self.nips)
+
+    @cached_property
+    def on(self) -> IntArray:
+        """Numbers of the pulleys on the path."""
+        return _on_path(self.count, self.beside)
 
     @property
     def nips_by_roller(self) -> list[tuple[int, int]]:
@@ -102,19 +106,35 @@ class Path:
         """Angle on its pulley from where the belt reaches it to the middle of each nip, rad, shape (nips,)."""
         rollers, pulleys = np.array(self.nips, dtype=np.int64).reshape(-1, 2).T
         way = self.centers[rollers] - self.centers[pulleys]
-        enters = np.roll(self.span_points[:, 1], 1, axis=0)[: self.count][pulleys] - self.centers[pulleys]
+        enters = self.span_points[self.reaching[pulleys], 1] - self.centers[pulleys]
         turned = np.arctan2(_cross(enters, way), np.sum(enters * way, axis=1)) * np.sign(self.radii[pulleys])
         return np.asarray(np.where(turned > -_ROUNDING, np.maximum(turned, 0.0), turned + 2 * np.pi))
 
     @property
     def shape(self) -> tuple[FloatArray, FloatArray | None, tuple[int, ...]]:
-        """What `span_directions` and `span_points` take beside centers."""
+        """What `span_directions` and `span_points` take beside centers, and `wrap_angles` beside directions."""
         return self.radii, self.ends, self.beside
 
     @property
     def spans(self) -> int:
-        """Number of spans: n, or n + 1 of an open path."""
-        return self.count + (self.ends is not None)
+        """Number of spans: as many as pulleys on the path, or one more of an open path."""
+        return len(self.on) + (self.ends is not None)
+
+    @cached_property
+    def reaching(self) -> IntArray:
+        """Number of the span that reaches each pulley, shape (n,); of a roller beside the path, that before it."""
+        return spans_at(*self.shape)[0]
+
+    @cached_property
+    def leaving(self) -> IntArray:
+        """Number of the span that leaves each pulley, shape (n,); of a roller beside the path, that before it."""
+        return spans_at(*self.shape)[1]
+
+    @cached_property
+    def span_pulleys(self) -> IntArray:
+        """Numbers of the pulleys that each span leaves and reaches, shape (spans, 2), -1 for ends of the path."""
+        leaves = self.on if self.ends is None else np.append(self.on, -1)
+        return np.stack([leaves, np.roll(leaves, -1)], axis=1)
 
     @cached_property
     def span_directions(self) -> FloatArray:
@@ -134,7 +154,7 @@ class Path:
     @cached_property
     def wrap_angles(self) -> FloatArray:
         """Wrap angles, shape (n,), rad, from 0 to 2 pi."""
-        return wrap_angles(self.span_directions, self.radii)
+        return wrap_angles(self.span_directions, *self.shape)
 
     @property
     def total_turning(self) -> float:
@@ -166,12 +186,12 @@ class Path:
         -------
         ndarray, shape (2,)
         """
-        return np.asarray(self.span_directions[pulley - 1] - self.span_directions[pulley])
+        return np.asarray(self.span_directions[self.reaching[pulley]] - self.span_directions[self.leaving[pulley]])
 
     @cached_property
     def order(self) -> IntArray:
         """Numbers of the spans in the order of arc lengths, shape (spans,)."""
-        first = 0 if self.ends is None else self.count
+        first = 0 if self.ends is None else self.spans - 1
         return (np.arange(self.spans) + first) % self.spans
 
     @cached_property
@@ -181,7 +201,7 @@ class Path:
         A span is followed by the arc behind it, which has no length behind the last span of an open path.
         """
         arcs = np.zeros(self.spans)
-        arcs[: self.count] = self.wrap_angles * np.abs(self.radii)
+        arcs[: len(self.on)] = (self.wrap_angles * np.abs(self.radii))[self.on]
         pieces = np.stack([self.span_lengths, _next(arcs, -1)], axis=1)[self.order].ravel()
         return np.concatenate([[0.0], np.cumsum(pieces)])
 
@@ -189,13 +209,17 @@ class Path:
         """Arc length at the start of a span, m."""
         return float(self._starts[2 * int(np.flatnonzero(self.order == span)[0])])
 
+    def arc_start(self, pulley: int) -> float:
+        """Arc length where the belt reaches a pulley, m."""
+        span = int(self.reaching[pulley])
+        return self.span_start(span) + float(self.span_lengths[span])
+
     def clear_way(self, number: int) -> tuple[float, float] | None:
         """The direction from a pulley in which no span runs, where its name has room; None where the path is straight.
 
         It is that beyond its arc, and in a loop within a pulley on the back.
         """
-        ways = self.span_directions
-        bend = ways[number - 1] - ways[number]
+        bend = self.gradient(number)
         size = float(np.linalg.norm(bend))
         if not size > _STRAIGHT:
             return None
@@ -261,7 +285,7 @@ class Path:
         span, on_arc = self.order[piece // 2], piece % 2 == 1
         start = np.where(on_arc[:, None], self.span_points[span, 1], self.span_points[span, 0])
         forward = self.span_directions[span]
-        radius = np.append(self.radii, 1.0)[(span + 1) % self.spans]
+        radius = np.append(self.radii, 1.0)[self.span_pulleys[span, 1]]
         angle = np.where(on_arc, along / radius, 0.0)[:, None]
         cosine, sine = np.cos(angle), np.sin(angle)
         tangents = cosine * forward + sine * _left(forward)
@@ -276,12 +300,10 @@ def span_directions(
 ) -> FloatArray:
     """Unit vectors u along the spans of paths around the same pulleys, shape (..., spans, 2).
 
-    With the left normal n of u, a tangent point is c - r n, so that n . (c_j - c_i) = r_j - r_i; radii are signed. The
-    span behind a roller beside the path is the end of that before.
+    With the left normal n of u, a tangent point is c - r n, so that n . (c_j - c_i) = r_j - r_i; radii are signed.
     """
     on = _on_path(len(radii), beside)
-    found = _of_belt(_directions(*_circles(centers[..., on, :], radii[on], ends)), ends, axis=-2)
-    return found[..., _span_before(len(radii), beside, ends), :] if beside else found
+    return _of_belt(_directions(*_circles(centers[..., on, :], radii[on], ends)), ends, axis=-2)
 
 
 def span_points(
@@ -293,35 +315,35 @@ def span_points(
     normals = _left(_directions(centers, circles))
     starts = centers - circles[:, None] * normals
     stops = _next(centers, -2) - _next(circles, -1)[:, None] * normals
-    found = _of_belt(np.stack([starts, stops], axis=-2), ends, axis=-3)
-    if not beside:
-        return found
-    found = found[..., _span_before(len(radii), beside, ends), :, :]
-    found[..., list(beside), 0, :] = found[..., list(beside), 1, :]
-    return found
+    return _of_belt(np.stack([starts, stops], axis=-2), ends, axis=-3)
 
 
-def _on_path(count: int, beside: Sequence[int]) -> IntArray | slice:
-    """Numbers of the pulleys on the path."""
-    return np.setdiff1d(np.arange(count), beside) if beside else slice(None)
+def spans_at(
+    radii: FloatArray, ends: FloatArray | None = None, beside: Sequence[int] = ()
+) -> tuple[IntArray, IntArray]:
+    """Numbers of the spans that reach and leave each pulley, shape (n,); both are that before a roller beside the path.
+
+    The pulleys beside are on the arc of another, between two spans that are told apart there alone.
+    """
+    count, spans = len(radii), len(radii) - len(beside) + (ends is not None)
+    on = ~np.isin(np.arange(count), beside)
+    leaving = (np.cumsum(on) - 1) % spans
+    return np.where(on, (leaving - 1) % spans, leaving), leaving
 
 
-def _span_before(count: int, beside: Sequence[int], ends: FloatArray | None) -> IntArray:
-    """Among the spans of the pulleys on a path, that of each pulley, or for those beside it that before."""
-    others = count - len(beside)
-    own = np.cumsum(~np.isin(np.arange(count), beside)) - 1
-    if ends is None:
-        return np.asarray(own % others)
-    return np.append(np.where(own < 0, others, own), others)
-
-
-def wrap_angles(directions: FloatArray, radii: FloatArray) -> FloatArray:
+def wrap_angles(
+    directions: FloatArray, radii: FloatArray, ends: FloatArray | None = None, beside: Sequence[int] = ()
+) -> FloatArray:
     """Wrap angles, shape (..., n), rad, from `span_directions`."""
-    before = np.concatenate([directions[..., -1:, :], directions[..., :-1, :]], axis=-2)[..., : len(radii), :]
-    after = directions[..., : len(radii), :]
+    before, after = (directions[..., spans, :] for spans in spans_at(radii, ends, beside))
     sine = before[..., 0] * after[..., 1] - before[..., 1] * after[..., 0]
     turning = np.arctan2(sine, np.sum(before * after, axis=-1)) * np.sign(radii)
     return np.asarray(np.where(turning > -_ROUNDING, np.maximum(turning, 0.0), turning + 2 * np.pi))
+
+
+def _on_path(count: int, beside: Sequence[int]) -> IntArray:
+    """Numbers of the pulleys on the path."""
+    return np.setdiff1d(np.arange(count), beside)
 
 
 def _circles(centers: FloatArray, radii: FloatArray, ends: FloatArray | None) -> tuple[FloatArray, FloatArray]:
@@ -404,7 +426,7 @@ def obstacle(path: Path, around: Surroundings) -> Obstacle | None:
     nearest, facing = _from_spans(path, around, path.centers)
     hit = np.linalg.norm(nearest, axis=-1) < _extents(path, around, -nearest) + facing
     for span, pulley in np.argwhere(hit).tolist():
-        if pulley not in (span, (span + 1) % path.spans):
+        if pulley not in path.span_pulleys[span]:
             return Obstacle("span", span, pulley)
     return None
 
@@ -440,7 +462,7 @@ def _extents(path: Path, around: Surroundings, directions: FloatArray) -> FloatA
 
 def _covers(path: Path, directions: FloatArray) -> BoolArray:
     """Tell whether belt lies on pulleys in directions from their centers, shape (..., n, 2)."""
-    enters = np.roll(path.span_points[:, 1], 1, axis=0)[: path.count] - path.centers
+    enters = path.span_points[path.reaching, 1] - path.centers
     angle = np.sign(path.radii) * np.arctan2(_cross(enters, directions), np.sum(enters * directions, axis=-1))
     return np.asarray(angle % (2.0 * np.pi) <= path.wrap_angles)
 

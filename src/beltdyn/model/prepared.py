@@ -203,7 +203,7 @@ class Prepared:
         """Estimate of the belt at rest, without weight and bending; see `install`."""
         estimate, positions = self._balance
         path = estimate.path
-        turned = path.span_directions[: path.count] - np.roll(path.span_directions, 1, axis=0)[: path.count]
+        turned = path.span_directions[path.leaving] - path.span_directions[path.reaching]
         tensions = np.full(path.spans, estimate.tension)
         return self.installed(tensions, estimate.penetrations.copy(), estimate.tension * turned, positions.copy())
 

@@ -88,13 +88,10 @@ class Laid(NamedTuple):
     def arcs(self) -> list[Arc]:
         """Arcs of the belt on pulleys, in order along the belt."""
         found = list[Arc]()
-        for p, (radius, wrap) in enumerate(zip(self.path.radii, self.path.wrap_angles, strict=True)):
-            if p in self.path.beside:
-                continue
-            size = abs(float(radius))
-            arrives = self.path.span_start((p - 1) % self.path.spans) + float(self.path.span_lengths[p - 1])
-            first = (arrives - self.start) % self.path.length
-            start, end = first / self.stretch, (first + size * float(wrap)) / self.stretch
+        for p in self.path.on.tolist():
+            size, wrap = abs(float(self.path.radii[p])), float(self.path.wrap_angles[p])
+            first = (self.path.arc_start(p) - self.start) % self.path.length
+            start, end = first / self.stretch, (first + size * wrap) / self.stretch
             found.append(Arc(start, end, size, nips=tuple(self._nips(p, start))))
         return sorted(found)
 

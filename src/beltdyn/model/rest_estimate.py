@@ -166,7 +166,7 @@ class _Belt:
         """In the middle of the spans, N; the mean of a closed belt, and that at a pulled end, is the tension."""
         lifted = -(self.spans.span_points.mean(axis=1) @ self._weight)
         before, behind = self._goods
-        first = self.prepared.reference
+        first = int(self.spans.leaving[self.prepared.reference])
         passed = np.roll(np.cumsum(np.roll(before + behind, -first)), first)
         lifted = lifted + passed - behind
         pulled = [number for number, end in enumerate(self.prepared.path_ends) if end.pull is not None]
@@ -181,14 +181,14 @@ class _Belt:
         Supports carry the weight across a span.
         """
         path, pulls = self.spans, self.span_tensions[:, None] * self.spans.span_directions
-        before, along = np.arange(path.count) - 1, path.span_directions
+        before, after, along = path.reaching, path.leaving, path.span_directions
         free = np.array([parts.sum() for parts in self._hanging(path)])[:, None]
         carried = 0.5 * (path.span_lengths[:, None] - free) * (along @ self._weight)[:, None] * along
         carried += 0.5 * free * self._weight
         of_goods = [-part[:, None] * along for part in self._goods]
         arcs = (path.wrap_angles * np.abs(path.radii))[:, None] * self._weight
-        own = (carried + of_goods[0])[: path.count] + (carried + of_goods[1])[before]
-        return np.asarray(pulls[: path.count] - pulls[before] + arcs + own)
+        own = (carried + of_goods[0])[after] + (carried + of_goods[1])[before]
+        return np.asarray(pulls[after] - pulls[before] + arcs + own)
 
     @cached_property
     def _goods(self) -> tuple[FloatArray, FloatArray]:

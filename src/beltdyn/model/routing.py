@@ -101,13 +101,9 @@ def _lay(pulleys: Sequence[Pulley], belt: Belt, ends: Sequence[PathEnd]) -> Path
 def span_names(
     pulleys: Sequence[Pulley], ends: Sequence[PathEnd] | Sequence[End], nips: Sequence[Nip] = ()
 ) -> list[tuple[str, str]]:
-    """Names of the pulleys or ends at both ends of each span, in the order of `Path`; of nips those of both rollers."""
-    if nips:
-        pressed = {nip.roller: nip.pulley for nip in nips}
-        alone = iter(span_names([one for one in pulleys if one.name not in pressed], ends))
-        own = [(one.name, pressed[one.name]) if one.name in pressed else next(alone) for one in pulleys]
-        return [*own, *alone]
-    names = [pulley.name for pulley in pulleys]
+    """Names of the pulleys or ends at both ends of each span, in the order of `Path`."""
+    beside = {nip.roller for nip in nips}
+    names = [pulley.name for pulley in pulleys if pulley.name not in beside]
     if not ends:
         return list(zip(names, [*names[1:], names[0]], strict=True))
     return [*pairwise([*names, ends[1].name]), (ends[0].name, names[0])]

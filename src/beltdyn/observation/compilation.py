@@ -85,7 +85,7 @@ def _compile_recording() -> None:
     touch, work = Touch(time, places, places, touched, states), np.empty((0, 0, ARC_PARTS + 1))
     done = WorkSoFar(np.empty((2, 0, 0)), states)
     add_friction_work(touch, np.empty((0, 0, 3)), time, time, shown, done, work)
-    fill_mid_spans(np.empty((0, 0, 2, 2)), places, touched, 0, np.empty(0, dtype=np.int64), states)
+    fill_mid_spans(np.empty((0, 0, 2, 2)), places, np.empty((0, 0), dtype=np.int64), False, states)
     compile_filter()
 
 

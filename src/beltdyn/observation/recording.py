@@ -102,7 +102,8 @@ def _bodies(prepared: Prepared, system: System) -> tuple[str, ...]:
         if load.state_lag is not None
     ]
     winder = [] if prepared.drive.winder is None else [prepared.drive.winder.name]
-    flow = [f"belt at {name}" for name in names + winder] if isinstance(system.frame, FlowingByArcs) else []
+    arcs = [f"belt at {names[pulley]}" for pulley in prepared.path.on]
+    flow = [*arcs, *(f"belt at {name}" for name in winder)] if isinstance(system.frame, FlowingByArcs) else []
     flow += ["belt"] if isinstance(system.frame, OverTime) else []
     tensioners = (f"{names[pulley]} tensioner" for pulley in system.tensioners.pulley)
     return (*names, *hubs, *lags, *flow, *tensioners, *_carriages(prepared))

@@ -1,6 +1,5 @@
 """Tension and curvature of material points of the belt: over a turn in steady running, and over time."""
 
-from collections.abc import Sequence
 from math import sqrt
 from typing import TYPE_CHECKING, NamedTuple
 
@@ -153,46 +152,36 @@ def mid_span_displacements(
     """
     lines = span_points(centers, *prepared.path.shape)
     result = np.full(lines.shape[:2], np.nan)
-    following = _following(lines.shape[1], prepared.path.beside)
-    fill_mid_spans(lines, np.ascontiguousarray(places), touched, centers.shape[1], following, result)
+    left = np.where(touched >= 0, prepared.path.leaving[touched], -1)
+    fill_mid_spans(lines, np.ascontiguousarray(places), left, prepared.path.ends is not None, result)
     return result
 
 
-def _following(spans: int, beside: Sequence[int]) -> IntArray:
-    """Number of the pulley to which each span leads, shape (spans,); that of its second end is one past the pulleys."""
-    found = np.arange(1, spans + 1) % spans
-    for _ in beside:
-        found = np.where(np.isin(found, beside), (found + 1) % spans, found)
-    return found
-
-
 @kernel
-def fill_mid_spans(
-    lines: FloatArray, places: FloatArray, touched: IntArray, pulleys: int, following: IntArray, result: FloatArray
-) -> None:
+def fill_mid_spans(lines: FloatArray, places: FloatArray, left: IntArray, is_open: bool, result: FloatArray) -> None:
     """Find where the free belt crosses the middles of spans.
 
-    `lines`: ends of the straight spans, m, shape (k, spans, 2, 2); `places`, `touched`: as for
-    `mid_span_displacements`; `pulleys`: number of pulleys; an open belt has one span more; `following`: pulley to which
-    each span leads, shape (spans,); `result`: overwritten where the belt does cross, m, shape (k, spans).
+    `lines`: ends of the straight spans, m, shape (k, spans, 2, 2); `places`: as for `mid_span_displacements`; `left`:
+    number of the span that leaves the pulley that each point touches, -1 where it is free, shape (k, points);
+    `is_open`: whether the belt has two ends, the last span being that from the first of them; `result`: overwritten
+    where the belt does cross, m, shape (k, spans).
     """
-    spans, count = lines.shape[1], touched.shape[1]
-    is_open = spans > pulleys
-    for k in range(touched.shape[0]):
+    spans, count = lines.shape[1], left.shape[1]
+    for k in range(left.shape[0]):
         first = 0
-        while first < count and touched[k, first] < 0:
+        while first < count and left[k, first] < 0:
             first += 1
         if is_open:
-            before, start, last = pulleys, -1, count
+            before, start, last = spans - 1, -1, count
         elif first < count:
-            before, start, last = touched[k, first], first, first + count
+            before, start, last = left[k, first], first, first + count
         else:
             continue
         for walk in range(start + 1, last + 1):
-            after = pulleys if is_open and walk == count else touched[k, walk % count]
+            after = spans - 1 if is_open and walk == count else left[k, walk % count]
             if after < 0:
                 continue
-            if after == following[before]:
+            if after == (before + 1) % spans:
                 for one in range(start + 1, walk - 1):
                     x, y = _from_middle(lines[k, before], places[k, one % count])
                     next_x, next_y = _from_middle(lines[k, before], places[k, (one + 1) % count])

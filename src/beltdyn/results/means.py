@@ -33,7 +33,7 @@ def rate(
     sizes = np.abs(powers)
     loaded = sizes > _LOADED * np.nanmax(sizes, initial=0.0)
     speed = float(abs(speeds[prepared.reference] * prepared.radii[prepared.reference]))
-    wraps = wrap_angles(span_directions(centers, *prepared.path.shape), prepared.path.radii)
+    wraps = wrap_angles(span_directions(centers, *prepared.path.shape), *prepared.path.shape)
     found = belt.on(2.0 * prepared.radii, wraps, speed, loaded)
     by_teeth = prepared.belt.teeth is not None
     inside = np.array([one.side == "inside" for one in prepared.pulleys])

@@ -24,9 +24,9 @@ if TYPE_CHECKING:
 
 def arc_ends(prepared: Prepared, centers: FloatArray) -> tuple[FloatArray, FloatArray]:
     """Angles from the x axis at which the belt reaches pulleys, and wrap angles; shape (..., pulleys), rad."""
-    shape, radii = prepared.path.shape, prepared.path.radii
-    reached = np.roll(span_points(centers, *shape)[..., 1, :], 1, axis=-2)[..., : len(radii), :] - centers
-    return np.arctan2(reached[..., 1], reached[..., 0]), wrap_angles(span_directions(centers, *shape), radii)
+    shape = prepared.path.shape
+    reached = span_points(centers, *shape)[..., prepared.path.reaching, 1, :] - centers
+    return np.arctan2(reached[..., 1], reached[..., 0]), wrap_angles(span_directions(centers, *shape), *shape)
 
 
 def angle_from_inlet(place: FloatArray, inlet: ArrayLike, wrap: ArrayLike, turning: ArrayLike) -> FloatArray:
@@ -59,8 +59,7 @@ def relative_loss(values: FloatArray, rim: FloatArray, reference: int) -> FloatA
 
 def across(spans: FloatArray, prepared: Prepared) -> tuple[FloatArray, FloatArray]:
     """Values of the spans before and after every pulley, in the direction of ascending belt coordinate."""
-    pulleys = len(prepared.pulleys)
-    return np.roll(spans, 1, axis=-1)[..., :pulleys], spans[..., :pulleys]
+    return spans[..., prepared.path.reaching], spans[..., prepared.path.leaving]
 
 
 Pair = tuple[FloatArray, FloatArray]
@@ -75,11 +74,11 @@ def pressing_at_arcs(value_of: Callable[[str], FloatArray], prepared: Prepared) 
     """
     if not prepared.carries:
         return None
-    path, pulleys = prepared.path, len(prepared.pulleys)
+    path = prepared.path
     torque, hub_force, centers = (value_of(name) for name in ("pulley_torque", "hub_force", "pulley_center"))
     spans = span_directions(centers, *path.shape)
-    reached, left = np.roll(spans, 1, axis=-2)[..., :pulleys, :], spans[..., :pulleys, :]
-    size = np.abs(path.radii) * wrap_angles(spans, path.radii)
+    reached, left = spans[..., path.reaching, :], spans[..., path.leaving, :]
+    size = np.abs(path.radii) * wrap_angles(spans, *path.shape)
     pull = hub_force - prepared.belt.mass_per_length * size[..., None] * np.array(prepared.gravity)
     turn = 1.0 - np.sum(reached * left, axis=-1)
     both = np.divide(np.sum(pull * (left - reached), axis=-1), turn, out=np.full_like(turn, np.nan), where=turn > 0.0)

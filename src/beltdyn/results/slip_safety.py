@@ -185,7 +185,7 @@ def slip_safety_at_arcs(pressing: tuple[FloatArray, FloatArray], centers: FloatA
     shape (..., pulleys, 2), m. NaN as in `slip_safety_of_states`.
     """
     before, after = pressing
-    wrap = wrap_angles(span_directions(centers, *prepared.path.shape), prepared.path.radii)
+    wrap = wrap_angles(span_directions(centers, *prepared.path.shape), *prepared.path.shape)
     held, apart = (before + after) * np.tanh(0.5 * prepared.frictions * wrap), np.abs(before - after)
     loaded = (apart > UNLOADED * np.abs(before + after)) & prepared.gripping
     return np.divide(np.maximum(held, 0.0), apart, out=np.full_like(held, np.nan), where=loaded)
@@ -203,7 +203,7 @@ def friction_used(
     Parameters and shape of the result are those of `slip_safety_of_states`, and `pressing` is that of
     `slip_safety_at_arcs`; 1 or more where the whole arc slides.
     """
-    wrap = wrap_angles(span_directions(centers, *prepared.path.shape), prepared.path.radii)
+    wrap = wrap_angles(span_directions(centers, *prepared.path.shape), *prepared.path.shape)
     lifted = prepared.belt.mass_per_length * belt_speed**2
     before, after = across(tension - lifted, prepared) if pressing is None else pressing
     with np.errstate(invalid="ignore", divide="ignore"):

@@ -394,9 +394,11 @@ class TensionBalance:
         tension = self._tension(rows, factor, unknowns)
         missing = [self._belt_on(rows, tension, shape) if self._pulled is None else tension[:, self._pulled]]
         pressing = tension - self._lifted[rows]
+        path = self._prepared.path
         for number, one in enumerate(self._carriers):
             before, after = (
-                pressing[:, span, None] * shape.directions[:, span] for span in (one.pulley - 1, one.pulley)
+                pressing[:, span, None] * shape.directions[:, span]
+                for span in (path.reaching[one.pulley], path.leaving[one.pulley])
             )
             belt = np.sum((after - before) * shape.slopes[:, number], axis=1)
             place = self._places[rows, number] + unknowns[:, 1 + number]
@@ -442,7 +444,7 @@ class TensionBalance:
         shape = self._prepared.path.shape
         directions, points = span_directions(centers, *shape), span_points(centers, *shape)
         lengths = np.linalg.norm(points[:, :, 1] - points[:, :, 0], axis=-1)
-        return _Geometry(centers, directions, lengths, wrap_angles(directions, shape[0]), slopes)
+        return _Geometry(centers, directions, lengths, wrap_angles(directions, *shape), slopes)
 
 
 def _pulled_span(prepared: Prepared) -> int | None:

@@ -160,8 +160,7 @@ def _grip(at: "xr.Dataset", where: str, stands: BoolArray) -> Table:
 
 
 def _spans(at: "xr.Dataset", where: str) -> Table:
-    """Tensions at both ends of each span, strain and draw; those of nips have no length."""
-    at = at.isel(span=np.flatnonzero(at["span_length"].values > 0.0))
+    """Tensions at both ends of each span, strain and draw."""
     first, last = (at[name].values for name in ("tension_at_start", "tension_at_end"))
     tensions, count = aligned([*first, *last], 5), len(first)
     columns: list[Sequence[str]] = [

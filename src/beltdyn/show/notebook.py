@@ -89,12 +89,12 @@ def outline(path: Path, place: Callable[[float, float], tuple[float, float]], sc
     for span in path.order:
         x, y = place(*path.span_points[span, 1])
         steps.append(f"L {x:.2f} {y:.2f}")
-        arc = (span + 1) % path.spans
-        if arc == path.count:
+        pulley = path.span_pulleys[span, 1]
+        if pulley < 0:
             break
-        radius, large = scale * abs(path.radii[arc]), int(path.wrap_angles[arc] > math.pi)
-        x, y = place(*path.span_points[arc, 0])
-        steps.append(f"A {radius:.2f} {radius:.2f} 0 {large} {int(path.radii[arc] < 0)} {x:.2f} {y:.2f}")
+        radius, large = scale * abs(path.radii[pulley]), int(path.wrap_angles[pulley] > math.pi)
+        x, y = place(*path.span_points[path.leaving[pulley], 0])
+        steps.append(f"A {radius:.2f} {radius:.2f} 0 {large} {int(path.radii[pulley] < 0)} {x:.2f} {y:.2f}")
     return " ".join(steps)
 
 

@@ -138,5 +138,5 @@ def growing(motions: SmallMotions) -> ComplexArray:
     kept = list[complex]()
     for one in grows:
         if not any(abs(one - other) < 1e-3 * abs(one) for other in kept):
-            kept.append(complex(one))
+            kept.append(complex(one.real, one.imag if one.imag > _GROWS * abs(one) else 0.0))  # rounding
     return np.array(kept, complex)

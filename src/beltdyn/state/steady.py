@@ -73,8 +73,9 @@ def search_from(prepared: Prepared, start: Run, time: float) -> SteadySearch:
     found = start.dataset
     lengths = lengths_of(found, start.prepared)
     system, state = carried(prepared, start.prepared, lengths, found.nodal_coordinates.values[-1].ravel())
-    if system.tensioners.size:
-        state.position[-system.tensioners.size :] += found.tensioner_position.values[-1]
+    for number, one in enumerate(reversed(prepared.drive.moving_tensioners), 1):
+        if one.pulley in found.get("tensioner", ()):  # the roller of a nip that was held stands where its slide begins
+            state.position[-number] += float(found.tensioner_position.sel(tensioner=one.pulley)[-1])
     held = system.first_body + controllers(system)
     if held.size:
         state.position[held] = found.body_position.values[-1][held - system.first_body]

@@ -44,19 +44,20 @@ class Zone(NamedTuple):
     start: float
     """On the unstretched belt at rest, m."""
     end: float
-    pulley: int
+    arc: int
+    """Number among the arcs, in the order of their pulleys."""
 
 
 def zones_of(prepared: Prepared) -> list[Zone]:
     """The belt on every arc, with layers at its ends, in order along the belt."""
     laid, path, margin = prepared.laid, prepared.installation.path, _LAYERS * prepared.layer
     found = list[Zone]()
-    for p in range(path.count):
+    for arc, p in enumerate(path.on.tolist()):
         size = abs(float(path.radii[p])) * float(path.wrap_angles[p])
-        first = (path.span_start((p - 1) % path.spans) + float(path.span_lengths[p - 1]) - laid.start) % path.length
-        shortest = min(float(path.span_lengths[p - 1]), float(path.span_lengths[p])) / laid.stretch
+        first = (path.arc_start(p) - laid.start) % path.length
+        shortest = float(path.span_lengths[[path.reaching[p], path.leaving[p]]].min()) / laid.stretch
         beyond = min(margin, 0.2 * shortest)
-        found.append(Zone(first / laid.stretch - beyond, (first + size) / laid.stretch + beyond, p))
+        found.append(Zone(first / laid.stretch - beyond, (first + size) / laid.stretch + beyond, arc))
     return sorted(found)
 
 
@@ -80,16 +81,18 @@ def by_arcs(
     node = np.zeros(len(zones), dtype=np.int64)
     place, direction = np.zeros((len(zones), 2)), np.zeros((len(zones), 2))
     for zone in zones:
-        node[zone.pulley] = int(np.argmin(np.abs(starts - 0.5 * (zone.start + zone.end))))
-        along = prepared.laid.start + prepared.laid.stretch * starts[node[zone.pulley]]
-        place[zone.pulley] = prepared.laid.path.position(np.array([along]))[0]
-        direction[zone.pulley] = prepared.laid.path.tangent(np.array([along]))[0]
-    carrier = np.asarray(system.pulleys.carrier).copy()
-    for p in np.flatnonzero(carrier >= 0):
+        node[zone.arc] = int(np.argmin(np.abs(starts - 0.5 * (zone.start + zone.end))))
+        along = prepared.laid.start + prepared.laid.stretch * starts[node[zone.arc]]
+        place[zone.arc] = prepared.laid.path.position(np.array([along]))[0]
+        direction[zone.arc] = prepared.laid.path.tangent(np.array([along]))[0]
+    on = prepared.path.on
+    carrier = np.asarray(system.pulleys.carrier)[on]
+    for arc in np.flatnonzero(carrier >= 0):
         at_rest = np.zeros(system.first_body + system.bodies.size)
         position = at_rest.copy()
-        position[position.size - carrier.max() - 1 :] = prepared.installation.tensioner_positions
-        place[p] += np.array(pulley_center(system, int(p), at_rest)) - pulley_center(system, int(p), position)
+        position[position.size - len(system.tensioners) :] = prepared.installation.tensioner_positions
+        p = int(on[arc])
+        place[arc] += np.array(pulley_center(system, p, at_rest)) - pulley_center(system, p, position)
     growth = _growth(system, frame.derivative, lengths)
     arcs = ArcMesh(
         node=node,
@@ -132,7 +135,7 @@ def _shares(prepared: Prepared, zones: list[Zone], lengths: FloatArray) -> tuple
     nothing = Zone(0.0, 0.0, -1)
     for one, other in pairwise([nothing, *zones, Zone(length, length, -1)]):
         between = (starts >= one.start) & (starts < other.start)
-        before[between], after[between] = one.pulley, other.pulley
+        before[between], after[between] = one.arc, other.arc
         share[between] = np.clip((starts[between] - one.end) / (other.start - one.end), 0.0, 1.0)
     return before, after, share
 
@@ -142,10 +145,11 @@ def _holding(prepared: Prepared, zones: list[Zone], lengths: FloatArray) -> Floa
 
     On a mesh without a node inside that arc, the one next to it has it all.
     """
-    zone = next(one for one in zones if one.pulley == prepared.reference)
+    driver = prepared.reference
+    zone = next(one for one in zones if prepared.path.on[one.arc] == driver)
     laid, starts = prepared.laid, np.cumsum(lengths) - lengths
     tangents = laid.path.tangent(laid.start + laid.stretch * starts)
-    arc = abs(float(laid.path.radii[zone.pulley]) * float(laid.path.wrap_angles[zone.pulley])) / laid.stretch
+    arc = abs(float(laid.path.radii[driver]) * float(laid.path.wrap_angles[driver])) / laid.stretch
     beyond = 0.5 * (zone.end - zone.start - arc)
     inner = (starts > zone.start + beyond) & (starts < zone.end - beyond)
     inner[np.argmin(np.abs(starts - 0.5 * (zone.start + zone.end)))] = True

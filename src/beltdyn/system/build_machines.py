@@ -300,7 +300,7 @@ def _near(path: Path, stretch: Stretch) -> tuple[float, float]:
     Those beyond the middle of the next arc belong to another span, even if it runs along the stretch further away.
     """
     span, length = stretch.span, float(path.span_lengths[stretch.span])
-    half = np.append(0.5 * path.wrap_angles * np.abs(path.radii), np.zeros(path.spans - path.count))
+    half = np.append(0.5 * path.wrap_angles * np.abs(path.radii), 0.0)  # the last is that of an end
     margin = _BEYOND * length
-    before, after = float(half[span]), float(half[(span + 1) % path.spans])
+    before, after = half[path.span_pulleys[span]].tolist()
     return max(stretch.start - margin, -before), min(stretch.end + margin, length + after)

@@ -172,8 +172,11 @@ class Samples(NamedTuple):
     """Of the sampling points, m/s, shape (n c, 2)."""
     weight: FloatArray
     """Length of the free belt in each span."""
+    is_open: bool
+    leaving: IntArray
+    """Span that leaves each pulley."""
     touched: IntArray
-    """Pulley that each point counts to, -1 where it is free."""
+    """The same of the pulley that each point counts to, -1 where it is free."""
     nearest: IntArray
     """A point that touches each pulley, or is nearest to where the belt touches it, -1 without contact."""
     walk: np.record
@@ -183,8 +186,12 @@ class Samples(NamedTuple):
 
 
 def span_count(system: System) -> int:
-    """Number of spans: one for each pulley, and one more of an open belt."""
-    return system.pulleys.size + (not system.closed and not system.joint)
+    """Number of spans: one for each pulley on the path, and one more of an open belt."""
+    return int(np.count_nonzero(system.pulleys.beside == 0)) + _is_open(system)
+
+
+def _is_open(system: System) -> bool:
+    return not system.closed and not system.joint
 
 
 def new_observations(system: System, forces: BodyForces, shown: int) -> Observations:
@@ -221,6 +228,8 @@ def new_samples(system: System) -> Samples:
         speed=np.zeros(points),
         velocity=np.zeros((points, 2)),
         weight=np.zeros(span_count(system)),
+        is_open=_is_open(system),
+        leaving=np.cumsum(system.pulleys.beside == 0) - 1,
         touched=np.zeros(points, dtype=np.int64),
         nearest=np.zeros(system.pulleys.size, dtype=np.int64),
         walk=blank(WALK),

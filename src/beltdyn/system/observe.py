@@ -80,7 +80,7 @@ def fill_observations(
                 _observe_points(system, piece, number, pull, samples, result, k)
                 next_curve(samples.walk, piece.length)
                 _observe_contact(system, number, position[k], velocity[k], samples, result, k)
-        if samples.weight.size == system.pulleys.size and samples.walk.first.pulley >= 0:
+        if not samples.is_open and samples.walk.first.pulley >= 0:
             result.wrap_angle[k, samples.walk.first.pulley] += turned_at_the_end(samples.walk)
         _observe_spans(system, samples, result, k)
         _observe_bodies(system, position[k], result, k)
@@ -226,18 +226,16 @@ def _observe_spans(system: System, samples: Samples, result: Observations, k: in
     the nearest point counts to the pulley, and the points at its ends to the span. The last span of an open belt is
     the one before the first pulley; behind the last pulley its end counts as touched.
     """
-    touched, weight = samples.touched, samples.weight
-    spans, pulleys = weight.size, system.pulleys.size
-    is_open = spans > pulleys
+    touched, weight, is_open, spans = samples.touched, samples.weight, samples.is_open, samples.weight.size
     for row in range(touched.size):
         touched[row] = pulley = result.contact_pulley[k, row]
         if pulley >= 0:
-            samples.nearest[pulley] = row
+            samples.nearest[pulley], touched[row] = row, samples.leaving[pulley]
     for span in range(spans):
         weight[span] = result.span_tension[k, span] = result.belt_speed[k, span] = 0.0
-    for p in range(pulleys):
+    for p in range(system.pulleys.size):
         if samples.nearest[p] >= 0:
-            touched[samples.nearest[p]] = p
+            touched[samples.nearest[p]] = samples.leaving[p]
     count, points, curves = touched.size, system.contact.points.size, system.control.shape[1]
     before, first = -1, 0
     for row in range(count):
@@ -245,7 +243,7 @@ def _observe_spans(system: System, samples: Samples, result: Observations, k: in
             before, first = touched[row], row
             break
     if is_open:
-        before, first = pulleys, -1
+        before, first = spans - 1, -1
     length = tension = speed = 0.0
     for walk in range(first + 1, first + 1 + count + is_open):
         row = walk % count
@@ -271,13 +269,6 @@ def _observe_spans(system: System, samples: Samples, result: Observations, k: in
         free = weight[span] > 0.0
         result.span_tension[k, span] = result.span_tension[k, span] / weight[span] if free else np.nan
         result.belt_speed[k, span] = result.belt_speed[k, span] / weight[span] if free else np.nan
-    for p in range(pulleys):
-        if system.pulleys[p].beside == 1:
-            span = (p - 1) % spans
-            while span < pulleys and system.pulleys[span].beside == 1:
-                span = (span - 1) % spans
-            result.span_tension[k, p] = result.span_tension[k, span]
-            result.belt_speed[k, p] = result.belt_speed[k, span]
 
 
 @kernel(inline=True)

@@ -74,7 +74,7 @@ def _shares(zones: list[Zone], nodes: FloatArray) -> tuple[IntArray, IntArray, F
     for one, other in pairwise([Zone(0.0, 0.0, -1), *zones, Zone(np.inf, np.inf, -1)]):
         between = (nodes >= one.start) & (nodes < other.start)
         way = other.start - one.end
-        before[between], after[between] = one.pulley, other.pulley
+        before[between], after[between] = one.arc, other.arc
         share[between] = np.clip((nodes[between] - one.end) / way, 0.0, 1.0) if np.isfinite(way) else 0.0
     return before, after, share
 

@@ -12,7 +12,7 @@ from beltdyn.arrays import FloatArray
 from beltdyn.errors import ModelError
 from beltdyn.machines.profiles.functions import go_on
 from beltdyn.model import Drive, Prepared, loads, prepare
-from beltdyn.model.nip import on_slides, refuse_set, refuse_web_nips
+from beltdyn.model.nip import refuse_set
 from beltdyn.model.simulation import EarlierRun, Frame, Instants
 from beltdyn.observation.compilation import ahead, compile_kernels, compile_run, compile_solving
 from beltdyn.parts.quantity import number_in
@@ -270,12 +270,8 @@ def settled(drive: Drive, integrator: Integrator) -> tuple[Drive, Frame]:
 
     Where the drive leaves the mesh open, it is that of an earlier run, and travels where the integrator needs it.
     """
-    if drive.is_web:
-        refuse_web_nips(drive.nips, "a run over time")
     refuse_set(drive.belt, drive.nips, "a run over time")
-    if any(nip.force is not None for nip in drive.nips):
-        nips, slides = on_slides(drive.nips, drive.pulleys)
-        drive = drive.replace(nip=nips, tensioner=(*drive.tensioners, *slides))
+    drive = drive.with_slides()
     begun = with_instant(drive)
     if begun.simulation.frame != drive.simulation.frame:
         return begun, begun.frame._replace(reason="as in the run it continues")

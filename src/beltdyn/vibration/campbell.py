@@ -490,6 +490,7 @@ def campbell(
     if dry_tensioners not in (SLIDING, STUCK):
         raise ModelError(f'dry_tensioners = {dry_tensioners!r} must be "{SLIDING}" or "{STUCK}".')
     require_closed(drive, web=True)
+    text, drive = drive.text, drive.with_slides()
     held = held_at(averaged(drive), at)
     number = driver_of(held) if pulley is None else held.number_of(pulley)
     name, sense = held.pulleys[number].name, sense_of(held, number)
@@ -504,7 +505,7 @@ def campbell(
         title = f"Campbell diagram of {drive.title} over the speed of {name}"
         table.attributes = {
             "title": title,
-            "drive_as_given": drive.text,
+            "drive_as_given": text,
             "pulley": name,
             "dry_tensioners": dry_tensioners,
         }

@@ -110,10 +110,11 @@ def belt_points(motions: SmallMotions) -> Points:
     starts = np.cumsum(system.length) - system.length
     along = (starts[:, None] + np.outer(system.length, quadrature.points)).ravel()
     place, slope, _ = centreline_points(system, motions.state.position, along)
-    deep = depths(system, motions.state, place)
-    touched = np.where(deep.max(axis=0) >= 0.0, deep.argmax(axis=0), -1)
+    path = motions.prepared.path
+    deep = depths(system, motions.state, place)[path.on]
+    touched = np.where(deep.max(axis=0) >= 0.0, deep.argmax(axis=0), -1)  # the span that leaves has the same number
     last = np.maximum.accumulate(np.where(touched >= 0, np.arange(touched.size), -1))
-    before = touched[touched >= 0][-1] if motions.prepared.path.ends is None else system.pulleys.size
+    before = touched[touched >= 0][-1] if path.ends is None else path.spans - 1
     span = np.where(last >= 0, touched[last], before)
     masses = _masses(motions, along, np.outer(system.length, quadrature.weights).ravel())
     return Points(along, *masses, place, slope, span)

@@ -273,6 +273,7 @@ def modes(
     elif about == REST:
         motions, state = about_rest(drive), "at rest"
     else:
+        drive = drive.with_slides()
         held = drive if speed is None else _at_speed(drive, speed, pulley, at)
         with compile_solving_ahead(prepare(held)):
             run = steady_state(held, at=at, force_tolerance=force_tolerance, progress=progress)

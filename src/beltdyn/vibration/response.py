@@ -218,6 +218,7 @@ def response(
     if dry_tensioners not in (SLIDING, STUCK):
         raise ModelError(f'dry_tensioners = {dry_tensioners!r} must be "{SLIDING}" or "{STUCK}".')
     require_closed(drive, web=True)
+    text, drive = drive.text, drive.with_slides()
     given, exciting = held_at(averaged(drive), at), at_instant(drive, at)
     number = driver_of(given) if pulley is None else given.number_of(pulley)
     name, sense = given.pulleys[number].name, sense_of(given, number)
@@ -235,7 +236,7 @@ def response(
     axes: Axes = {"speed": (Variable(("speed",), "rad/s", f"Speed of {name}"), speeds)}
     with OperatingPoints("response", given, axes, output, progress, overwrite, names=_KEPT) as table:
         title = f"Response of {drive.title} over the speed of {name}"
-        table.attributes = {"title": title, "drive_as_given": drive.text, "pulley": name}
+        table.attributes = {"title": title, "drive_as_given": text, "pulley": name}
         table.attributes |= {"dry_tensioners": dry_tensioners, "linear_range": str(SMALL_ERROR)}
         table.more, table.derive = answers.coordinates, lambda arrays: {**answers.variables(), **beside}
 

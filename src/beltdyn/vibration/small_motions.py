@@ -5,13 +5,13 @@ import numpy as np
 from beltdyn.arrays import IntArray
 from beltdyn.errors import ModelError
 from beltdyn.model import Drive, Prepared, prepare
-from beltdyn.model.nip import refuse_set, refuse_web_nips
+from beltdyn.model.nip import refuse_set
 from beltdyn.results import Run
 from beltdyn.state.linearized import DRY_FRICTION, SmallMotions, in_motion, linearised
 from beltdyn.state.settling import DIRECTION
 from beltdyn.state.static import standing
 from beltdyn.state.staying import Standing, bring_to_stand
-from beltdyn.state.steady import search_from
+from beltdyn.state.steady import search_from, steady_from
 from beltdyn.system.arrays import System
 from beltdyn.system.build import drive_system, flowing_system, staying_system, without_hysteresis
 from beltdyn.system.build_machines import with_resistance
@@ -63,13 +63,11 @@ def about_rest(drive: Drive) -> SmallMotions:
     The hysteresis of the belt is left out: its stress has no tangent there.
     """
     require_closed(drive)
-    return about_standing(bring_to_stand(prepare(drive)))
+    return about_standing(bring_to_stand(prepare(drive.with_slides())))
 
 
 def require_closed(drive: Drive, *, web: bool = False) -> None:
     """Refuse belts with ends, and web lines where they are not told to serve."""
-    if drive.is_web:
-        refuse_web_nips(drive.nips, "vibration")
     if drive.is_web and not web:
         raise ModelError('a web line has modes about steady running alone. Set about = "steady", or omit it.')
     refuse_set(drive.belt, drive.nips, "a small motion")
@@ -100,8 +98,11 @@ def sticking_rate(tension: float, system: System) -> float:
 
 
 def about_steady(run: Run, *, all_shafts: bool = False) -> SmallMotions:
-    """A drive in steady running."""
+    """A drive in steady running, with the rollers of nips that forces press on slides."""
     require_closed(run.drive, web=True)
+    freed = run.drive.with_slides()
+    if freed is not run.drive:
+        run = steady_from(freed, run, None, bands=False)
     search = search_from(run.prepared, run, float(run.dataset.attrs["steady_at"]))
     search.resume()
     return in_motion(search.prepared, search.constant, search.state, search.belt_parameter, all_shafts=all_shafts)

@@ -67,16 +67,25 @@ def test_without_force_and_gap_the_roller_stays_where_it_is() -> None:
     np.testing.assert_allclose(prepared.path.indentations, [0.5e-3], rtol=1e-9)
 
 
-def test_the_path_is_that_without_the_roller() -> None:
-    with_roller = pressed()
-    alone = pressed(pulley=[DRUM, TAIL], nip=[])
-    assert with_roller.path.length == alone.path.length
-    assert with_roller.spans == (("drum", "tail"), ("tail", "drum"), ("press", "drum"))
-    np.testing.assert_array_equal(with_roller.path.wrap_angles, [*alone.path.wrap_angles, 0.0])
-    np.testing.assert_array_equal(with_roller.path.span_lengths, [*alone.path.span_lengths, 0.0])
-    np.testing.assert_array_equal(with_roller.path.gradient(2), [0.0, 0.0])
+@pytest.mark.parametrize("place", [0, 1, 2])
+def test_the_path_is_that_without_the_roller(place: int) -> None:
+    """Wherever the roller stands in the list: it has no spans, and is on none."""
+    pulleys, alone = [DRUM, TAIL], pressed(pulley=[DRUM, TAIL], nip=[])
+    pulleys.insert(place, PRESS)
+    with_roller, on = pressed(pulley=pulleys), [number for number in range(3) if number != place]
+    path = with_roller.path
+    assert path.length == alone.path.length
+    assert with_roller.spans == alone.spans == (("drum", "tail"), ("tail", "drum"))
+    assert path.on.tolist() == on
+    assert path.span_pulleys.tolist() == [on, on[::-1]]
+    assert path.leaving[on].tolist() == [0, 1]
+    assert path.reaching[on].tolist() == [1, 0]
+    np.testing.assert_array_equal(path.wrap_angles[on], alone.path.wrap_angles)
+    np.testing.assert_array_equal(path.span_lengths, alone.path.span_lengths)
+    assert path.wrap_angles[place] == 0.0
+    np.testing.assert_array_equal(path.gradient(place), [0.0, 0.0])
     along = np.linspace(0.0, alone.path.length, 50)
-    np.testing.assert_allclose(with_roller.path.position(along), alone.path.position(along), atol=1e-12)
+    np.testing.assert_allclose(path.position(along), alone.path.position(along), atol=1e-12)
 
 
 @pytest.mark.parametrize("place", [0, 1, 2])

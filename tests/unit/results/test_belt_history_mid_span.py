@@ -9,14 +9,12 @@ LINES = np.array([[[[0.0, 0.0], [2.0, 0.0]], [[2.0, 1.0], [0.0, 1.0]]]])
 """A span to the right below, and one to the left above."""
 TOUCHED = np.array([[0, -1, -1, -1, -1, 1, 1, -1, -1, -1, -1, 0]])
 ALONG = np.array([-0.1, 0.3, 0.9, 1.2, 1.8, 2.1, 2.1, 1.7, 1.1, 0.8, 0.2, -0.1])
-NEXT = np.array([1, 0])
-"""Pulley to which each span leads."""
 
 
 def displaced(below: np.ndarray, above: np.ndarray, touched: np.ndarray = TOUCHED) -> list[float]:
     height = np.where(np.arange(12) < 6, below, 1.0 + above)
     result = np.full((1, 2), np.nan)
-    fill_mid_spans(LINES, np.stack([ALONG, height], axis=-1)[None], touched, 2, NEXT, result)
+    fill_mid_spans(LINES, np.stack([ALONG, height], axis=-1)[None], touched, False, result)
     return list(result[0])
 
 
@@ -40,7 +38,7 @@ def test_between_two_points_the_belt_is_straight() -> None:
 def test_it_does_not_matter_where_the_belt_coordinate_begins(shift: int) -> None:
     height = np.where(np.arange(12) < 6, 0.1 * ALONG, 1.0 + 0.2 * ALONG)
     places, result = np.stack([ALONG, height], axis=-1), np.full((1, 2), np.nan)
-    fill_mid_spans(LINES, np.roll(places, shift, axis=0)[None], np.roll(TOUCHED, shift, axis=1), 2, NEXT, result)
+    fill_mid_spans(LINES, np.roll(places, shift, axis=0)[None], np.roll(TOUCHED, shift, axis=1), False, result)
     assert result[0] == pytest.approx([0.1, -0.2], rel=1e-12)
 
 
@@ -55,5 +53,5 @@ def test_an_open_belt_has_a_span_before_its_first_pulley_and_one_behind_its_last
     touched = np.where(TOUCHED == 1, 0, -1)
     height = np.where(np.arange(12) < 6, 0.1 * ALONG, 1.0 + 0.2 * ALONG)
     result = np.full((1, 2), np.nan)
-    fill_mid_spans(LINES[:, ::-1].copy(), np.stack([ALONG, height], axis=-1)[None], touched, 1, NEXT, result)
+    fill_mid_spans(LINES[:, ::-1].copy(), np.stack([ALONG, height], axis=-1)[None], touched, True, result)
     assert result[0] == pytest.approx([-0.2, 0.1], rel=1e-12)

@@ -60,7 +60,9 @@ def test_spans_before_and_after_pulleys() -> None:
 
 
 def test_the_last_span_of_an_open_belt_is_the_one_before_the_first_pulley() -> None:
-    before, after = across(np.array([[1.0, 2.0, 3.0, 4.0]]), serpentine())
+    closed = serpentine().path
+    prepared: Any = SimpleNamespace(path=Path(closed.centers, closed.radii, np.array([[-9.0, 0.0], [9.0, 0.0]])))
+    before, after = across(np.array([[1.0, 2.0, 3.0, 4.0]]), prepared)
     assert before.tolist() == [[4.0, 1.0, 2.0]]
     assert after.tolist() == [[1.0, 2.0, 3.0]]
 

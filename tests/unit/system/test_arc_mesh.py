@@ -45,7 +45,7 @@ def side(
 
 def test_every_pulley_has_a_zone(standing: Standing) -> None:
     zones = zones_of(standing.prepared)
-    assert sorted(zone.pulley for zone in zones) == [0, 1]
+    assert sorted(zone.arc for zone in zones) == [0, 1]
     assert all(zone.start < zone.end for zone in zones)
     assert arc_count(standing.system.frame) == 2
 

@@ -33,10 +33,11 @@ def test_friction_limits_the_pulls_of_both_sides(run: bd.Run) -> None:
     np.testing.assert_allclose(nip.grip, np.abs(nip.pull) / nip.grip_limit)
 
 
-def test_the_span_of_a_nip_has_the_tension_of_that_before(run: bd.Run) -> None:
+def test_a_nip_has_no_span(run: bd.Run) -> None:
     last = run.dataset.isel(time=-1)
-    assert float(last.span_tension.sel(span="press-drum")) == float(last.span_tension.sel(span="tail-drum"))
-    assert np.isfinite(last.mid_span_displacement.sel(span=["drum-tail", "tail-drum"])).all()
+    assert last.span.values.tolist() == ["drum-tail", "tail-drum"]
+    assert np.isfinite(last.span_tension).all()
+    assert np.isfinite(last.mid_span_displacement).all()
 
 
 def test_a_profile_has_both_faces_from_entry_to_exit(run: bd.Run) -> None:

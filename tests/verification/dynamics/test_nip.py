@@ -1,4 +1,4 @@
-"""A nip in steady running against the closed forms of an elastic foundation, rolling, Coulomb friction, and energy."""
+"""Nips against closed forms of an elastic foundation, rolling, Coulomb friction, transport of webs, and energy."""
 
 from collections.abc import Callable
 from pathlib import Path
@@ -6,10 +6,13 @@ from typing import Any
 
 import numpy as np
 import pytest
+from scipy.integrate import solve_ivp
 
 import beltdyn as bd
-from beltdyn.errors import ConvergenceError
+from beltdyn.arrays import FloatArray
+from beltdyn.errors import ConvergenceError, ModelError
 from beltdyn.model.nip import Pair, side_stiffness
+from beltdyn.results.tension_balance import largest_closure
 from beltdyn.theory.nip import (
     equivalent_radius,
     force,
@@ -20,6 +23,7 @@ from beltdyn.theory.nip import (
     series,
 )
 
+EXAMPLES = Path(__file__).parents[3] / "docs" / "tasks"
 WIDTH, TENSION = 0.2, 1000.0
 FRICTION = 0.4
 DRUM, TAIL, ROLLER = 0.15, 0.1, 0.08
@@ -214,7 +218,7 @@ def test_a_web_is_pressed_between_unwinder_and_winder(
     name: str, forces: list[float], ends: tuple[float, float]
 ) -> None:
     """Tensions of both ends, pulls of the rollers and the loss of the covers balance along the web."""
-    run = bd.steady_state(bd.load(Path(__file__).parents[3] / "docs" / "tasks" / f"{name}.toml"))
+    run = bd.steady_state(bd.load(EXAMPLES / f"{name}.toml"))
     assert run.warnings == []
     last, nips = run.dataset.isel(time=-1), bd.derived.nips(run)
     assert nips.force.values.tolist() == pytest.approx(forces, rel=1e-6)
@@ -259,3 +263,169 @@ def test_a_roller_on_a_spring_swings_on_its_nip() -> None:
     grows = 2.0 * stiffness * half_width(float(nip.indentation), radius)
     assert float(own.frequency) == pytest.approx(np.sqrt((grows + rate) / mass) / (2.0 * np.pi), rel=PARABOLA)
     assert float(own.damping_ratio) > 300.0 / (2.0 * np.sqrt(mass * grows))
+
+
+# Webs over time and their vibrations: driven pairs of rollers, and calenders
+
+ROLL, WEB, AXIAL, ENTERS, HEAVY = 0.05, 2.0, 2e4, 100.0, 0.05
+LARGE, PRESSED = 2e-3, 0.3
+"""A draw and friction with which arcs alone would slip."""
+RISE = (0.05, 0.10)
+
+
+def pairs(last: Any, **more: Any) -> bd.Drive:
+    """Two driven rollers, each with a roller that presses the web on its arc and turns with it."""
+    cover = {"thickness": 5e-3, "youngs_modulus": 4e6, "poissons_ratio": 0.45}
+    press = {"radius": 0.04, "side": "outside", "inertia": 1e-3, "mass": 2.0, "cover": cover}
+    rollers = [
+        {"name": "first", "center": [0.5, 0.0], "radius": ROLL, "speed": WEB / ROLL},
+        press | {"name": "one", "center": [0.448, -0.193]},
+        {"name": "last", "center": [1.5, 0.0], "radius": ROLL, "speed": last},
+        press | {"name": "two", "center": [1.552, -0.193]},
+    ]
+    nips = [
+        {"roller": "one", "pulley": "first", "force": 1000.0},
+        {"roller": "two", "pulley": "last", "force": 1000.0},
+    ]
+    settings = {"duration": 1.1, "start": "steady", "output_interval": 5e-3, "rtol": 3e-5}
+    web = {"axial_stiffness": AXIAL, "bending_stiffness": 1e-4, "mass_per_length": HEAVY}
+    base = bd.Drive(
+        belt={**web, "thickness": 1e-4, "width": 0.2, "contact_stiffness": 1e11},
+        unwinder={"point": [0.0, 0.3], "tension": ENTERS},
+        pulley=rollers,
+        winder={"point": [2.0, 0.3], "tension": ENTERS},
+        nip=nips,
+        contact={"friction": PRESSED, "damping": 3e3, "creep_ratio": 3e-5},
+        simulation=settings,
+    )
+    return base.with_(more)
+
+
+def behind_the_nip(drive: bd.Drive, tension: FloatArray) -> FloatArray:
+    """Unstretched web on the arc behind the first nip, m: it slides from where it leaves on, at most up to the nip."""
+    path, lifted = drive.path, HEAVY * WEB**2
+    rest = float(path.wrap_angles[0] - path.nip_angles[0])
+    slides = np.clip(np.log((tension - lifted) / (ENTERS - lifted)) / PRESSED, 0.0, rest)
+    angles = slides * np.linspace(0.0, 1.0, 201)[:, None]
+    along = (tension - lifted) * np.exp(-PRESSED * angles) + lifted
+    sliding = np.trapezoid(1.0 / (1.0 + along / AXIAL), angles, axis=0)
+    return np.asarray(ROLL * (sliding + (rest - slides) / (1.0 + ENTERS / AXIAL)))
+
+
+@pytest.fixture(scope="module")
+def gripped() -> bd.Run:
+    """A line of two driven pairs, of which the second gets faster."""
+    faster = WEB / ROLL * np.array([1.0, 1.0, 1.0 + LARGE, 1.0 + LARGE])
+    return bd.simulate(pairs({"kind": "table", "times": [0.0, *RISE, 10.0], "values": faster.tolist()}))
+
+
+@pytest.mark.slow
+def test_driven_pairs_transport_a_draw(gripped: bd.Run) -> None:
+    """To 0.1 % of the change of the draw, beyond what the arcs would hold without the nips."""
+    drive, time = gripped.drive, gripped.dataset.time.values
+    tension = np.linspace(ENTERS, ENTERS + 1.2 * AXIAL * LARGE, 2001)
+    thin = 1.0 / (1.0 + tension / AXIAL)
+    content = float(drive.path.span_lengths[0]) * thin + behind_the_nip(drive, tension)
+
+    def flow(at: float, held: FloatArray) -> FloatArray:
+        part = np.clip((at - RISE[0]) / (RISE[1] - RISE[0]), 0.0, 1.0)
+        return np.asarray(WEB * (thin[0] - (1.0 + LARGE * part) * np.interp(held, content[::-1], thin[::-1])))
+
+    found = solve_ivp(flow, (0.0, time[-1]), [content[0]], t_eval=time, rtol=1e-10, atol=1e-13, max_step=0.01)
+    expected = np.interp(found.y[0], content[::-1], tension[::-1])
+    wrap = float(drive.path.wrap_angles[0])
+    assert expected[-1] > 1.1 * ENTERS * np.exp(PRESSED * wrap)
+    tensions = gripped.dataset.span_tension.values[:, 0]
+    assert np.abs(tensions - expected)[time > 0.2].max() < 1e-3 * AXIAL * LARGE
+
+
+@pytest.mark.slow
+def test_before_the_draw_changes_the_pairs_run_steadily(gripped: bd.Run) -> None:
+    """Tensions, torques, forces and widths are those of steady running to 1e-4 of the largest, and stay."""
+    steady = bd.steady_state(pairs(WEB / ROLL))
+    before, last = gripped.dataset.isel(time=gripped.dataset.time < RISE[0]), steady.dataset.isel(time=-1)
+    for name in ("span_tension", "pulley_speed", "nip_width"):
+        expected = last[name].values
+        assert np.abs(before[name].values - expected).max() < 1e-4 * np.abs(expected).max()
+    assert np.abs(before.shaft_torque.values - last.shaft_torque.values).max() < 1e-4 * ENTERS * ROLL
+    loads = np.linalg.norm(before.hub_force.sel(pulley=["one", "two"]).values, axis=-1)
+    assert loads == pytest.approx(1000.0, rel=1e-6)
+
+
+@pytest.mark.slow
+def test_energy_closes_with_the_flow_through_the_ends(gripped: bd.Run) -> None:
+    """To 2e-4 on the mesh of a run; on a fine one to 1e-5."""
+    assert abs(largest_closure(gripped.dataset).error) < 2e-4
+    fine = bd.steady_state(pairs(WEB / ROLL * (1.0 + LARGE)), force_tolerance=1e-6)
+    assert abs(largest_closure(fine.dataset).error) < 1e-5
+
+
+@pytest.mark.slow
+def test_a_varying_draw_of_a_pair_varies_the_tension() -> None:
+    """Amplitude and phase to 1 %: dv / g over v / g^2 EA + i w C, with the content of the arc behind the nip."""
+    orders, part, faster = np.array([0.02, 0.05, 0.2, 1.0, 3.0]), 1e-5, WEB * (1.0 + LARGE)
+    waves = [{"order": one, "amplitude": part} for one in orders.tolist()]
+    drive = pairs(faster / ROLL, **{"pulley[last].harmonics": waves})
+    found = bd.response(drive, speed=[faster / ROLL], pulley="last").dataset.isel(speed=0, span=0)
+    length, tension = float(drive.path.span_lengths[0]), float(found.span_tension)
+    stretch, step = 1.0 + tension / AXIAL, 0.1
+    thinner = 1.0 / AXIAL / stretch**2
+    lower, upper = behind_the_nip(drive, tension + np.array([-step, step]))
+    turning = orders * faster / ROLL
+    expected = part * faster / stretch / (faster * thinner + 1j * turning * (length * thinner - (upper - lower) / 0.2))
+    amplitude = found.span_tension_amplitude.values * np.exp(1j * found.span_tension_phase.values)
+    assert amplitude == pytest.approx(expected, rel=0.01)
+
+
+@pytest.mark.slow
+def test_rollers_swing_on_their_covers() -> None:
+    """Frequency to 1 %, sqrt(2 K a / m); damping to 5 %, 3 pi / 64 eta a w / v, with little friction, which adds to it.
+
+    A damper c = 3 pi / 32 eta K a / v on the foundation loses what hysteresis does while the web passes.
+    """
+    mass, losses = 40.0, {"upper": 0.1, "lower": 0.05}
+    little = {
+        f"pulley[{name}].{key}": value for name in losses for key, value in (("friction", 0.03), ("torque", -1.0))
+    }
+    run = bd.steady_state(bd.load(EXAMPLES / "calender.toml").with_(little))
+    nips, prepared = bd.derived.nips(run), run.prepared
+    found = bd.modes(run, count=30).dataset
+    campbell = bd.campbell(run.drive, speed="40 rpm", count=30).dataset.isel(speed=0)
+    for name, loss in losses.items():
+        roller = prepared.pulleys[run.drive.number_of(name)]
+        pair = Pair.of(roller, prepared.pulleys[0], prepared.belt, prepared.contact_stiffness)
+        half = half_width(float(nips.indentation.sel(nip=name)), pair.radius)
+        turning = np.sqrt(2.0 * pair.stiffness * half / mass)
+        own = found.isel(mode=int(np.argmax(found.tensioner_share.sel(tensioner=name).values)))
+        assert 2.0 * np.pi * float(own.frequency) == pytest.approx(turning, rel=0.01)
+        assert roller.cover is not None
+        shared = loss * pair.stiffness / roller.cover.stiffness(0.4)
+        expected = 3.0 * np.pi / 64.0 * shared * half * turning / float(run.dataset.belt_speed[-1].mean())
+        assert float(own.damping_ratio) == pytest.approx(expected, rel=0.05)
+        assert np.abs(campbell.frequency.values - float(own.frequency)).min() < 1e-4 * float(own.frequency)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("name", ["calender", "calender5"])
+def test_calenders_stay_in_steady_running(name: str) -> None:
+    """A run that is held agrees to 1e-3 of tensions, torques, speeds, and widths and forces of the nips."""
+    drive = bd.load(EXAMPLES / f"{name}.toml")
+    steady, run = bd.steady_state(drive), bd.simulate(drive.with_({"simulation.duration": 0.5}))
+    found, expected = run.dataset.isel(time=-1), steady.dataset.isel(time=-1)
+    for variable in ("span_tension", "shaft_torque", "pulley_speed", "nip_width"):
+        largest = np.abs(expected[variable].values).max()
+        assert found[variable].values == pytest.approx(expected[variable].values, abs=1e-3 * largest)
+    one, two = bd.derived.nips(run), bd.derived.nips(steady)
+    assert one.force.values == pytest.approx(two.force.values, rel=1e-3)
+    assert one.thickness.values == pytest.approx(two.thickness.values, rel=1e-3)
+    assert abs(largest_closure(run.dataset).error) < 1e-4
+    assert run.dataset.span.values.tolist() == steady.dataset.span.values.tolist()
+    assert np.isfinite(run.dataset.span_tension.values).all()
+
+
+@pytest.mark.slow
+def test_a_roller_without_mass_that_a_force_presses_is_refused() -> None:
+    drive = pairs(WEB / ROLL, **{"pulley[two].mass": 0.0})
+    for analysis in (bd.simulate, bd.modes):
+        with pytest.raises(ModelError, match=r'has no mass\. Give mass for the pulley "two", or gap'):
+            analysis(drive)

@@ -137,18 +137,3 @@ def test_a_web_line_rests_at_the_tension_of_its_unwinder(name: str, tension: flo
     """To 0.1 %, with rolls and with nips."""
     found = bd.equilibrium(bd.load(Path(__file__).parents[3] / "docs" / "tasks" / f"{name}.toml"))
     assert found.dataset.span_tension.values == pytest.approx(tension, rel=1e-3)
-
-
-@pytest.mark.parametrize(
-    ("analysis", "what"),
-    [
-        (bd.simulate, "a run over time"),
-        (bd.modes, "vibration"),
-        (partial(bd.modes, about="rest"), "vibration"),
-        (partial(bd.campbell, speed=[1.0]), "vibration"),
-        (partial(bd.response, speed=[1.0]), "vibration"),
-    ],
-)
-def test_a_web_line_with_nips_runs_steadily_alone(analysis: Callable[[Drive], Any], what: str) -> None:
-    with pytest.raises(ModelError, match=f'^{what} of a web line with nips .* "upper" in a nip has none'):
-        analysis(bd.load(Path(__file__).parents[3] / "docs" / "tasks" / "calender.toml"))

@@ -8,6 +8,7 @@ import numpy as np
 from beltdyn.arrays import FloatArray
 from beltdyn.parts.messages import Finding, listing
 from beltdyn.results.checks.evidence import Evidence
+from beltdyn.results.mechanics import across
 from beltdyn.results.schema import names
 
 STRAIN_LIMIT = 0.05
@@ -71,7 +72,7 @@ def lifted_by_speed(evidence: Evidence) -> Iterator[Finding]:
         bending = (
             prepared.belt.mass_per_length * speed**2 / np.asarray(prepared.belt.stretch_parameters.stretch(tension))
         )
-        mean, taken = (0.5 * (np.roll(one, 1, axis=1) + one) for one in (tension, bending))
+        mean, taken = (np.mean(across(one, prepared), axis=0) for one in (tension, bending))
         lifted = (mean > 0.0) & (taken > LIFTED * mean)
     times = [
         f"{pulley.name} at t = {evidence.time[int(when.argmax())]:.4g} s"

@@ -10,7 +10,7 @@ from beltdyn.model.advice import other_creep
 from beltdyn.parts.messages import Finding, listing
 from beltdyn.results.checks.evidence import Evidence
 from beltdyn.results.incidents import SLIDING_LIMIT, slides_through
-from beltdyn.results.mechanics import pressing_at_arcs, rim_speeds
+from beltdyn.results.mechanics import across, pressing_at_arcs, rim_speeds
 from beltdyn.results.slip_safety import STATE, friction_used
 from beltdyn.theory.creep import entry_creep
 
@@ -115,7 +115,7 @@ def _added_by_slope(evidence: Evidence, number: int) -> float:
     prepared, pulley = evidence.prepared, evidence.pulleys[number]
     radius, friction = float(prepared.radii[number]), float(prepared.frictions[number])
     tensions = np.asarray(evidence.recorded["span_tension"][evidence.window.first :]).mean(axis=0)
-    tension, rim = 0.5 * float(tensions[number - 1] + tensions[number]), abs(pulley.speed) * radius
+    tension, rim = 0.5 * float(sum(side[number] for side in across(tensions, prepared))), abs(pulley.speed) * radius
     pressing, pull = tension - prepared.belt.mass_per_length * rim**2, abs(pulley.belt_torque) / radius
     if not min(rim, pressing, pull, friction) > 0.0:
         return 0.0

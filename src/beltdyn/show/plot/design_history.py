@@ -353,7 +353,6 @@ def line_tensions(result: Result, ax: Axes | None = None) -> Axes:
         raise ModelError('the drive is no web line, conveyor or guided belt. Draw "sheet_tensions".')
     dataset, ax = result.dataset, axes_or_new(ax)
     order = result.drive.path.order[:: int(dataset["running_sense"])]
-    order = order[dataset["span_length"].values[order] > 0.0]  # those of nips have no length
     lengths = dataset["span_length"].values[order]
     ends = np.concatenate([[0.0], np.cumsum(lengths)])
     place = np.stack([ends[:-1], ends[1:]], axis=1).ravel()

@@ -205,7 +205,7 @@ def make_room(ax: Axes, extent: FloatArray) -> None:
 
 def arc(path: Path, number: int) -> FloatArray:
     """Angles along the arc on a pulley, in the direction of motion, rad."""
-    enters = path.span_points[number - 1, 1] - path.centers[number]
+    enters = path.span_points[path.reaching[number], 1] - path.centers[number]
     start = np.arctan2(enters[1], enters[0])
     turned = np.linspace(0.0, path.wrap_angles[number], 90)
     return np.asarray(start + np.sign(path.radii[number]) * turned)

@@ -163,7 +163,7 @@ def _draw_pulley(ax: Axes, drive: Drive, path: Path, number: int) -> None:
 def _draw_belt(ax: Axes, path: Path) -> None:
     """Draw arcs and spans with the direction of motion, each span over those before it."""
     crossing = set(chain(*crossings(path)))
-    for number in range(path.count):
+    for number in path.on.tolist():
         angle = arc(path, number)
         points = path.centers[number] + abs(path.radii[number]) * np.column_stack([np.cos(angle), np.sin(angle)])
         ax.plot(*points.T, color=_BELT, linewidth=3.0, solid_capstyle="butt", zorder=3)
