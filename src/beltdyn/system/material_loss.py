@@ -56,6 +56,8 @@ def hysteresis_scratch(vectors: int) -> np.dtype[np.void]:
         curvature_drift=f"{size}f8",
         pull_by_rate=f"{size}f8",  # derivatives of both stresses times the length by the rates of the vectors
         moment_by_rate=f"{size}f8",
+        pull=f"{size}f8",  # change of both stresses times the length by the unknowns
+        moment=f"{size}f8",
         turning="(2,2,2)f8",  # second derivatives of the angles of both ends by their directions
     )
 
@@ -160,21 +162,23 @@ def _find_strains(own: np.record, vectors: tuple[int, ...], coordinates: FloatAr
     """Overwrite both strains, their rates, the square of the speed, and all their derivatives."""
     e, velocity = coordinates[0], coordinates[1]
     count = len(vectors)
-    metric, strain_rate = 0.0, 0.0
-    for axis in range(2):
-        speed = 0.0
-        for a in range(count):
-            at, rate = 0.0, 0.0
-            for b in range(count):
-                at += own.metric[a, b] * e[vectors[b] + axis]
-                rate += own.metric[a, b] * velocity[vectors[b] + axis]
-            scratch.by_strain[2 * a + axis], scratch.strain_drift[2 * a + axis] = at, rate
-            metric += at * e[vectors[a] + axis]
-            strain_rate += at * velocity[vectors[a] + axis]
-            speed += own.middle[a] * velocity[vectors[a] + axis]
-        for a in range(count):
-            scratch.by_speed[2 * a + axis] = 2.0 * own.middle[a] * speed
-        scratch.square = speed * speed if axis == 0 else scratch.square + speed * speed
+    metric = strain_rate = speed_x = speed_y = 0.0
+    for a in range(count):
+        x = y = vx = vy = 0.0
+        for b in range(count):
+            part, i = own.metric[a, b], vectors[b]
+            x, y = x + part * e[i], y + part * e[i + 1]
+            vx, vy = vx + part * velocity[i], vy + part * velocity[i + 1]
+        i = vectors[a]
+        scratch.by_strain[2 * a], scratch.by_strain[2 * a + 1] = x, y
+        scratch.strain_drift[2 * a], scratch.strain_drift[2 * a + 1] = vx, vy
+        metric += x * e[i] + y * e[i + 1]
+        strain_rate += x * velocity[i] + y * velocity[i + 1]
+        speed_x, speed_y = speed_x + own.middle[a] * velocity[i], speed_y + own.middle[a] * velocity[i + 1]
+    for a in range(count):
+        scratch.by_speed[2 * a] = 2.0 * own.middle[a] * speed_x
+        scratch.by_speed[2 * a + 1] = 2.0 * own.middle[a] * speed_y
+    scratch.square = speed_x * speed_x + speed_y * speed_y
     _find_curvature(own, vectors, coordinates, scratch)
     bend, unbend = 2.0 * own.shortening * scratch.curvature, 2.0 * own.shortening * scratch.curvature_rate
     scratch.strain = 0.5 * (metric - 1.0) - own.strain + 0.5 * bend * scratch.curvature
@@ -197,6 +201,8 @@ def _find_curvature(own: np.record, vectors: tuple[int, ...], coordinates: Float
         x, y, vx, vy = 0.0, 0.0, 0.0, 0.0
         for a in range(len(vectors)):
             factor = own.ends[end, a]
+            if factor == 0.0:
+                continue
             x += factor * e[vectors[a]]
             y += factor * e[vectors[a] + 1]
             vx += factor * velocity[vectors[a]]
@@ -208,6 +214,8 @@ def _find_curvature(own: np.record, vectors: tuple[int, ...], coordinates: Float
         slope_x, slope_y = -side * y / square, side * x / square
         for a in range(len(vectors)):
             factor = own.ends[end, a]
+            if factor == 0.0:
+                continue
             scratch.by_curvature[2 * a] += factor * slope_x
             scratch.by_curvature[2 * a + 1] += factor * slope_y
             scratch.curvature_drift[2 * a] += factor * (across * vx + along * vy)
@@ -239,23 +247,32 @@ def _add_tangent(
     work: np.record,
 ) -> None:
     """Add the tangent, with `_fill_rates` done before; `by_position` is that of `add_hysteresis` times the length."""
-    scratch, tangent = work.hysteresis, work.element.tangent
+    scratch, tangent, count = work.hysteresis, work.element.tangent, len(vectors)
     stretched = by_position * stretch.stress
     turned = by_position * bend.stress + 2.0 * own.shortening * scratch.curvature * stretched
-    for b in range(len(vectors)):
-        for axis in range(2):
-            c, column = 2 * b + axis, vectors[b] + axis
-            stretching = stretch.by_strain * scratch.by_strain[c] + stretch.by_rate * scratch.strain_drift[c]
-            bending = bend.by_strain * scratch.by_curvature[c] + bend.by_rate * scratch.curvature_drift[c]
-            pull = by_position * stretching + by_velocity * scratch.pull_by_rate[c]
-            moment = by_position * bending + by_velocity * scratch.moment_by_rate[c]
-            moment += 2.0 * own.shortening * stretched * scratch.by_curvature[c]
-            for a in range(len(vectors)):
-                first, last = own.ends[0, a] * own.ends[0, b], own.ends[1, a] * own.ends[1, b]
+    for c in range(2 * count):
+        stretching = stretch.by_strain * scratch.by_strain[c] + stretch.by_rate * scratch.strain_drift[c]
+        bending = bend.by_strain * scratch.by_curvature[c] + bend.by_rate * scratch.curvature_drift[c]
+        bending += 2.0 * own.shortening * stretch.stress * scratch.by_curvature[c]
+        scratch.pull[c] = by_position * stretching + by_velocity * scratch.pull_by_rate[c]
+        scratch.moment[c] = by_position * bending + by_velocity * scratch.moment_by_rate[c]
+    for a in range(count):
+        row, x, y = vectors[a], scratch.by_strain[2 * a], scratch.by_strain[2 * a + 1]
+        bend_x, bend_y = scratch.by_curvature[2 * a], scratch.by_curvature[2 * a + 1]
+        for b in range(count):
+            column, along = vectors[b], stretched * own.metric[a, b]
+            pull_x, pull_y = scratch.pull[2 * b], scratch.pull[2 * b + 1]
+            moment_x, moment_y = scratch.moment[2 * b], scratch.moment[2 * b + 1]
+            tangent[row, column] += x * pull_x + bend_x * moment_x + along
+            tangent[row, column + 1] += x * pull_y + bend_x * moment_y
+            tangent[row + 1, column] += y * pull_x + bend_y * moment_x
+            tangent[row + 1, column + 1] += y * pull_y + bend_y * moment_y + along
+    for end in range(2):
+        for a in range(count):
+            for b in range(count):
+                factor = turned * own.ends[end, a] * own.ends[end, b]
+                if factor == 0.0:
+                    continue
                 for side in range(2):
-                    second = turned * (first * scratch.turning[0, side, axis] + last * scratch.turning[1, side, axis])
-                    if side == axis:
-                        second += stretched * own.metric[a, b]
-                    tangent[vectors[a] + side, column] += (
-                        pull * scratch.by_strain[2 * a + side] + moment * scratch.by_curvature[2 * a + side] + second
-                    )
+                    for axis in range(2):
+                        tangent[vectors[a] + side, vectors[b] + axis] += factor * scratch.turning[end, side, axis]
