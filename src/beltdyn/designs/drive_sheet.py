@@ -23,7 +23,7 @@ from beltdyn.parts.quantity import Number, Numbers, number_in, numbers_in
 from beltdyn.points.changed_drive import at_instant, held_at
 from beltdyn.points.duty import Column, at_row, durations_of, duty, duty_of
 from beltdyn.points.quasi_steady import QuasiSteady, Running, Torques, torques_between, torques_of
-from beltdyn.points.tensioner_sheet import length_of
+from beltdyn.points.tensioner_sheet import lengths_of
 from beltdyn.results import Result, Variable, build_result
 from beltdyn.results.means import rate, utilization
 from beltdyn.results.schema import AXIS_NAMES, COORDINATES
@@ -61,8 +61,8 @@ def sheet(
     acceleration: Number = "0 rpm/s",
     light_load: float = 0.1,
     friction: Numbers = "0.7, 1, 1.3",
-    tolerance: Number = "0.5 %",
-    wear: Number = "1 %",
+    tolerance: Number | None = None,
+    wear: Number | None = None,
     full: bool = False,
     at: float | str | None = None,
     progress: Report | None = None,
@@ -146,10 +146,7 @@ def sheet(
         factors=numbers_in("friction", friction, "", 3),
         light=_light(light_load),
         acceleration=_acceleration(acceleration),
-        lengths=(
-            length_of("tolerance", tolerance, rest.prepared.belt_length),
-            length_of("wear", wear, rest.prepared.belt_length),
-        ),
+        lengths=lengths_of(rest.prepared, tolerance, wear),
     )
     made = _DriveSheet(given, rest.prepared, looked_at(rest.prepared, rest.system, rest.state).installation, chosen)
     made.add_rows(columns)

@@ -22,7 +22,7 @@ from beltdyn.model.carrying import check_carrying, check_lift
 from beltdyn.model.completion import Completed, complete
 from beltdyn.model.contact import Contact
 from beltdyn.model.end import AnyEnd, Carriage, End, PathEnd, check_carriage, ends_on_path
-from beltdyn.model.layout import Given, Layout, check_teeth, lay_out
+from beltdyn.model.layout import Given, Layout, check_speeds, check_teeth, lay_out
 from beltdyn.model.nip import Nip, on_slides, rim_ratios
 from beltdyn.model.parameter_study import DutyPoint, check_duty
 from beltdyn.model.path import Path
@@ -198,6 +198,7 @@ class Drive(Part):
     def _teeth_fit_the_pulleys(self) -> Self:
         length = None if self.moving_tensioners else self.path.length
         check_teeth(self.belt, self.pulleys, length)
+        check_speeds(self.pulleys, self.path, self.simulation.end)
         return self
 
     @model_validator(mode="after")

@@ -7,7 +7,9 @@ import numpy as np
 
 from beltdyn.arrays import FloatArray
 from beltdyn.errors import ModelError
+from beltdyn.kernel import interpreted
 from beltdyn.machines import FixedTensioner, MovingTensioner, Tensioner
+from beltdyn.machines.profiles.functions import profile_integral, profile_rows
 from beltdyn.machines.tensioners.tensioner import LEAST_LEVERAGE
 from beltdyn.model.belt import Belt
 from beltdyn.model.carrier import carriers_of, check_sensors, check_tensioners
@@ -20,10 +22,15 @@ from beltdyn.model.pulley import Pulley
 from beltdyn.model.routing import lay_path
 from beltdyn.model.static_estimate import StaticEstimate, balance_tensioners
 from beltdyn.parts.messages import apart
+from beltdyn.parts.quantity import RPM
 
 LARGEST_STRAIN = 0.5
 """Of a belt that is laid on its path."""
 _MOST_STEPS = 90
+_LOOKED_AT = 10.0
+"""Time over which prescribed speeds must agree at least, s; rounded ones do."""
+_INSTANTS = 101
+"""Instants at which they are compared, besides those at which they change."""
 
 
 class Given(NamedTuple):
@@ -303,6 +310,35 @@ def check_teeth(belt: Belt, pulleys: Sequence[Pulley], path_length: float | None
             f"belt.teeth = {belt.teeth} is too short to mesh: the path around the pulleys has {pitches:.2f} pitches of "
             f"{1e3 * belt.toothing.pitch:.5g} mm. Give {round(pitches)} teeth, or move the pulleys closer together"
         )
+
+
+def check_speeds(pulleys: Sequence[Pulley], path: Path, duration: float) -> None:
+    """Refuse speeds with which a pulley gets half a pitch ahead of another one that the same belt holds by teeth."""
+    turning = [
+        (one.name, float(np.copysign(one.teeth, radius)), one.speed)
+        for one, radius in zip(pulleys, path.radii, strict=True)
+        if one.teeth and one.speed is not None and not one.hub
+    ]
+    if len(turning) < 2:
+        return
+    end, rows = max(duration, _LOOKED_AT), profile_rows([speed for *_, speed in turning], [()] * len(turning))
+    starts = np.concatenate([speed.integrated.start for *_, speed in turning])
+    times = np.union1d(np.linspace(0.0, end, _INSTANTS), starts[(starts > 0.0) & (starts < end)])
+    passed = [
+        count * np.array([interpreted(profile_integral)(rows, number, time) for time in times.tolist()]) / (2.0 * np.pi)
+        for number, (_, count, _) in enumerate(turning)
+    ]
+    first, own_teeth, _ = turning[0]
+    for (name, teeth, _), pitches in zip(turning[1:], passed[1:], strict=True):
+        off = np.flatnonzero(np.abs(pitches - passed[0]) > 0.5)
+        if off.size:
+            time = times[off[0]]
+            mean, needed = (2.0 * np.pi * RPM / teeth * one[off[0]] / time for one in (pitches, passed[0]))
+            raise ValueError(
+                f"pulley[{name}] turns at {mean:.6g} rpm in the mean of {time:.3g} s, but the teeth of the belt turn "
+                f'its {abs(teeth):.0f} teeth at {needed:.6g} rpm, as "{first}" has {abs(own_teeth):.0f}. Omit one of '
+                "both speeds, or make them agree"
+            )
 
 
 def teeth_in_mesh(belt: Belt, path: Path) -> FloatArray:

@@ -28,7 +28,10 @@ _ACCURACY = 1e-9
 """Of the place at a stop, over the way on which the path lengthens by itself."""
 _MOST_TRIALS = 20
 _FREE, _NOMINAL = "free arm", "nominal belt"
-_BELTS = ("worn belt", "longest belt", _NOMINAL, "shortest belt")
+_OTHERS = ("longest belt", _NOMINAL, "shortest belt")
+_WORN, _STRETCHED = ("worn belt", "0.5 %", "1 %"), ("stretched belt", "0.1 %", "0.1 %")
+"""Name of the longest belt after its life, length tolerance and elongation of friction and of toothed belts; ISO 5296
+allows 0.66 mm of 0.9 m, the elongation of glass cords is an estimate."""
 _STATE = ("state",)
 
 
@@ -70,15 +73,16 @@ def tensioner_sheet(
     drive: Drive,
     *,
     pulley: str | None = None,
-    tolerance: Number = "0.5 %",
-    wear: Number = "1 %",
+    tolerance: Number | None = None,
+    wear: Number | None = None,
     progress: Report | None = None,
 ) -> Result:
     """Compute a tensioner sheet: position, tension and hub load of a tensioner for belts of different lengths.
 
     The belt is at rest, in equilibrium. The nominal belt is that of the drive file; the longest and the shortest belt
-    differ from it by the tolerance, and the worn belt is the longest one, lengthened by wear. For a stop the sheet
-    gives the belt length at which the tensioner just reaches it. Dry friction gives a range of tensions.
+    differ from it by the tolerance, and the worn belt, of a toothed one the stretched belt, is the longest one after
+    its life. For a stop the sheet gives the belt length at which the tensioner just reaches it. Dry friction gives a
+    range of tensions.
 
     Parameters
     ----------
@@ -87,9 +91,9 @@ def tensioner_sheet(
     pulley
         The pulley of the tensioner; by default that of the only moving tensioner.
     tolerance
-        Length tolerance of a new belt, such as "6 mm" or "0.5 %", or in m.
+        Length tolerance of a new belt, such as "6 mm" or "0.5 %", or in m; by default 0.5 %, of a toothed one 0.1 %.
     wear
-        Elongation of the belt over its life, such as "10 mm" or "1 %", or in m.
+        Elongation of the belt over its life, such as "10 mm" or "1 %", or in m; by default 1 %, of a toothed one 0.1 %.
     progress
         Called repeatedly with a `Progress`.
 
@@ -121,8 +125,9 @@ def tensioner_sheet(
     held = rest.replace(contact=rest.contact)
     sheet = _Sheet(held, number)
     nominal = held.belt_length
-    spread, worn = length_of("tolerance", tolerance, nominal), length_of("wear", wear, nominal)
-    lengths = dict(zip(_BELTS, (nominal + spread + worn, nominal + spread, nominal, nominal - spread), strict=True))
+    spread, worn = lengths_of(held, tolerance, wear)
+    longer = (spread + worn, spread, 0.0, -spread)
+    lengths = {name: nominal + more for name, more in zip((_aged(held)[0], *_OTHERS), longer, strict=True)}
     sheet.add_free()
     sheet.add_stop("upper stop")
     for state, length in lengths.items():
@@ -139,6 +144,7 @@ class _Sheet:
         self._carrier = prepared.carriers[number]
         self._tensioner = self._carrier.tensioner
         self._rows = dict[str, dict[str, float]]()
+        self._belts = (_aged(prepared)[0], *_OTHERS)
         self._failures = dict[str, str]()
         rate, preload = self._tensioner.rate, self._tensioner.preload
         lower, upper = self._tensioner.stops or (-np.inf, np.inf)
@@ -244,7 +250,7 @@ class _Sheet:
             for name, column in COLUMNS.items()
             if name in known
         }
-        tensions = [row["tension"] for state, row in self._rows.items() if state in _BELTS and "tension" in row]
+        tensions = [row["tension"] for state, row in self._rows.items() if state in self._belts and "tension" in row]
         spread = (max(tensions) - min(tensions)) / self._rows[_NOMINAL]["tension"]
         more: Axes = {
             "failure": (Variable(_STATE, "1", "Why this state does not exist", "str"), self._reasons(states)),
@@ -265,7 +271,7 @@ class _Sheet:
         lower, upper, written = self._stops["lower stop"], self._stops["upper stop"], self._tensioner.written
         for state, cause in self._failures.items():
             yield f"{state}: {cause}"
-        for state in _BELTS:
+        for state in self._belts:
             row = self._rows[state]
             if not lower <= row.get("position", lower) <= upper:
                 yield (
@@ -302,7 +308,22 @@ def _number_of(drive: Drive, pulley: str | None) -> int:
     return names.index(pulley) if pulley is not None else 0
 
 
-def length_of(name: str, text: Number, nominal: float) -> float:
+def _aged(prepared: Prepared) -> tuple[str, str, str]:
+    """The longest belt after its life: its name, and the tolerance and elongation that belts of its kind have."""
+    return _WORN if prepared.belt.teeth is None else _STRETCHED
+
+
+def lengths_of(prepared: Prepared, tolerance: Number | None, wear: Number | None) -> tuple[float, float]:
+    """Tolerance of the length and elongation over life, m, given or those of the kind of belt."""
+    _, usual_tolerance, usual_wear = _aged(prepared)
+    nominal = prepared.belt_length
+    return (
+        _length_of("tolerance", usual_tolerance if tolerance is None else tolerance, nominal),
+        _length_of("wear", usual_wear if wear is None else wear, nominal),
+    )
+
+
+def _length_of(name: str, text: Number, nominal: float) -> float:
     """Read a length, m, given as one or as a part of the nominal length."""
     whole = str(text).strip()
     try:

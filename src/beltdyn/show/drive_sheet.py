@@ -18,7 +18,7 @@ if TYPE_CHECKING:
 _DEGREES = 180.0 / np.pi
 _STATES = {
     "free": "free arm",
-    "replace": "replace (worn)",
+    "replace": "replace (stretched)",
     "max": "longest belt",
     "mean": "nominal belt",
     "min": "shortest belt",

@@ -56,6 +56,16 @@ CASES: dict[str, tuple[str, str, tuple[str, ...]]] = {
         "speed",
         ("pulley[driver].radius is missing", "of a toothed one, teeth"),
     ),
+    "speeds that disagree": (
+        DRIVEN,
+        f'{DRIVEN}\nspeed = "490 rpm"',
+        ("pulley[driven] turns at 490 rpm", "at 500 rpm", 'as "driver" has 24', "Omit one of both speeds"),
+    ),
+    "senses that disagree": (
+        DRIVEN,
+        f'{DRIVEN}\nspeed = "-500 rpm"',
+        ("pulley[driven] turns at -500 rpm", "at 500 rpm"),
+    ),
     "tension without take-up": (
         "teeth = 60",
         "teeth = 60\ninstalled_tension = 300",

@@ -1,5 +1,7 @@
 """Drives whose belt cannot mesh."""
 
+from typing import Any
+
 import pytest
 
 import beltdyn as bd
@@ -18,3 +20,39 @@ def test_a_belt_whose_teeth_nothing_holds() -> None:
     smooth = [{"name": n, "center": [x, 0.0], "radius": 0.04, "speed": 1.0} for n, x in (("a", 0.0), ("b", 0.28))]
     with pytest.raises(ModelError, match="the belt has 100 teeth, but no pulley has any"):
         bd.Drive(belt=BELT, pulley=smooth, contact={"friction": 0.3}, simulation={"duration": 1.0})
+
+
+RAMP = {"kind": "cosine_ramp", "start": 0.0, "end": 0.5, "value": 100.0}
+
+
+def both(speed: Any, driven: Any, **more: Any) -> bd.Drive:
+    """Pulleys of 24 and 36 teeth, both turned by speeds."""
+    given = [
+        {"name": "driver", "center": [0.0, 0.0], "teeth": 24, "speed": speed},
+        {"name": "driven", "center": [0.28, 0.0], "teeth": 36, "speed": driven} | more,
+    ]
+    return bd.Drive(belt=BELT, pulley=given, simulation={"duration": 1.0})
+
+
+@pytest.mark.parametrize("driven", [200.0 / 3.0, 66.665, RAMP | {"value": 200.0 / 3.0, "end": 0.5001}])
+def test_speeds_that_teeth_allow(driven: Any) -> None:
+    """In the ratio of the teeth, rounded, or later by less than half a pitch."""
+    assert both(RAMP if isinstance(driven, dict) else 100.0, driven).pulleys[1].prescribed
+
+
+@pytest.mark.parametrize("driven", [-200.0 / 3.0, 66.6, 0.0, RAMP | {"value": 200.0 / 3.0, "end": 0.51}])
+def test_speeds_that_tear_teeth_out(driven: Any) -> None:
+    with pytest.raises(ModelError, match=r'pulley\[driven\] turns at .* 36 teeth at .* as "driver" has 24'):
+        both(RAMP if isinstance(driven, dict) else 100.0, driven)
+
+
+def test_a_coupling_lets_speeds_differ() -> None:
+    coupled = {"inertia": 1e-3, "hub": [{"kind": "isolator", "stiffness": 10.0, "damping": 0.1}]}
+    assert both(100.0, 60.0, **coupled).pulleys[1].hub
+
+
+def test_the_back_turns_the_other_way() -> None:
+    """A smooth pulley at the back is not held by teeth, whatever its speed."""
+    made = bd.example("timing_drive")
+    turned = [one.merged({"speed": -50.0}) if one.name == "tensioner" else one for one in made.pulleys]
+    assert made.replace(pulley=turned).pulleys[1].prescribed

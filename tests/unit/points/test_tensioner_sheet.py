@@ -106,6 +106,16 @@ def test_an_arm_balances_the_belt_by_virtual_work() -> None:
         )
 
 
+def test_a_toothed_belt_stretches_and_does_not_wear_long() -> None:
+    """Its tensioner stays between its stops by default, and the warnings speak of what is there."""
+    drive = load(Path(str(files("beltdyn"))) / "examples" / "timing_drive.toml")
+    sheet = tensioner_sheet(drive).dataset
+    assert list(sheet.state.values) == ["free arm", "stretched belt", "longest belt", "nominal belt", "shortest belt"]
+    over = sheet.belt_length / sheet.belt_length.sel(state="nominal belt") - 1.0
+    assert over.values[1:].tolist() == pytest.approx([2e-3, 1e-3, 0.0, -1e-3], abs=1e-12)
+    assert (np.diff(sheet.tension.values[1:]) > 0.0).all()
+
+
 def test_what_a_designer_is_warned_of(slide: Drive, tmp_path: Path) -> None:
     result = tensioner_sheet(slide, tolerance="24 mm", wear="10 %")
     text = "\n".join(result.warnings)
