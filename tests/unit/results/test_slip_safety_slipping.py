@@ -28,6 +28,7 @@ DRIVE: Any = SimpleNamespace(
     reference=0,
     radii=RADII,
     contact_stiffness=1e9,
+    path=SimpleNamespace(reaching=np.array([2, 0, 1]), leaving=np.arange(3)),
 )
 TENSION = np.array([30.0, 50.0, 90.0])
 """Of the spans that leave the pulleys: the tight one reaches the first pulley, which drives."""

@@ -256,7 +256,7 @@ TOOTHED = {"profile": "HTD 8M", "width": "20 mm", "teeth": 100}
     [
         (
             {"teeth": 24, "speed": 1.0},
-            {"teeth": 36, "speed": 1.0},
+            {"teeth": 36, "speed": 24.0 / 36.0},
             "driver and driven have prescribed speeds and teeth",
         ),
         (
