@@ -5,10 +5,11 @@ from collections.abc import Iterator, Mapping, Sequence
 from typing import Any
 
 from beltdyn.app.draft import Draft
-from beltdyn.app.scene import Circle, circles, groups, length_in, sketched
+from beltdyn.app.scene import Circle, circles, groups, length_in, sketched, toothed_belt
 from beltdyn.errors import ModelError
-from beltdyn.model import Drive
+from beltdyn.model import Belt, Drive
 from beltdyn.model.belt import read_side
+from beltdyn.model.toothing import FEWEST_TEETH, MOST_TEETH
 from beltdyn.parts.quantity import written_like
 from beltdyn.parts.toml_edits import Edit, Location
 
@@ -37,9 +38,21 @@ def nudge(data: Mapping[str, Any], number: int, right: float, up: float) -> list
 
 
 def grow(data: Mapping[str, Any], number: int, more: float) -> list[Edit]:
-    """Increase the radius of a pulley, m; nothing if it is invalid."""
+    """Increase the radius of a pulley, m, by at least a tooth if it has teeth; nothing if it is invalid."""
     one = next((each for each in circles(data) if each.number == number), None)
-    return [] if one is None else resize(data, number, one.radius + more)
+    if one is None:
+        return []
+    teeth = groups(data, "pulley")[number].get("teeth")
+    edits = resize(data, number, one.radius + more)
+    if isinstance(teeth, int) and edits[0].value == teeth:
+        return [Edit("set", ("pulley", number, "teeth"), max(teeth + (1 if more > 0.0 else -1), FEWEST_TEETH))]
+    return edits
+
+
+def _teeth(belt: Belt, radius: float) -> int:
+    """Number of teeth of a pulley of about a radius, m."""
+    pitch = belt.toothing.pitch if belt.toothing is not None else math.inf
+    return min(max(round(2.0 * math.pi * (radius + belt.pitch_offset) / pitch), FEWEST_TEETH), MOST_TEETH)
 
 
 def nudge_pivot(data: Mapping[str, Any], number: int, right: float, up: float) -> list[Edit]:
@@ -74,18 +87,31 @@ def _point(data: Mapping[str, Any], location: tuple[int | str, ...], given: obje
 
 
 def resize(data: Mapping[str, Any], number: int, radius: float) -> list[Edit]:
-    """Set the radius of a pulley, m, or its diameter if that is given."""
+    """Set the radius of a pulley, m, or its diameter or teeth if these are given."""
     one, radius = groups(data, "pulley")[number], max(radius, _SMALLEST_RADIUS / 10)
+    if "teeth" in one and (belt := toothed_belt(data)) is not None:
+        return [Edit("set", ("pulley", number, "teeth"), _teeth(belt, radius))]
     if "diameter" in one and "radius" not in one:
         return [Edit("set", ("pulley", number, "diameter"), written_like(2 * radius, one["diameter"], "m"))]
     return [Edit("set", ("pulley", number, "radius"), written_like(radius, one.get("radius"), "m"))]
 
 
 def flip(data: Mapping[str, Any], number: int) -> list[Edit]:
-    """Move a pulley to the other side of the belt."""
-    if read_side(groups(data, "pulley")[number].get("side")) == "outside":
-        return [Edit("remove", ("pulley", number, "side"))]
-    return [Edit("set", ("pulley", number, "side"), "outside")]
+    """Move a pulley to the other side of the belt: with teeth on that of the teeth, without on its back."""
+    one, key = groups(data, "pulley")[number], ("pulley", number)
+    size = next((each.radius for each in circles(data) if each.number == number), None)
+    belt = None if size is None else toothed_belt(data)
+    if read_side(one.get("side")) == "outside":
+        back = [Edit("remove", (*key, "side"))]
+        if belt is None or size is None or "teeth" in one:
+            return back
+        given = [Edit("remove", (*key, name)) for name in ("radius", "diameter") if name in one]
+        return [*back, *given, Edit("set", (*key, "teeth"), _teeth(belt, size))]
+    over = [Edit("set", (*key, "side"), "outside")]
+    if size is None or "teeth" not in one:
+        return over
+    radius = [] if "radius" in one or "diameter" in one else [Edit("set", (*key, "radius"), f"{1e3 * size:.4g} mm")]
+    return [*over, Edit("remove", (*key, "teeth")), *radius]
 
 
 def remove(data: Mapping[str, Any], number: int) -> list[Edit]:
@@ -171,12 +197,16 @@ def add(draft: Draft, x: float, y: float, base: Any = None) -> list[Edit]:
         pulley["inertia"] = inertia_of_disk(radius)
     else:
         pulley["speed"] = dict(DRIVER)
+    belt = toothed_belt(draft.data)
+    toothed = pulley if belt is None else {**pulley, "teeth": _teeth(belt, radius)}
+    if belt is not None:
+        del toothed["radius"]
     for place, side in _places(found, x, y, len(pulleys)):
-        tried = pulley | ({"side": side} if side == "outside" else {})
+        tried = pulley | {"side": side} if side == "outside" else toothed
         if draft.drive is not None and not _runs(draft.data, place, tried, base):
             continue
         return [Edit("insert", ("pulley", place), tried)]
-    return [Edit("insert", ("pulley", len(pulleys)), pulley)]
+    return [Edit("insert", ("pulley", len(pulleys)), toothed)]
 
 
 def _runs(data: Mapping[str, Any], place: int, pulley: Mapping[str, Any], base: Any) -> bool:

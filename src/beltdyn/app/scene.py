@@ -7,8 +7,10 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from beltdyn.app.draft import Draft
-from beltdyn.model import Drive, Path, prepare
+from beltdyn.errors import ModelError
+from beltdyn.model import Belt, Drive, Path, prepare
 from beltdyn.model.belt import read_side
+from beltdyn.model.toothing import FEWEST_TEETH, MOST_TEETH
 from beltdyn.parts.quantity import to_si
 from beltdyn.show.notebook import outline
 
@@ -45,11 +47,9 @@ def length_in(value: object) -> float | None:
 
 def circles(data: Mapping[str, Any]) -> list[Circle]:
     """Parse the pulleys with valid center and size."""
-    found = []
+    found, belt = [], toothed_belt(data)
     for number, one in enumerate(groups(data, "pulley")):
-        center, radius = one.get("center"), length_in(one.get("radius"))
-        if radius is None and (diameter := length_in(one.get("diameter"))) is not None:
-            radius = diameter / 2
+        center, radius = one.get("center"), _radius(one, belt)
         point = (
             [length_in(each) for each in center] if isinstance(center, list | tuple) and len(center) == 2 else [None]
         )
@@ -59,6 +59,26 @@ def circles(data: Mapping[str, Any]) -> list[Circle]:
         side = "outside" if read_side(one.get("side")) == "outside" else "inside"
         found.append(Circle(number, str(one.get("name", f"pulley {number + 1}")), x, y, radius, side))
     return found
+
+
+def toothed_belt(data: Mapping[str, Any]) -> Belt | None:
+    """The belt of a drive file, if it is valid and has teeth."""
+    try:
+        belt = Belt.model_validate(data.get("belt"))
+    except (ValueError, ModelError):
+        return None
+    return None if belt.toothing is None else belt
+
+
+def _radius(one: Mapping[str, Any], belt: Belt | None) -> float | None:
+    """Radius of a pulley as given, by its diameter, or by its teeth, m; None if it is invalid."""
+    radius, diameter, teeth = length_in(one.get("radius")), length_in(one.get("diameter")), one.get("teeth")
+    if radius is None and diameter is not None:
+        radius = diameter / 2
+    counted = isinstance(teeth, int) and FEWEST_TEETH <= teeth <= MOST_TEETH
+    if radius is None and belt is not None and belt.toothing is not None and counted:
+        radius = belt.toothing.radius(teeth, 0.0, belt.pitch_offset)
+    return radius
 
 
 def groups(data: Mapping[str, Any], key: str) -> list[Mapping[str, Any]]:

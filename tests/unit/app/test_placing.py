@@ -1,12 +1,16 @@
 """What is done on the canvas, as edits."""
 
+import math
 import tomllib
+from importlib.resources import files
 from pathlib import Path
 
 import pytest
+import tomli_w
 
 from beltdyn.app import placing
 from beltdyn.app.draft import Draft, draft
+from beltdyn.app.scene import circles, toothed_belt
 from beltdyn.app.session import Document
 from beltdyn.app.workspace import EMPTY
 from beltdyn.model import prepare
@@ -104,3 +108,32 @@ def test_a_new_pulley_finds_room() -> None:
         document.apply(placing.add(of(document), x, 0.0))
     _, second, third = (float(str(one["radius"]).removesuffix(" mm")) for one in document.data["pulley"])
     assert 70.0 - second > third
+
+
+def test_pulleys_with_teeth_are_sized_by_teeth() -> None:
+    """By the pointer to the nearest number, by keys by one at least; on the back of the belt they have none."""
+    document = Document(files("beltdyn").joinpath("examples", "timing_drive.toml").read_text("utf-8"))
+    pulleys = document.data["pulley"]
+    number = next(place for place, one in enumerate(pulleys) if "teeth" in one)
+    teeth, circle = pulleys[number]["teeth"], circles(document.data)[number]
+    document.apply(placing.resize(document.data, number, circle.radius + 3.2 * 0.008 / (2.0 * math.pi)))
+    assert document.data["pulley"][number]["teeth"] == teeth + 3
+    document.apply(placing.grow(document.data, number, -1e-6))
+    assert document.data["pulley"][number]["teeth"] == teeth + 2
+    document.apply(placing.flip(document.data, number))
+    turned = document.data["pulley"][number]
+    assert "teeth" not in turned
+    assert turned["side"] == "outside"
+    document.apply(placing.flip(document.data, number))
+    assert document.data["pulley"][number]["teeth"] == teeth + 2
+    assert "radius" not in document.data["pulley"][number]
+
+
+def test_a_new_pulley_has_teeth_within_a_belt_with_teeth() -> None:
+    document = Document(files("beltdyn").joinpath("examples", "timing_drive.toml").read_text("utf-8"))
+    assert toothed_belt(document.data) is not None
+    document = Document(tomli_w.dumps({"belt": document.data["belt"]}))
+    document.apply(placing.add(of(document), 0.0, 0.0))
+    document.apply(placing.add(of(document), 0.4, 0.0))
+    assert len(document.data["pulley"]) == 2
+    assert all(isinstance(one["teeth"], int) and "radius" not in one for one in document.data["pulley"])

@@ -2,6 +2,8 @@
 
 import json
 import math
+import tomllib
+from importlib.resources import files
 from pathlib import Path
 
 import pytest
@@ -84,3 +86,15 @@ def test_an_arm_and_its_rest_are_drawn(alternator_text: str) -> None:
 )
 def test_lengths_are_read_where_they_can_be(value: object, length: float | None) -> None:
     assert length_in(value) == length
+
+
+@pytest.mark.parametrize("name", ["timing_drive", "printer_axis", "gantry_axis", "servo_axis"])
+def test_every_pulley_of_an_example_with_teeth_is_drawn(name: str) -> None:
+    text = files("beltdyn").joinpath("examples", f"{name}.toml").read_text("utf-8")
+    made = draft(tomllib.loads(text), HERE)
+    assert made.drive is not None
+    sizes = [1e3 * one.radius for one in made.drive.pulleys]
+    assert [one["r"] for one in scene(made)["pulleys"]] == pytest.approx(sizes)
+    broken = draft({**made.data, "contact": {"friction": -1}}, HERE)  # while something else is wrong
+    assert broken.drive is None
+    assert len(scene(broken)["pulleys"]) == len(sizes)
