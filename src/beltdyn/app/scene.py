@@ -75,10 +75,9 @@ def _radius(one: Mapping[str, Any], belt: Belt | None) -> float | None:
     radius, diameter, teeth = length_in(one.get("radius")), length_in(one.get("diameter")), one.get("teeth")
     if radius is None and diameter is not None:
         radius = diameter / 2
-    counted = isinstance(teeth, int) and FEWEST_TEETH <= teeth <= MOST_TEETH
-    if radius is None and belt is not None and belt.toothing is not None and counted:
-        radius = belt.toothing.radius(teeth, 0.0, belt.pitch_offset)
-    return radius
+    if radius is not None or belt is None or belt.toothing is None or not isinstance(teeth, int):
+        return radius
+    return belt.toothing.radius(teeth, 0.0, belt.pitch_offset) if FEWEST_TEETH <= teeth <= MOST_TEETH else None
 
 
 def groups(data: Mapping[str, Any], key: str) -> list[Mapping[str, Any]]:
