@@ -18,6 +18,7 @@ from beltdyn.results.result import Result
 from beltdyn.results.run import Run
 from beltdyn.results.schema import VARIOUS, attribute, in_words, runs_steadily, shown_unit
 from beltdyn.results.summary import FAILURE, Compared, Summary, steady_comparison, summarize
+from beltdyn.results.tooth_loads import loads_over_time
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -167,8 +168,32 @@ def run_sheet(run: Run) -> Sheet:
     )
     return Sheet(
         run.drive.name or "",
-        (_pulleys(f"Pulleys{over}", summary, run.drive.guides), spans, *_steady_running(run), facts),
+        (
+            _pulleys(f"Pulleys{over}", summary, run.drive.guides),
+            *_teeth(run),
+            spans,
+            *_steady_running(run),
+            facts,
+        ),
     )
+
+
+def _teeth(run: Run) -> tuple[Table, ...]:
+    """Extremes of the loads of teeth; empty without teeth, or without outputs along the belt."""
+    if run.drive.belt.teeth is None:
+        return ()
+    with run.recorded() as recorded:
+        if "contact_pulley" not in recorded:
+            return ()
+        found = [one for _, teeth in loads_over_time(recorded, run.prepared) for one in teeth]
+    rows = []
+    for name in dict.fromkeys(one.name for one in found):
+        own = [one for one in found if one.name == name]
+        force, margin = max(one.largest for one in own), min(one.jump_margin for one in own)
+        allowed = "–" if math.isnan(own[0].allowed) else f"{own[0].allowed:.1f}"
+        rows.append((name, f"{min(one.in_mesh for one in own):.1f}", f"{force:.1f}", allowed, _safety(margin)))
+    headings = ("", "teeth\nin mesh", "largest\nload N", "allowed\nN", "margin\nto jump")
+    return (Table("Teeth", headings, tuple(rows)),) if rows else ()
 
 
 def _run_up(run: Run) -> list[tuple[str, str]]:

@@ -1,13 +1,15 @@
-"""Tables and facts of results that are no runs; those of runs are seen on the screen."""
+"""Tables and facts of results that are no runs, and of teeth; others of runs are seen on the screen."""
 
 import math
 
 import numpy as np
+import pytest
 import xarray as xr
 
-from beltdyn.model import Drive
-from beltdyn.results import Result
+from beltdyn.model import Drive, example
+from beltdyn.results import Result, tooth_loads
 from beltdyn.show.sheet import Facts, Table, sheet
+from beltdyn.state.steady import steady_state
 
 
 def test_numbers_are_facts_and_names_make_tables(drive: Drive) -> None:
@@ -58,3 +60,12 @@ def test_modes_are_columns_over_the_places(drive: Drive) -> None:
             "Part", ("Way\nm", "Mode 1", "Mode 2"), (("-0.10000", "belt", "carriage"), ("0.10000", "carriage", "belt"))
         ),
     )
+
+
+def test_a_belt_with_teeth_has_their_loads() -> None:
+    run = steady_state(example("timing_drive"))
+    (found,) = (part for part in sheet(run).parts if isinstance(part, Table) and part.title == "Teeth")
+    assert [row[0] for row in found.rows] == ["crankshaft", "camshaft", "water pump"]
+    for row, one in zip(found.rows, tooth_loads(run), strict=True):
+        shown = [float(cell) for cell in row[1:]]
+        assert shown == pytest.approx([one.in_mesh, one.largest, one.allowed, one.jump_margin], rel=0.02)
