@@ -5,11 +5,11 @@ from collections.abc import Iterator, Mapping, Sequence
 from typing import Any
 
 from beltdyn.app.draft import Draft
-from beltdyn.app.scene import Circle, circles, groups, length_in, sketched, toothed_belt
+from beltdyn.app.scene import Circle, circle, circles, groups, length_in, sketched, toothing_in
 from beltdyn.errors import ModelError
-from beltdyn.model import Belt, Drive
+from beltdyn.model import Drive
 from beltdyn.model.belt import read_side
-from beltdyn.model.toothing import FEWEST_TEETH, MOST_TEETH
+from beltdyn.model.toothing import FEWEST_TEETH
 from beltdyn.parts.quantity import written_like
 from beltdyn.parts.toml_edits import Edit, Location
 
@@ -33,13 +33,13 @@ def move(data: Mapping[str, Any], number: int, x: float, y: float) -> list[Edit]
 
 def nudge(data: Mapping[str, Any], number: int, right: float, up: float) -> list[Edit]:
     """Move the center of a pulley by a step, m; nothing if it is invalid."""
-    one = next((each for each in circles(data) if each.number == number), None)
+    one = circle(data, number)
     return [] if one is None else move(data, number, one.x + right, one.y + up)
 
 
 def grow(data: Mapping[str, Any], number: int, more: float) -> list[Edit]:
     """Increase the radius of a pulley, m, by at least a tooth if it has teeth; nothing if it is invalid."""
-    one = next((each for each in circles(data) if each.number == number), None)
+    one = circle(data, number)
     if one is None:
         return []
     teeth = groups(data, "pulley")[number].get("teeth")
@@ -47,12 +47,6 @@ def grow(data: Mapping[str, Any], number: int, more: float) -> list[Edit]:
     if isinstance(teeth, int) and edits[0].value == teeth:
         return [Edit("set", ("pulley", number, "teeth"), max(teeth + (1 if more > 0.0 else -1), FEWEST_TEETH))]
     return edits
-
-
-def _teeth(belt: Belt, radius: float) -> int:
-    """Number of teeth of a pulley of about a radius, m."""
-    pitch = belt.toothing.pitch if belt.toothing is not None else math.inf
-    return min(max(round(2.0 * math.pi * (radius + belt.pitch_offset) / pitch), FEWEST_TEETH), MOST_TEETH)
 
 
 def nudge_pivot(data: Mapping[str, Any], number: int, right: float, up: float) -> list[Edit]:
@@ -89,8 +83,9 @@ def _point(data: Mapping[str, Any], location: tuple[int | str, ...], given: obje
 def resize(data: Mapping[str, Any], number: int, radius: float) -> list[Edit]:
     """Set the radius of a pulley, m, or its diameter or teeth if these are given."""
     one, radius = groups(data, "pulley")[number], max(radius, _SMALLEST_RADIUS / 10)
-    if "teeth" in one and (belt := toothed_belt(data)) is not None:
-        return [Edit("set", ("pulley", number, "teeth"), _teeth(belt, radius))]
+    if "teeth" in one and (toothed := toothing_in(data)) is not None:
+        toothing, offset = toothed
+        return [Edit("set", ("pulley", number, "teeth"), toothing.teeth_about(radius, offset))]
     if "diameter" in one and "radius" not in one:
         return [Edit("set", ("pulley", number, "diameter"), written_like(2 * radius, one["diameter"], "m"))]
     return [Edit("set", ("pulley", number, "radius"), written_like(radius, one.get("radius"), "m"))]
@@ -98,20 +93,19 @@ def resize(data: Mapping[str, Any], number: int, radius: float) -> list[Edit]:
 
 def flip(data: Mapping[str, Any], number: int) -> list[Edit]:
     """Move a pulley to the other side of the belt: with teeth on that of the teeth, without on its back."""
-    one, key = groups(data, "pulley")[number], ("pulley", number)
-    size = next((each.radius for each in circles(data) if each.number == number), None)
-    belt = None if size is None else toothed_belt(data)
-    if read_side(one.get("side")) == "outside":
-        back = [Edit("remove", (*key, "side"))]
-        if belt is None or size is None or "teeth" in one:
-            return back
-        given = [Edit("remove", (*key, name)) for name in ("radius", "diameter") if name in one]
-        return [*back, *given, Edit("set", (*key, "teeth"), _teeth(belt, size))]
-    over = [Edit("set", (*key, "side"), "outside")]
-    if size is None or "teeth" not in one:
-        return over
-    radius = [] if "radius" in one or "diameter" in one else [Edit("set", (*key, "radius"), f"{1e3 * size:.4g} mm")]
-    return [*over, Edit("remove", (*key, "teeth")), *radius]
+    one, own, key = groups(data, "pulley")[number], circle(data, number), ("pulley", number)
+    outside, sized = read_side(one.get("side")) == "outside", [name for name in ("radius", "diameter") if name in one]
+    edits = [Edit("remove", (*key, "side")) if outside else Edit("set", (*key, "side"), "outside")]
+    if own is None or outside == ("teeth" in one):
+        return edits
+    if not outside:
+        edits.append(Edit("remove", (*key, "teeth")))
+        return edits if sized else [*edits, Edit("set", (*key, "radius"), f"{1e3 * own.radius:.4g} mm")]
+    if (toothed := toothing_in(data)) is None:
+        return edits
+    toothing, offset = toothed
+    edits += [Edit("remove", (*key, name)) for name in sized]
+    return [*edits, Edit("set", (*key, "teeth"), toothing.teeth_about(own.radius, offset))]
 
 
 def remove(data: Mapping[str, Any], number: int) -> list[Edit]:
@@ -170,7 +164,7 @@ def new_tensioner(draft: Draft, number: int, kind: str, place: int) -> list[Edit
 def rim(data: Mapping[str, Any], hub: Location) -> list[Edit]:
     """Give a pulley the inertia that its rim needs before a hub, if it has none."""
     pulley = groups(data, "pulley")[int(hub[1])]
-    one = next((each for each in circles(data) if each.number == hub[1]), None)
+    one = circle(data, int(hub[1]))
     if one is None or pulley.get("inertia"):
         return []
     return [Edit("set", (*hub[:-1], "inertia"), inertia_of_disk(one.radius))]
@@ -188,25 +182,21 @@ def add(draft: Draft, x: float, y: float, base: Any = None) -> list[Edit]:
     """
     found, pulleys = circles(draft.data), groups(draft.data, "pulley")
     radius = _radius_at(found, x, y)
-    pulley: dict[str, Any] = {
+    named: dict[str, Any] = {
         "name": _free_name([str(one.get("name")) for one in pulleys]),
         "center": [float(f"{x:.6g}"), float(f"{y:.6g}")],
-        "radius": f"{1e3 * radius:g} mm",
     }
-    if pulleys:
-        pulley["inertia"] = inertia_of_disk(radius)
-    else:
-        pulley["speed"] = dict(DRIVER)
-    belt = toothed_belt(draft.data)
-    toothed = pulley if belt is None else {**pulley, "teeth": _teeth(belt, radius)}
-    if belt is not None:
-        del toothed["radius"]
+    turns = {"inertia": inertia_of_disk(radius)} if pulleys else {"speed": dict(DRIVER)}
+    smooth = inside = named | {"radius": f"{1e3 * radius:g} mm"} | turns
+    if (toothed := toothing_in(draft.data)) is not None:
+        toothing, offset = toothed
+        inside = named | {"teeth": toothing.teeth_about(radius, offset)} | turns
     for place, side in _places(found, x, y, len(pulleys)):
-        tried = pulley | {"side": side} if side == "outside" else toothed
+        tried = smooth | {"side": side} if side == "outside" else inside
         if draft.drive is not None and not _runs(draft.data, place, tried, base):
             continue
         return [Edit("insert", ("pulley", place), tried)]
-    return [Edit("insert", ("pulley", len(pulleys)), toothed)]
+    return [Edit("insert", ("pulley", len(pulleys)), inside)]
 
 
 def _runs(data: Mapping[str, Any], place: int, pulley: Mapping[str, Any], base: Any) -> bool:

@@ -10,7 +10,7 @@ from beltdyn.app.draft import Draft
 from beltdyn.errors import ModelError
 from beltdyn.model import Belt, Drive, Path, prepare
 from beltdyn.model.belt import read_side
-from beltdyn.model.toothing import FEWEST_TEETH, MOST_TEETH
+from beltdyn.model.toothing import FEWEST_TEETH, MOST_TEETH, Toothing
 from beltdyn.parts.quantity import to_si
 from beltdyn.show.notebook import outline
 
@@ -47,9 +47,9 @@ def length_in(value: object) -> float | None:
 
 def circles(data: Mapping[str, Any]) -> list[Circle]:
     """Parse the pulleys with valid center and size."""
-    found, belt = [], toothed_belt(data)
+    found, toothed = [], toothing_in(data)
     for number, one in enumerate(groups(data, "pulley")):
-        center, radius = one.get("center"), _radius(one, belt)
+        center, radius = one.get("center"), _radius(one, toothed)
         point = (
             [length_in(each) for each in center] if isinstance(center, list | tuple) and len(center) == 2 else [None]
         )
@@ -61,23 +61,29 @@ def circles(data: Mapping[str, Any]) -> list[Circle]:
     return found
 
 
-def toothed_belt(data: Mapping[str, Any]) -> Belt | None:
-    """The belt of a drive file, if it is valid and has teeth."""
+def circle(data: Mapping[str, Any], number: int) -> Circle | None:
+    """A pulley by its number; None if its center or size is invalid."""
+    return next((one for one in circles(data) if one.number == number), None)
+
+
+def toothing_in(data: Mapping[str, Any]) -> tuple[Toothing, float] | None:
+    """The toothing of a belt and its pitch offset, m; None if the belt is invalid or has no teeth."""
     try:
         belt = Belt.model_validate(data.get("belt"))
     except (ValueError, ModelError):
         return None
-    return None if belt.toothing is None else belt
+    return None if belt.toothing is None else (belt.toothing, belt.pitch_offset)
 
 
-def _radius(one: Mapping[str, Any], belt: Belt | None) -> float | None:
+def _radius(one: Mapping[str, Any], toothed: tuple[Toothing, float] | None) -> float | None:
     """Radius of a pulley as given, by its diameter, or by its teeth, m; None if it is invalid."""
     radius, diameter, teeth = length_in(one.get("radius")), length_in(one.get("diameter")), one.get("teeth")
     if radius is None and diameter is not None:
         radius = diameter / 2
-    if radius is not None or belt is None or belt.toothing is None or not isinstance(teeth, int):
+    if radius is not None or toothed is None or not isinstance(teeth, int):
         return radius
-    return belt.toothing.radius(teeth, 0.0, belt.pitch_offset) if FEWEST_TEETH <= teeth <= MOST_TEETH else None
+    toothing, offset = toothed
+    return toothing.radius(teeth, 0.0, offset) if FEWEST_TEETH <= teeth <= MOST_TEETH else None
 
 
 def groups(data: Mapping[str, Any], key: str) -> list[Mapping[str, Any]]:

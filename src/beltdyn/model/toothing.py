@@ -108,6 +108,10 @@ class Toothing(Part):
         """Radius of the outside of a pulley, m, whose tension line lies outside of it by an offset, m."""
         return teeth * self.pitch * (1.0 + pitch_error) / (2.0 * pi) - offset
 
+    def teeth_about(self, radius: float, offset: float) -> int:
+        """Number of teeth of the pulley whose `radius` is nearest to one, m."""
+        return min(max(round(2.0 * pi * (radius + offset) / self.pitch), FEWEST_TEETH), MOST_TEETH)
+
 
 class ToothRating(Part):
     """How the teeth of a profile are rated, with standard widths; the law is that of `beltdyn.theory.rating`.

@@ -10,7 +10,7 @@ import tomli_w
 
 from beltdyn.app import placing
 from beltdyn.app.draft import Draft, draft
-from beltdyn.app.scene import circles, toothed_belt
+from beltdyn.app.scene import circles, toothing_in
 from beltdyn.app.session import Document
 from beltdyn.app.workspace import EMPTY
 from beltdyn.model import prepare
@@ -131,7 +131,7 @@ def test_pulleys_with_teeth_are_sized_by_teeth() -> None:
 
 def test_a_new_pulley_has_teeth_within_a_belt_with_teeth() -> None:
     document = Document(files("beltdyn").joinpath("examples", "timing_drive.toml").read_text("utf-8"))
-    assert toothed_belt(document.data) is not None
+    assert toothing_in(document.data) is not None
     document = Document(tomli_w.dumps({"belt": document.data["belt"]}))
     document.apply(placing.add(of(document), 0.0, 0.0))
     document.apply(placing.add(of(document), 0.4, 0.0))
