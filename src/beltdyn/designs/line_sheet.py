@@ -352,8 +352,7 @@ def take_up_ratio(prepared: Prepared) -> float:
     for one in prepared.drive.tensioners:
         along = getattr(one, "direction", None)
         if along is not None:
-            p = prepared.drive.carried(one)
-            return abs(float(np.dot(path.span_directions[p] - path.span_directions[p - 1], along)))
+            return abs(float(np.dot(path.gradient(prepared.drive.carried(one)), along)))
     return np.nan
 
 

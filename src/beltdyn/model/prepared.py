@@ -347,8 +347,8 @@ def prepare(drive: Drive) -> Prepared:
 def install(drive: Drive) -> Installation:
     """Estimate tension, penetration and tensioner positions for the belt at rest.
 
-    `beltdyn.model.static_estimate` and `beltdyn.model.static_estimate` have the equations, which leave out bending
-    stiffness and weight; `beltdyn.state.installation.bring_to_rest` finds static equilibrium.
+    `beltdyn.model.static_estimate` has the equations, which leave out bending stiffness and weight;
+    `beltdyn.state.installation.bring_to_rest` finds static equilibrium.
 
     Parameters
     ----------

@@ -6,7 +6,7 @@ that and the lands nothing, the tooth lifts, and the belt begins to jump there.
 """
 
 from collections.abc import Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
@@ -230,6 +230,21 @@ def loads_over_time(recorded: Recorded, prepared: Prepared) -> Iterator[tuple[fl
     times = np.asarray(recorded["field_time"])
     for number in np.unique(np.linspace(0, times.size - 1, min(times.size, _INSTANTS)).round().astype(int)).tolist():
         yield float(times[number]), loads_at(recorded, prepared, number)
+
+
+def extreme_loads(recorded: Recorded, prepared: Prepared) -> tuple[ToothLoads, ...]:
+    """Of each pulley over some outputs along the belt: fewest teeth in mesh, largest force, least margin to a jump."""
+    found = dict[str, ToothLoads]()
+    for _, loads in loads_over_time(recorded, prepared):
+        for one in loads:
+            before = found.get(one.name, one)
+            found[one.name] = replace(
+                one,
+                in_mesh=min(before.in_mesh, one.in_mesh),
+                largest=max(before.largest, one.largest),
+                jump_margin=min(before.jump_margin, one.jump_margin),
+            )
+    return tuple(found.values())
 
 
 def _margin(pressed: FloatArray, off: FloatArray) -> float:

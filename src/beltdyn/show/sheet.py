@@ -18,7 +18,7 @@ from beltdyn.results.result import Result
 from beltdyn.results.run import Run
 from beltdyn.results.schema import VARIOUS, attribute, in_words, runs_steadily, shown_unit
 from beltdyn.results.summary import FAILURE, Compared, Summary, steady_comparison, summarize
-from beltdyn.results.tooth_loads import loads_over_time
+from beltdyn.results.tooth_loads import extreme_loads
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -185,13 +185,11 @@ def _teeth(run: Run) -> tuple[Table, ...]:
     with run.recorded() as recorded:
         if "contact_pulley" not in recorded:
             return ()
-        found = [one for _, teeth in loads_over_time(recorded, run.prepared) for one in teeth]
+        found = extreme_loads(recorded, run.prepared)
     rows = []
-    for name in dict.fromkeys(one.name for one in found):
-        own = [one for one in found if one.name == name]
-        force, margin = max(one.largest for one in own), min(one.jump_margin for one in own)
-        allowed = "–" if math.isnan(own[0].allowed) else f"{own[0].allowed:.1f}"
-        rows.append((name, f"{min(one.in_mesh for one in own):.1f}", f"{force:.1f}", allowed, _safety(margin)))
+    for one in found:
+        allowed = "–" if math.isnan(one.allowed) else f"{one.allowed:.1f}"
+        rows.append((one.name, f"{one.in_mesh:.1f}", f"{one.largest:.1f}", allowed, _safety(one.jump_margin)))
     headings = ("", "teeth\nin mesh", "largest\nload N", "allowed\nN", "margin\nto jump")
     return (Table("Teeth", headings, tuple(rows)),) if rows else ()
 

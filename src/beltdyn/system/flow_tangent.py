@@ -272,12 +272,7 @@ def hold_nothing(frame: Travelling, motion: Motion, factors: TangentFactors, mat
 def arcs_element(
     frame: FlowingByArcs, system: System, motion: Motion, factors: TangentFactors, element: int, equations: Equations
 ) -> None:
-    """Inertia, losses, contact, supports and goods of an element.
-
-    `frame`: that of the system; `system`, `motion`, `factors`: as for `steady_assembly.assemble`; `element`: which one;
-    position, velocity of its material points and second derivative over time of its coordinates are in the workspace,
-    and residual and tangent are those of its elasticity; `equations`: changed in place.
-    """
+    """Inertia, losses, contact, supports and goods of an element; arguments as for `flowing_element`."""
     work, flow = equations.work, equations.work.flow
     wanted, differentiated = factors.by_acceleration != 0.0 or differentiates_forces(factors), flow_factors(factors)
     find_rate(system, element, work)

@@ -1,6 +1,7 @@
 """Loads of teeth on pulleys: balance with torques, teeth in mesh, margin to a jump."""
 
 from dataclasses import replace
+from importlib import import_module
 from types import SimpleNamespace
 from typing import cast
 
@@ -10,7 +11,7 @@ import pytest
 import beltdyn as bd
 from beltdyn.errors import ConvergenceError, ModelError
 from beltdyn.results import Run, tooth_loads
-from beltdyn.results.checks import Evidence, machines
+from beltdyn.results.checks import Evidence
 from beltdyn.results.checks.machines import lifted_teeth
 
 
@@ -84,7 +85,8 @@ def test_overloaded_teeth_are_told(run: Run) -> None:
 def test_teeth_whose_lands_carry_nothing_lift(run: Run, monkeypatch: pytest.MonkeyPatch) -> None:
     loads = tooth_loads(run)
     lifted = replace(loads[0], jump_margin=1.0), *loads[1:]
-    monkeypatch.setattr(machines, "loads_over_time", lambda *_: iter([(0.0, loads), (0.1, lifted)]))
+    module = import_module("beltdyn.results.tooth_loads")
+    monkeypatch.setattr(module, "loads_over_time", lambda *_: iter([(0.0, loads), (0.1, lifted)]))
     assert [str(one) for one in lifted_teeth(cast(Evidence, SimpleNamespace(recorded=None, prepared=None)))] == [
         "teeth lift off driver at 100% of the load. The belt rides up there, and jumps under a little more load. "
         "Raise the tension, reduce the load, or increase the wrap angle."

@@ -11,7 +11,7 @@ from beltdyn.model.carrying import in_batch, lies_on, upper_side
 from beltdyn.parts.messages import Finding, listing
 from beltdyn.results.checks.evidence import Evidence
 from beltdyn.results.incidents import jumps_in, on_stops
-from beltdyn.results.tooth_loads import ToothLoads, loads_over_time
+from beltdyn.results.tooth_loads import extreme_loads
 from beltdyn.theory.span import sag_ratio
 
 GROWTH = "growth"
@@ -131,10 +131,8 @@ _LIFTS = 1.01
 
 def lifted_teeth(evidence: Evidence) -> Iterator[Finding]:
     """Teeth whose flanks carry all that presses the belt on, so that they lift, at any of some outputs."""
-    worst = dict[str, float]()
-    for one in _examined(evidence):
-        worst[one.name] = min(one.jump_margin, worst.get(one.name, np.inf))
-    lifted = {name: margin for name, margin in worst.items() if margin < _LIFTS}
+    found = extreme_loads(evidence.recorded, evidence.prepared)
+    lifted = {one.name: one.jump_margin for one in found if one.jump_margin < _LIFTS}
     if lifted:
         yield Finding(
             f"teeth lift off {listing([f'{name} at {margin:.0%} of the load' for name, margin in lifted.items()])}.",
@@ -159,12 +157,9 @@ def jumped_teeth(evidence: Evidence) -> Iterator[Finding]:
 
 def overloaded_teeth(evidence: Evidence) -> Iterator[Finding]:
     """Teeth that carry more than allowed, at any of some outputs."""
-    worst = dict[str, float]()
-    allowed = np.inf
-    for one in _examined(evidence):
-        if one.largest > one.allowed:
-            allowed, worst[one.name] = one.allowed, max(one.largest, worst.get(one.name, 0.0))
-    if worst:
+    over = [one for one in extreme_loads(evidence.recorded, evidence.prepared) if one.largest > one.allowed]
+    if over:
+        worst, allowed = {one.name: one.largest for one in over}, over[0].allowed
         factor = max(worst.values()) / allowed
         yield Finding(
             f"a tooth carries {listing([f'{load:.4g} N on {name}' for name, load in worst.items()])}; the belt allows "
@@ -172,9 +167,3 @@ def overloaded_teeth(evidence: Evidence) -> Iterator[Finding]:
             "Teeth shear off early.",
             f"Choose a belt {factor:.2g} times as wide, or a pulley with more teeth in mesh, or reduce the load.",
         )
-
-
-def _examined(evidence: Evidence) -> Iterator[ToothLoads]:
-    """Loads of teeth on all pulleys at some outputs along the belt."""
-    for _, loads in loads_over_time(evidence.recorded, evidence.prepared):
-        yield from loads
