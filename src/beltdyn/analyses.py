@@ -83,7 +83,7 @@ for _analysis in (
     Analysis("beltdyn.state.equilibrium:equilibrium", "Find the static equilibrium of a drive."),
     Analysis("beltdyn.state.steady:steady_state", "Compute the steady running of a drive."),
     Analysis("beltdyn.points.operating_points:operating_map", "Compute operating points over speed and load.", True),
-    Analysis("beltdyn.points.traction:traction", "Compute the traction curve of a pulley (slip over torque).", True),
+    Analysis("beltdyn.points.traction:traction", "Compute the traction curve of a pulley: slip or tooth loads.", True),
     Analysis("beltdyn.points.duty:duty", "Compute the operating points of a duty cycle, and their means.", True),
     Analysis("beltdyn.points.life:life", "Compute fatigue damage and life of the belt, with shares of pulleys.", True),
     Analysis(

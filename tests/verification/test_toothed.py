@@ -92,14 +92,30 @@ def twist(torque: float) -> float:
     return float(driven - driver)
 
 
-def test_stiffness_of_spans_and_arcs_in_series() -> None:
-    stiffness = 2.0 / (twist(-1.0) - twist(1.0))
-    run = bd.steady_state(drive(-1.0), force_tolerance=1e-3)
+def stiffness_in_series(run: Run) -> float:
+    """Torque over the angle between the pulleys, N m/rad, of spans and arcs."""
     stretch, radius = run.prepared.path.length / run.prepared.belt_length, run.prepared.radii[0]
     span, arc = float(run.prepared.path.span_lengths[0]) / stretch, np.pi * radius / stretch
-    give = span + 2.0 * LENGTH / np.tanh(arc / (2.0 * LENGTH))
-    expected = 2.0 * radius**2 * AXIAL / give
+    return float(2.0 * radius**2 * AXIAL / (span + 2.0 * LENGTH / np.tanh(arc / (2.0 * LENGTH))))
+
+
+def test_stiffness_of_spans_and_arcs_in_series() -> None:
+    stiffness = 2.0 / (twist(-1.0) - twist(1.0))
+    expected = stiffness_in_series(bd.steady_state(drive(-1.0), force_tolerance=1e-3))
     assert abs(stiffness) == pytest.approx(expected, rel=1e-3)  # strains of 1e-3 are not in the closed form
+
+
+def test_the_curve_over_torque() -> None:
+    """Wind-up by the stiffness in series, and loads of teeth by load sharing, whose peaks are at the ends of arcs."""
+    given = drive(0.0).with_({"contact.stiffness": 2e10})
+    found = bd.traction(given, torque="-2, 2, 6, 12 N m", force_tolerance=1e-3).dataset
+    assert found.mesh_error.max() < 1e-3
+    wound = 4.0 / stiffness_in_series(bd.steady_state(drive(-2.0), force_tolerance=1e-3))
+    assert float(found.wind_up[1]) == pytest.approx(wound, rel=1e-3)
+    peaks = found.torque / RADIUS * PITCH / (2.0 * LENGTH) / np.tanh(np.pi * RADIUS / (2.0 * LENGTH))
+    # without what bending adds; strains change the pitch by a part in a thousand
+    np.testing.assert_allclose((found.tooth_load[3] - found.tooth_load[2]), peaks[3] - peaks[2], rtol=0.01)
+    assert float(found.limit_torque) == 12.0
 
 
 @pytest.mark.parametrize("torque", [0.0, -5.0, -12.0])

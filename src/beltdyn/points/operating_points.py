@@ -27,6 +27,7 @@ from beltdyn.results.recorder import status_after
 from beltdyn.results.schema import AXIS_NAMES, COORDINATES
 from beltdyn.results.summary import Means, means_of
 from beltdyn.results.tension_balance import causes_of
+from beltdyn.results.tooth_loads import ToothLoads, tooth_loads
 from beltdyn.signals import uninterrupted
 from beltdyn.solvers.run_progress import Progress, Report
 from beltdyn.state.steady import require_steady, steady_state
@@ -58,6 +59,9 @@ VARIABLES = {
     "hub_force": Variable((*PULLEY, "axis"), "N", "Force of the belt on the pulley"),
     "rated_power": Variable(PULLEY, "W", "Rated power of the belt"),
     "utilization": Variable(PULLEY, "1", "Utilization: design power over rated power"),
+    "teeth_in_mesh": Variable(PULLEY, "1", "Teeth in mesh"),
+    "tooth_load": Variable(PULLEY, "N", "Largest tooth load"),
+    "jump_margin": Variable(PULLEY, "1", "Margin to a jump: at 1 teeth lift"),
     "span_tension": Variable(_SPAN, "N", "Span tension"),
     "tensioner_position": Variable(_TENSIONER, "m or rad", "Tensioner position"),
     "tensioner_position_after_tensioning": Variable(
@@ -93,12 +97,15 @@ _OF_PULLEYS = {
 }
 """Variable -> attribute of a `PulleySummary`."""
 
+_OF_TEETH = {"teeth_in_mesh": "in_mesh", "tooth_load": "largest", "jump_margin": "jump_margin"}
+"""Variable -> attribute of `ToothLoads`."""
 
 _OF_RATING = ("rated_power", "utilization")
 _CORDS = "[belt.cord_fatigue] with its source, or a profile that has it, such as SPZ"
 _RIBS = "[belt.rib_fatigue] with its source, or a profile that has it, such as PK"
 DATA = {name: _CORDS if name.startswith("cord") else _RIBS for name in OF_FATIGUE}
 DATA["rib_life"] = "passages in [belt.rib_fatigue], the life in the reference condition, with their source"
+DATA |= dict.fromkeys(_OF_TEETH, "the profile of a toothed belt, such as HTD 8M")
 DATA |= dict.fromkeys(_OF_RATING, "a profile with a power rating, such as SPZ or PK")
 """What a belt must have for results that not all drives have, by their names."""
 
@@ -121,9 +128,9 @@ def labels_of(drive: Drive) -> dict[str, list[str]]:
 
 
 def variables_of(drive: Drive) -> dict[str, Variable]:
-    """Those of `VARIABLES` for which a drive has data: of rating and fatigue not without those of the belt."""
+    """Those of `VARIABLES` for which a drive has data: of rating, fatigue and teeth not without those of the belt."""
     unknown = OF_FATIGUE.keys() - known_variables(drive)
-    unknown |= {*(_OF_RATING if drive.rated_belt is None else ())}
+    unknown |= {*(_OF_RATING if drive.rated_belt is None else ()), *(() if drive.belt.teeth else _OF_TEETH)}
     return {name: one for name, one in VARIABLES.items() if name not in unknown}
 
 
@@ -146,6 +153,8 @@ def values_by_name(run: Run, means: Means, names: Collection[str] = VARIABLES.ke
         "efficiency": balance.efficiency,
         "loss": [balance.losses[cause] for cause in _causes(run.drive)],
     }
+    if run.drive.belt.teeth:
+        values |= _tooth_values(tooth_loads(run), [one.name for one in means.pulleys])
     safeties = np.array(values["slip_safety"])
     if np.any(np.isfinite(safeties)):
         least = int(np.nanargmin(safeties))
@@ -155,6 +164,15 @@ def values_by_name(run: Run, means: Means, names: Collection[str] = VARIABLES.ke
         for name in ("tensioner_position_after_tensioning", "tensioner_position_after_yielding"):
             values[name] = dataset.attrs.get(name, stands)
     return values if OF_FATIGUE.keys().isdisjoint(names) else values | fatigue_by_name(run)
+
+
+def _tooth_values(loads: Sequence[ToothLoads], pulleys: Sequence[str]) -> dict[str, list[float]]:
+    """What is known of the teeth on each pulley; NaN of pulleys without teeth."""
+    found = {one.name: one for one in loads}
+    return {
+        name: [getattr(found[pulley], attribute) if pulley in found else np.nan for pulley in pulleys]
+        for name, attribute in _OF_TEETH.items()
+    }
 
 
 Axes = Mapping[str, tuple[Variable, ArrayLike]]
@@ -358,12 +376,14 @@ class OperatingPoints:
         arrays = {
             name: np.where(self._drive.guides & (name == "pulley_slip"), np.nan, values)
             for name, values in self.arrays.items()
-            if name in ("pulley_slip", "slip_safety", "hub_load")
+            if name in ("pulley_slip", "slip_safety", "hub_load", "tooth_load", "jump_margin")
         }
         found = {
             "largest_slip": (Variable(PULLEY, "1", "Largest slip"), np.fmax.reduce, "pulley_slip"),
             "smallest_safety": (Variable(PULLEY, "1", "Least slip safety"), np.fmin.reduce, "slip_safety"),
             "largest_hub_load": (Variable(PULLEY, "N", "Largest hub load"), np.fmax.reduce, "hub_load"),
+            "largest_tooth_load": (Variable(PULLEY, "N", "Largest tooth load"), np.fmax.reduce, "tooth_load"),
+            "least_jump_margin": (Variable(PULLEY, "1", "Least margin to a jump"), np.fmin.reduce, "jump_margin"),
         }
         return {
             name: (variable, worst(arrays[of], over)) for name, (variable, worst, of) in found.items() if of in arrays

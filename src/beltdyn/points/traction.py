@@ -1,9 +1,9 @@
-"""Traction curve: slip of one pulley over its torque, beyond gross slip."""
+"""Traction curve of one pulley: slip over torque beyond gross slip; tooth loads over torque up to the jump."""
 
 from collections.abc import Callable, Mapping
 from functools import partial
 from pathlib import Path
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -13,12 +13,22 @@ from beltdyn.errors import ConvergenceError, ModelError, cause_of
 from beltdyn.model import Drive
 from beltdyn.model.pulley import flat_friction_on
 from beltdyn.parts.quantity import Numbers, numbers_in
-from beltdyn.points.changed_drive import at_speed, driver_of, held_at, require_belt, sense_of, with_pulley
+from beltdyn.points.changed_drive import (
+    at_speed,
+    driver_of,
+    held_at,
+    require_belt,
+    sense_of,
+    under_torque,
+    with_pulley,
+)
 from beltdyn.points.operating_points import Axes, OperatingPoints
 from beltdyn.results import Result, Run, Variable, summarize
 from beltdyn.results.checks.creep import gross_slip, near_gross_slip
+from beltdyn.results.checks.machines import lifted_teeth, overloaded_teeth
 from beltdyn.solvers.run_progress import Report
 from beltdyn.state.steady import steady_state
+from beltdyn.system.meshing import TOOTH_PHASES
 
 _FIRST, _LAST = 5e-4, 0.6
 """Slips between which gross slip is looked for."""
@@ -41,7 +51,7 @@ _FEWEST = 3
 _ALL = 0.99
 """Part of an arc that slides as a whole."""
 
-_EXPECTED = frozenset({gross_slip.__name__, near_gross_slip.__name__})
+_EXPECTED = frozenset({gross_slip.__name__, near_gross_slip.__name__, lifted_teeth.__name__, overloaded_teeth.__name__})
 """Findings that a traction curve leads to."""
 
 _VARIABLES = {
@@ -52,7 +62,21 @@ _VARIABLES = {
     "sliding_share": Variable(("slip",), "1", "Sliding share of the arc"),
     "capstan_torque": Variable(("slip",), "N m", "Capstan limit (Euler)"),
     "limit_torque": Variable((), "N m", "Largest torque"),
+    "wind_up": Variable(("torque",), "rad", "Wind-up against the driver, from the first point"),
 }
+
+
+class _Curve(NamedTuple):
+    """The points of a curve: along which axis, how drives follow, and what is derived."""
+
+    axis: str
+    label: Variable
+    values: FloatArray
+    drive_at: Callable[[float, Run | None], Drive]
+    """The drive at a value of the axis, from the operating point before."""
+    stride: float | None
+    derive: Callable[[Mapping[str, NDArray[Any]]], Axes]
+    then: Callable[[tuple[int, ...], Run | None], None] | None = None
 
 
 def traction(
@@ -60,6 +84,7 @@ def traction(
     *,
     pulley: str | None = None,
     slip: Numbers | None = None,
+    torque: Numbers | None = None,
     points: int = 30,
     at: float | str | None = None,
     force_tolerance: float | None = None,
@@ -67,13 +92,18 @@ def traction(
     progress: Report | None = None,
     overwrite: bool = False,
 ) -> Result:
-    """Compute the traction curve of a pulley: its slip over its torque, beyond gross slip.
+    """Compute the traction curve of a pulley: its slip over its torque, or its tooth loads up to the jump.
 
-    The slip of the rim relative to that of the driver is prescribed, and the torque follows; beyond gross slip it stays
-    constant. If both whole arcs would slide at once, the belt speed would be undetermined, so the friction of the
-    driver is raised by 0.2 %. The result also holds the elastic creep under Coulomb friction, the slip added by the
-    slope of the friction law, and the torque by Euler's formula with the tensions of each point. Other pulleys keep
-    their loads. A hub chain of the pulley is ignored.
+    *Pulleys without teeth*: the slip of the rim relative to that of the driver is prescribed, and the torque follows;
+    beyond gross slip it stays constant. If both whole arcs would slide at once, the belt speed would be undetermined,
+    so the friction of the driver is raised by 0.2 %. The result also holds the elastic creep under Coulomb friction,
+    the slip added by the slope of the friction law, and the torque by Euler's formula with the tensions of each point.
+
+    *Pulleys with teeth*: the torque is prescribed. The result holds tooth loads, teeth in mesh and margins to a jump of
+    all pulleys, the wind-up of the pulley against the driver, and the largest torque that the belt holds without a jump
+    (within 2 %).
+
+    Other pulleys keep their loads. A hub chain of the pulley is ignored.
 
     Parameters
     ----------
@@ -82,9 +112,13 @@ def traction(
     pulley
         The pulley; by default the only loaded one.
     slip
-        Slips: a range such as "0..20 %", a list, or an array. By default from zero to a fifth beyond gross slip.
+        Slips of a pulley without teeth: a range such as "0..20 %", a list, or an array. By default from zero to a fifth
+        beyond gross slip.
+    torque
+        Torques that a pulley with teeth takes: a range such as "0..40 N m", a list, or an array in N m. By default from
+        zero to the jump.
     points
-        Number of slips of a range.
+        Number of slips or torques of a range.
     at
         Instant at which speeds, loads and schedules are evaluated, such as "0.5 s", or in s; by default the end of the
         simulation.
@@ -101,12 +135,12 @@ def traction(
     Returns
     -------
     Result
-        Variables along ``slip``; the attribute ``pulley`` names the pulley, ``driver`` the driver.
+        Variables along ``slip``, or ``torque`` (N m) of a pulley with teeth; the attribute ``pulley`` names the pulley.
 
     Raises
     ------
     ModelError
-        If there is no such pulley, it is the driver, or the drive cannot run steadily.
+        If there is no such pulley, it is the driver, the drive cannot run steadily, or slips are given for teeth.
     ConvergenceError
         If no point has steady running.
 
@@ -120,23 +154,46 @@ def traction(
     held = _driven_by_speed(held_at(drive, at), force_tolerance)
     driver = driver_of(held)
     number = _loaded(held, driver) if pulley is None else held.number_of(pulley)
-    if held.pulleys[number].teeth:
-        raise ModelError(
-            f"{held.pulleys[number].name} holds the belt by its teeth, so that it does not slip and has no traction "
-            "curve. Use `bd.results.tooth_loads` of steady running, which has the margin to a jump, or a smooth pulley."
-        )
+    one = held.pulleys[number]
     if number == driver:
         raise ModelError(
-            f"pulley = {held.pulleys[number].name!r} is the driver, which is the reference of slip. Choose a driven "
-            "pulley."
+            f"pulley = {one.name!r} is the driver, which is the reference of slip. Choose a driven pulley."
         )
+    if one.teeth and slip is not None:
+        raise ModelError(
+            f"{one.name} holds the belt by its teeth, so that it does not slip: slip cannot be given. Give torque, or "
+            "omit both."
+        )
+    if torque is not None and not one.teeth:
+        raise ModelError(
+            f"{one.name} has no teeth: its torque follows from its slip and stays the same beyond gross slip. Give "
+            "slip, or omit both."
+        )
+    if points < _FEWEST:
+        raise ModelError(f"points = {points} must be {_FEWEST} or more. Give more, or a list.")
     held = held.replace(pulley=[*held.pulleys[driver:], *held.pulleys[:driver]])  # slip is against the first
     number = (number - driver) % len(held.pulleys)
-    rim = held.pulleys[0].driven_speed() * sense_of(held, 0) * held.rolling_radii[0] * held.pulleys[0].turning
-    one = held.pulleys[number]
-    fastest = rim / (held.rolling_radii[number] * one.turning)
     if one.hub:
         held = held.replace(pulley=[other.replace(hub=()) if other is one else other for other in held.pulleys])
+    rim = held.pulleys[0].driven_speed() * sense_of(held, 0) * held.rolling_radii[0] * held.pulleys[0].turning
+    fastest = rim / (held.rolling_radii[number] * one.turning)
+    if one.teeth:
+        curve = _of_teeth(held, number, fastest, torque, points, force_tolerance)
+    else:
+        curve = _of_slip(held, number, fastest, slip, points)
+    axes = {curve.axis: (curve.label, curve.values)}
+    with OperatingPoints("traction", curve.drive_at(0.0, None), axes, output, progress, overwrite) as table:
+        table.derive = curve.derive
+        table.expected = _EXPECTED
+        table.attributes = {"drive_as_given": drive.text, "pulley": one.name}
+        table.each(
+            lambda value: curve.drive_at(value, table.near), force_tolerance, stride=curve.stride, then=curve.then
+        )
+    return table.result()
+
+
+def _of_slip(held: Drive, number: int, fastest: float, slip: Numbers | None, points: int) -> _Curve:
+    """The curve of a pulley whose slip is prescribed; fastest is its speed without slip."""
 
     def slipping(part: float, firmer: float = 1.0) -> Drive:
         first = held.pulleys[0]
@@ -145,17 +202,44 @@ def traction(
         return at_speed(firm, number, (1.0 - part) * fastest)
 
     slips = _past_gross_slip(slipping, number, points) if slip is None else numbers_in("slip", slip, "", points)
-    axes = {"slip": (Variable(("slip",), "1", f"Slip of {one.name}"), slips)}
-    with OperatingPoints("traction", slipping(0.0), axes, output, progress, overwrite) as table:
-        table.derive = partial(_curve, number=number, sense=float(np.sign(fastest)))
-        table.expected = _EXPECTED
-        table.attributes = {"drive_as_given": drive.text, "pulley": one.name}
+    return _Curve(
+        "slip",
+        Variable(("slip",), "1", f"Slip of {held.pulleys[number].name}"),
+        slips,
+        lambda part, near: slipping(part, _firmness(near, number)),
+        _STRIDE,
+        partial(_over_slip, number=number, sense=float(np.sign(fastest))),
+    )
 
-        def from_near(part: float) -> Drive:
-            return slipping(part, _firmness(table.near, number))
 
-        table.each(from_near, force_tolerance, stride=_STRIDE)
-    return table.result()
+def _of_teeth(
+    held: Drive, number: int, fastest: float, torque: Numbers | None, points: int, force_tolerance: float | None
+) -> _Curve:
+    """The curve of a pulley with teeth, whose torque is prescribed."""
+    one, sense = held.pulleys[number], float(np.sign(fastest))
+
+    def loaded(taken: float, _near: Run | None = None) -> Drive:
+        return with_pulley(held, number, under_torque(one, -sense * taken))
+
+    if torque is None:
+        torques = np.linspace(0.0, _jump_torque(loaded, number, force_tolerance), points)
+    else:
+        torques = numbers_in("torque", torque, "N m", points)
+    wind_up = np.full(torques.size, np.nan)
+
+    def take(index: tuple[int, ...], run: Run | None) -> None:
+        if run is not None:
+            wind_up[index] = -sense * _ahead(run, number)
+
+    return _Curve(
+        "torque",
+        Variable(("torque",), "N m", f"Torque on {one.name}"),
+        torques,
+        loaded,
+        None,
+        partial(_over_torque, torques=torques, wind_up=wind_up),
+        take,
+    )
 
 
 def _driven_by_speed(drive: Drive, force_tolerance: float | None) -> Drive:
@@ -192,8 +276,6 @@ def _firmness(near: Run | None, number: int) -> float:
 
 def _past_gross_slip(slipping: Callable[[float, float], Drive], number: int, points: int) -> FloatArray:
     """Slips from zero to some way beyond where the whole arc of the pulley slides, or that of the driver."""
-    if points < _FEWEST:
-        raise ModelError(f"points = {points} must be {_FEWEST} or more. Give more, or a list of slips.")
     creeping, sliding, run = 0.0, _LAST, None
     while sliding - creeping > _NEAR * sliding:
         part = min(_FURTHER * creeping or _FIRST, 0.5 * (creeping + sliding))
@@ -211,7 +293,7 @@ def _past_gross_slip(slipping: Callable[[float, float], Drive], number: int, poi
     return np.linspace(0.0, _BEYOND * sliding, points)
 
 
-def _curve(arrays: Mapping[str, NDArray[Any]], number: int, sense: float) -> Axes:
+def _over_slip(arrays: Mapping[str, NDArray[Any]], number: int, sense: float) -> Axes:
     """What is known of the pulley itself, from the table of all."""
     torque = -sense * arrays["shaft_torque"][:, number]
     found = {
@@ -222,5 +304,39 @@ def _curve(arrays: Mapping[str, NDArray[Any]], number: int, sense: float) -> Axe
         "sliding_share": arrays["sliding_arc"][:, number] / arrays["wrap_angle"][:, number],
         "capstan_torque": np.abs(torque) * arrays["slip_safety"][:, number],
         "limit_torque": np.nanmax(torque, initial=-np.inf),
+    }
+    return {name: (_VARIABLES[name], values) for name, values in found.items()}
+
+
+def _jump_torque(loaded: Callable[[float], Drive], number: int, force_tolerance: float | None) -> float:
+    """The largest torque that the belt holds by its teeth."""
+    run = steady_state(loaded(0.0), force_tolerance=force_tolerance)
+    radius = float(run.prepared.radii[number])
+    holding, torque, jumping = 0.0, float(run.dataset["span_tension"][-1].max()) * radius, np.inf
+    while holding < (1.0 - _NEAR) * jumping:
+        try:
+            run = steady_state(loaded(torque), force_tolerance=force_tolerance, start=run)
+            holding = torque
+        except ConvergenceError as error:
+            if torque < _LEAST * float(run.prepared.belt.axial_stiffness) * radius:
+                raise ConvergenceError(f"no steady running found under any torque: {cause_of(error)}") from error
+            jumping = torque
+        torque = min(_FURTHER * holding or np.inf, 0.5 * (holding + jumping))
+    return holding
+
+
+def _ahead(run: Run, number: int) -> float:
+    """Angle of a pulley ahead of where that of the first one has it by their teeth, rad, but for a constant."""
+    phases, pulleys = np.asarray(run.dataset.attrs[TOOTH_PHASES]), run.prepared.pulleys
+    first, other = pulleys[0].teeth, pulleys[number].teeth
+    return float(phases[number] - phases[0] * first / other) if first and other else np.nan
+
+
+def _over_torque(arrays: Mapping[str, NDArray[Any]], torques: FloatArray, wind_up: FloatArray) -> Axes:
+    """What follows for the pulley and its teeth, from the table of all pulleys."""
+    there = np.isfinite(arrays["belt_speed"])
+    found = {
+        "wind_up": wind_up - wind_up[there][:1] if there.any() else wind_up,
+        "limit_torque": np.max(torques[there], initial=-np.inf),
     }
     return {name: (_VARIABLES[name], values) for name, values in found.items()}

@@ -118,6 +118,8 @@ _OF_TABLES = {
     "least_tension": ("span_tension", "span", "N"),
     "least_slip_safety": ("slip_safety", "pulley", "1"),
     "largest_utilization": ("utilization", "pulley", "%"),
+    "largest_tooth_load": ("tooth_load", "pulley", "N"),
+    "least_jump_margin": ("jump_margin", "pulley", "1"),
 }
 """Key -> variable of operating points, the dimension of its names, and the unit."""
 

@@ -31,7 +31,8 @@ def test_killing_waits_for_nothing() -> None:
     workers.submit(time.sleep, 600.0)
     begun = time.monotonic()
     workers.kill()
-    assert process.exitcode is not None
+    with pytest.raises(ProcessLookupError):  # the exit code may have gone to the thread of the pool
+        os.kill(process.pid or 0, 0)
     assert time.monotonic() - begun < 60.0
 
 

@@ -64,7 +64,20 @@ def test_toothed_pulleys_do_not_slip(run: Run) -> None:
     assert all(np.isnan(one.slip_safety) for one in pulleys)
     assert [one.sliding_speed for one in pulleys] == [0.0, 0.0]
     with pytest.raises(ModelError, match="driven holds the belt by its teeth, so that it does not slip"):
-        bd.traction(run.drive, pulley="driven")
+        bd.traction(run.drive, pulley="driven", slip="0..1 %")
+
+
+def test_points_hold_the_loads_of_teeth(run: Run) -> None:
+    limited = run.drive.with_({"limits.largest_tooth_load": 5.0})
+    found = bd.operating_map(limited, load="1, 1.5")
+    loads = tooth_loads(run)
+    at_load = found.dataset.isel(load=0)
+    for name, expected in (("tooth_load", "largest"), ("jump_margin", "jump_margin"), ("teeth_in_mesh", "in_mesh")):
+        # the mesh of a map is refined to 1 %
+        np.testing.assert_allclose(at_load[name], [getattr(one, expected) for one in loads], rtol=0.01)
+    key = {one.key: one for one in bd.results.key_numbers(found)}["largest_tooth_load"]
+    assert key.value == float(found.dataset.tooth_load.max())
+    assert key.passes is False
 
 
 def test_rest_has_no_tooth_loads(run: Run) -> None:

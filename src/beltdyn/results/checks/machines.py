@@ -125,14 +125,14 @@ def _passed(evidence: Evidence, fields: FloatArray) -> FloatArray:
     return np.asarray(np.interp(fields, time, passed))
 
 
-_LIFTS = 1.01
+LIFTS = 1.01
 """Margin to a jump below which lands carry next to nothing."""
 
 
 def lifted_teeth(evidence: Evidence) -> Iterator[Finding]:
     """Teeth whose flanks carry all that presses the belt on, so that they lift, at any of some outputs."""
     found = extreme_loads(evidence.recorded, evidence.prepared)
-    lifted = {one.name: one.jump_margin for one in found if one.jump_margin < _LIFTS}
+    lifted = {one.name: one.jump_margin for one in found if one.jump_margin < LIFTS}
     if lifted:
         yield Finding(
             f"teeth lift off {listing([f'{name} at {margin:.0%} of the load' for name, margin in lifted.items()])}.",

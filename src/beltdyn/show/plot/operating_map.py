@@ -13,10 +13,11 @@ from beltdyn.errors import ModelError
 from beltdyn.model.static_estimate import held_belt
 from beltdyn.parts.quantity import SHOWN_UNITS
 from beltdyn.results import Result
+from beltdyn.results.checks.machines import LIFTS
 from beltdyn.show.plot.figures import Choice, always, figure
 from beltdyn.show.plot.style import INK, axes_or_new, color, dash, label, name_lines, name_once, panels, rows
 
-# Figures of tensioner sheets: tension and hub load over the travel of a tensioner, with belts of different leng
+# Figures of tensioner sheets
 
 _SHOWN = ("tension", "hub_load")
 _ENDS = ("tension_after_tensioning", "tension_after_yielding")
@@ -99,19 +100,22 @@ def _by_hand(result: Result, number: int, position: float, variable: str) -> flo
     return there.tension * (1.0 if variable == "tension" else float(2.0 * np.sin(0.5 * wrap)))
 
 
-_UNITS = ("span_tension", "hub_load", "pulley_slip", "slip_safety", "efficiency", "tensioner_position")
+_UNITS = (
+    *("span_tension", "hub_load", "pulley_slip", "slip_safety", "tooth_load", "jump_margin"),
+    *("efficiency", "tensioner_position"),
+)
 _PERCENT = ("pulley_slip", "efficiency")
 _ALL = 0.99
 """Part of an arc that slides as a whole."""
 _SAFE = 10.0
-"""Slip safety up to which it is drawn: more is enough."""
-_WARNED = 1.5
-"""Slip safety below which warnings begin."""
+"""Slip safety, or margin to a jump, up to which it is drawn: more is enough."""
+_WARNED = {"slip_safety": 1.5, "jump_margin": LIFTS}
+"""Values below which warnings begin."""
 
 
 def _all_panels(draw: Callable[..., Axes], result: Result, choice: Choice) -> Figure:
     """Lay out a panel for each variable."""
-    there = [name for name in _UNITS if name in result.dataset]
+    there = [name for name in _UNITS if name in result.dataset and result.dataset[name].notnull().any()]
     page = panels(rows([partial(draw, result, name) for name in there]), sharey=False)
     name_once(page)
     return page
@@ -122,16 +126,26 @@ def _over_both(result: Result) -> bool:
     return {"speed", "load"} <= set(result.dataset.dims)
 
 
-@figure(always, _all_panels, of=("operating_map", "duty"))
+def _over_torque(result: Result) -> bool:
+    """Whether a traction curve is that of a pulley with teeth."""
+    return "torque" in result.dataset.dims
+
+
+def _of_points(result: Result) -> bool:
+    """Whether operating points are drawn one variable at a time."""
+    return result.kind != "traction" or _over_torque(result)
+
+
+@figure(_of_points, _all_panels, of=("operating_map", "duty", "traction"))
 def operating_points(result: Result, variable: str = "span_tension", *, ax: Axes | None = None) -> Axes:
-    """Draw a variable of operating points over speed, load or the rows of a duty table.
+    """Draw a variable of operating points over speed, load, torque on teeth, or the rows of a duty table.
 
     Of a map over speed and load it is drawn over the speed, at the load nearest to that of the drive file.
 
     Parameters
     ----------
     result : Result
-        Of `operating_map` or `duty`.
+        Of `operating_map`, `duty`, or `traction` of a pulley with teeth.
     variable : str
         Name of a variable of numbers, such as "hub_load".
     ax : Axes, optional
@@ -173,9 +187,12 @@ def operating_points(result: Result, variable: str = "span_tension", *, ax: Axes
     if variable == "efficiency":
         ax.update_datalim([(0.0, 100.0)], updatex=False)  # what is lost is the distance to it
         ax.autoscale_view(scalex=False)
-    if variable == "slip_safety":
-        ax.axhline(_WARNED, color=INK, linewidth=0.7)
+    if variable in _WARNED:
+        ax.axhline(_WARNED[variable], color=INK, linewidth=0.7)
         ax.set_ylim(0.0, _top(values))
+    toothing = result.drive.belt.toothing
+    if variable == "tooth_load" and toothing is not None and toothing.largest_tooth_load is not None:
+        ax.axhline(toothing.largest_tooth_load, color=INK, linewidth=0.7, label="allowed")
     title = str(values.attrs["long_name"]).partition(":")[0]
     ax.set(xlabel=label(along), ylabel=label(values.assign_attrs(long_name=title)))
     if values.ndim > 1:
@@ -184,7 +201,7 @@ def operating_points(result: Result, variable: str = "span_tension", *, ax: Axes
 
 
 def _top(safety: xr.DataArray) -> float:
-    """Upper end of an axis of slip safeties: large ones are cut off where there are small ones."""
+    """Upper end of an axis of safeties: large ones are cut off where there are small ones."""
     known = safety.values[np.isfinite(safety.values)]
     if known.size == 0:
         return _SAFE
@@ -237,7 +254,12 @@ def efficiency_map(result: Result, ax: Axes | None = None) -> Axes:
     return ax
 
 
-@figure(always, of=("traction",))
+def _over_slip(result: Result) -> bool:
+    """Whether a traction curve is that of a pulley without teeth."""
+    return not _over_torque(result)
+
+
+@figure(_over_slip, of=("traction",))
 def traction_curve(result: Result, ax: Axes | None = None) -> Axes:
     """Draw slip over torque past gross slip, with elastic creep and what bending and the friction law add to it.
 
@@ -247,7 +269,7 @@ def traction_curve(result: Result, ax: Axes | None = None) -> Axes:
     Parameters
     ----------
     result : Result
-        Of `traction`.
+        Of `traction` of a pulley without teeth.
     ax : Axes, optional
         Where to draw; a new figure by default.
 
@@ -256,11 +278,18 @@ def traction_curve(result: Result, ax: Axes | None = None) -> Axes:
     Axes
         The axes.
 
+    Raises
+    ------
+    ModelError
+        If the pulley has teeth.
+
     Examples
     --------
     >>> bd.plot.traction_curve(bd.traction(drive, slip="0..0.2 %", points=3)).get_ylabel()
     'Slip [%]'
     """
+    if _over_torque(result):
+        raise ModelError("a belt does not slip on teeth. Use `bd.plot.operating_points`, with the variable tooth_load.")
     dataset, ax = result.dataset, axes_or_new(ax)
     torque = dataset["torque"].values
     ax.plot(torque, 100.0 * dataset["slip"], color=color(0), marker=".", label="slip")
