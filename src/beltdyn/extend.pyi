@@ -1,4 +1,5 @@
 from beltdyn.analyses import Analysis
+from beltdyn.arrays import record, records
 from beltdyn.contact.friction.law import FrictionLaw
 from beltdyn.contact.normal.law import NormalForce, NormalLaw
 from beltdyn.contact.surface.kind import Gap, SurfaceKind
@@ -12,7 +13,6 @@ from beltdyn.machines.profiles.profile import SEGMENT, Profile, Value
 from beltdyn.machines.tensioners.tensioner import SPRING, Center, MovingTensioner, TensionerForce
 from beltdyn.model.simulation import IntegratorKind
 from beltdyn.parts.quantity import quantity
-from beltdyn.records import record, records
 from beltdyn.results.result import build_result
 from beltdyn.results.schema import Variable
 from beltdyn.show.plot.figures import figure

@@ -94,6 +94,7 @@ inertia = 1
 """
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     "text",
     [

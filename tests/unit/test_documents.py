@@ -240,7 +240,7 @@ def test_the_tutorial_prints_what_it_says(
     assert told == 1
 
 
-COSTLY_TASKS = {"design", "python", "resonance"}
+COSTLY_TASKS = {"belt", "design", "python", "resonance", "slip"}
 """Tasks that optimize, calibrate, simulate over time and compute responses."""
 
 

@@ -9,6 +9,7 @@ from pydantic import Field
 
 import beltdyn as bd
 from beltdyn.analyses import ANALYSES, Analysis
+from beltdyn.arrays import record
 from beltdyn.contact.friction import LAWS, FrictionLaw
 from beltdyn.errors import ModelError
 from beltdyn.kernel import kernel
@@ -22,7 +23,6 @@ from beltdyn.machines.tensioners import TENSIONER
 from beltdyn.machines.tensioners.tensioner import TENSIONERS
 from beltdyn.model import Drive, Pulley
 from beltdyn.parts.quantity import quantity
-from beltdyn.records import record
 from beltdyn.results import Result, Variable, build_result
 
 OF_THE_PACKAGE = {

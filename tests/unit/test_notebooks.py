@@ -108,6 +108,7 @@ def test_drives_and_results_show_themselves_as_html(shown: Shown) -> None:
     assert [name for name, forms in shown.items() if {"stdout", "stderr"} & forms.keys()] == []
 
 
+@pytest.mark.slow
 def test_numbers_stand_beside_their_names(shown: Shown) -> None:
     """In tables: lists of definitions lie in each other where a notebook's own style lets their terms float."""
     (tension, *frequencies), warnings = ast.literal_eval(shown["numbers"]["text/plain"])

@@ -7,13 +7,12 @@ import numpy as np
 import pytest
 from hypothesis import settings
 
-from beltdyn.arrays import FloatArray
+from beltdyn.arrays import FloatArray, blank
 from beltdyn.elements.ancf import ANCF
 from beltdyn.elements.ancf.elastic_force import element_energy, element_force
 from beltdyn.elements.ancf.element import Ancf
 from beltdyn.model import Belt, Drive, loads
 from beltdyn.quadrature import gauss_points
-from beltdyn.records import blank
 from beltdyn.system.arrays import System
 from beltdyn.system.build import belt_system
 from beltdyn.system.state import State, at_rest, belt_section

@@ -12,7 +12,7 @@ import pytest
 from scipy.integrate import solve_ivp
 from scipy.linalg import eig
 
-from beltdyn.arrays import FloatArray
+from beltdyn.arrays import FloatArray, blank
 from beltdyn.elements.ancf import ANCF, element_mass
 from beltdyn.elements.ancf.elastic_force import element_energy, element_force
 from beltdyn.elements.ancf.element import Ancf
@@ -20,7 +20,6 @@ from beltdyn.elements.ancf.material_damping import damping_force
 from beltdyn.elements.kind import DampingFactors
 from beltdyn.model import Belt
 from beltdyn.quadrature import gauss_points
-from beltdyn.records import blank
 from beltdyn.system.state import belt_section
 
 TIME = 1e-4

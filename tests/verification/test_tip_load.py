@@ -87,6 +87,7 @@ def test_thin_belt_bends_as_published(
         assert found[load][:2] == pytest.approx(published, abs=6e-6)
 
 
+@pytest.mark.slow
 def test_converges_with_the_mesh(
     tips: Callable[[float, int], dict[int, FloatArray]],
     order: Callable[..., float],

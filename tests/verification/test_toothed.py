@@ -164,12 +164,14 @@ def over_time() -> Run:
     return bd.simulate(given.replace(simulation=settings, contact={"friction": 0.0}))
 
 
+@pytest.mark.slow
 def test_a_run_that_starts_steadily_stays_steady(over_time: Run) -> None:
     speeds = over_time.dataset.pulley_speed.values
     assert float(np.ptp(speeds, axis=0).max()) < 1e-5  # of 10 rad/s: the tolerance of the time integration
     assert float(abs(over_time.dataset.energy_closure).max()) < 1e-4
 
 
+@pytest.mark.slow
 def test_a_run_goes_on_with_the_grooves_where_they_are(over_time: Run, tmp_path: Path) -> None:
     file = tmp_path / "first.nc"
     over_time.save(file)
@@ -179,6 +181,7 @@ def test_a_run_goes_on_with_the_grooves_where_they_are(over_time: Run, tmp_path:
     np.testing.assert_allclose(later.span_tension.values[[0, -1]], [before, before], rtol=1e-6)
 
 
+@pytest.mark.slow
 def test_modes_of_a_run_are_those_of_steady_running(over_time: Run) -> None:
     one = bd.modes(bd.steady_state(over_time.drive)).dataset.frequency.values[:6]
     other = bd.modes(over_time, at=0.05).dataset.frequency.values[:6]

@@ -47,7 +47,7 @@ def graded(drive: Drive) -> System:
     return system_of(drive, lengths_of(drive.belt))
 
 
-@pytest.fixture(scope="module", params=["ancf", "quintic"])
+@pytest.fixture(scope="module", params=["ancf", pytest.param("quintic", marks=pytest.mark.slow)])
 def cut(request: pytest.FixtureRequest, drive: Drive) -> Cut:
     """The paper's drive with a number of elements of a kind."""
 

@@ -1,9 +1,9 @@
 import numpy as np
 
 import beltdyn as bd
+from beltdyn.arrays import blank
 from beltdyn.elements import ELEMENTS, Section
 from beltdyn.quadrature import gauss_points
-from beltdyn.records import blank
 from beltdyn.stretch import Linear
 
 kind, length = ELEMENTS["cable"], 0.05

@@ -1,8 +1,8 @@
 import numpy as np
 
 import beltdyn as bd
+from beltdyn.arrays import row
 from beltdyn.machines.links.progressive_coupling import PROGRESSIVE_COUPLING, progressive_coupling
-from beltdyn.records import row
 
 STIFFNESS, CUBIC, DAMPING, LOAD = 5.0, 400.0, 0.2, 1.0
 numbers = {"stiffness": STIFFNESS, "cubic_stiffness": CUBIC, "damping": DAMPING}

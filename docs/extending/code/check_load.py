@@ -1,9 +1,9 @@
 import numpy as np
 
 import beltdyn as bd
+from beltdyn.arrays import row
 from beltdyn.machines.loads.load import ShaftState
 from beltdyn.machines.loads.permanent_magnet_motor import PERMANENT_MAGNET_MOTOR, limit_reached, motor_torque
-from beltdyn.records import row
 
 VOLTAGE, CONSTANT, RESISTANCE, LIMIT = 3.0, 0.5, 0.5, 2.0
 numbers = {"voltage": VOLTAGE, "torque_constant": CONSTANT, "resistance": RESISTANCE, "current_limit": LIMIT}

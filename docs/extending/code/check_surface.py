@@ -1,10 +1,10 @@
 import numpy as np
 
 import beltdyn as bd
+from beltdyn.arrays import row
 from beltdyn.contact.surface import KINDS
-from beltdyn.contact.surface.circular import circle_gap
+from beltdyn.contact.surface.kind import circle_gap
 from beltdyn.contact.surface.lobed import lobed_gap
-from beltdyn.records import row
 
 radius, step = 0.08, 1e-6
 shape = KINDS["lobed"].constants

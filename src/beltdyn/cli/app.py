@@ -13,11 +13,10 @@ from beltdyn.analyses import ANALYSES, Analysis
 from beltdyn.cli.analysis import analysis_command
 from beltdyn.cli.catalogue import catalogue, select
 from beltdyn.cli.check import check
-from beltdyn.cli.compile import compile_
 from beltdyn.cli.console import show_error, take_any_terminal
-from beltdyn.cli.fmu import fmu
 from beltdyn.cli.new import new, schema
-from beltdyn.cli.page import app as page
+from beltdyn.cli.services import app as page
+from beltdyn.cli.services import compile_, fmu
 from beltdyn.cli.show import demo, export, plot, report
 from beltdyn.cli.study import study
 from beltdyn.errors import BeltdynError

@@ -9,7 +9,7 @@ from typing import Any, Final, NamedTuple
 
 import numpy as np
 
-from beltdyn.arrays import FloatArray
+from beltdyn.arrays import FloatArray, blank, record
 from beltdyn.contact.contact_zone import (
     Curve,
     combine,
@@ -50,7 +50,6 @@ from beltdyn.contact.teeth import (
 )
 from beltdyn.kernel import by_type, kernel
 from beltdyn.quadrature import Quadrature
-from beltdyn.records import blank, record
 
 
 class ContactTotals(NamedTuple):

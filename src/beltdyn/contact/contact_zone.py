@@ -21,11 +21,10 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from beltdyn.arrays import FloatArray
+from beltdyn.arrays import FloatArray, blank, record
 from beltdyn.contact.law import PulleyState
 from beltdyn.contact.surface import Polygon, Round, Shaped, Toothed, outer_radius, shaped_gap
 from beltdyn.kernel import by_type, kernel
-from beltdyn.records import blank, record
 
 MAX_DEGREE = 9
 """Highest degree of a curve."""

@@ -11,7 +11,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from beltdyn.arrays import FloatArray
+from beltdyn.arrays import FloatArray, row
 from beltdyn.kernel import interpreted
 from beltdyn.machines import Idlers
 from beltdyn.machines.carrying.support import Support
@@ -19,7 +19,6 @@ from beltdyn.machines.loads.shaft import shaft_torque
 from beltdyn.model import Drive, Prepared, prepare
 from beltdyn.model.carrying import stretch_of, upper_side
 from beltdyn.points.duty import Column, at_row, durations_of
-from beltdyn.records import row
 from beltdyn.results import Run, Variable
 from beltdyn.results.derived import nips
 from beltdyn.results.mechanics import tensions_at_arcs

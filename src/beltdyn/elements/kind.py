@@ -7,10 +7,9 @@ from typing import Any, NamedTuple, Protocol
 
 import numpy as np
 
-from beltdyn.arrays import FloatArray
+from beltdyn.arrays import FloatArray, record
 from beltdyn.kernel import KernelKinds, kernel
 from beltdyn.quadrature import Quadrature
-from beltdyn.records import record
 from beltdyn.stretch import StretchParameters, stretching
 
 # Stiffness, damping and inertia of the belt's section, integrated over the thickness (Eqs. 8, 14 and 15)
@@ -170,7 +169,7 @@ class ElementKind:
     """Kernel: tension that results report, N, from (element, metric, rate): q . q with q = dr/dx, and its rate. By
     default `beltdyn.elements.kind.axial_tension`."""
     scratch: Mapping[str, Any] = field(default_factory=dict)
-    """Further fields of ``work``, for `beltdyn.records.record`."""
+    """Further fields of ``work``, for `beltdyn.arrays.record`."""
     points: int = 1
     """Material points of a node."""
     turned: int = -1

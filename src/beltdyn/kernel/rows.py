@@ -5,12 +5,12 @@ from typing import Any, NamedTuple, TypeVar
 
 import numpy as np
 
+from beltdyn.arrays import fill, record
 from beltdyn.errors import ModelError
 from beltdyn.kernel.decorator import Kernel, forget_compiled
 from beltdyn.kernel.dispatch import Dispatch
 from beltdyn.kernel.fingerprint import compiles_quickly, declare, fingerprint
 from beltdyn.kinds import Registry, name_of
-from beltdyn.records import fill, record
 
 K = TypeVar("K")
 

@@ -50,7 +50,6 @@ from beltdyn.model.alignment import Alignment, alignment
 from beltdyn.model.belt import Belt
 from beltdyn.model.catalogue import Entry, read_catalogue
 from beltdyn.model.contact import Contact
-from beltdyn.model.cover import Cover
 from beltdyn.model.drive import Drive
 from beltdyn.model.end import Carriage, FixedEnd, PulledEnd, WeightEnd
 from beltdyn.model.installation import Installation
@@ -58,7 +57,7 @@ from beltdyn.model.nip import Nip
 from beltdyn.model.parameter_study import CalibrationStudy, DutyPoint, OptimizationStudy, ParameterStudy
 from beltdyn.model.path import Path
 from beltdyn.model.prepared import Prepared, install, prepare, tensioner_balances
-from beltdyn.model.pulley import Pulley
+from beltdyn.model.pulley import Cover, Pulley
 from beltdyn.model.rating import CordFatigue, Rating, RibFatigue
 from beltdyn.model.resolution import ERROR_LIMITS, Running, elements_needed, layer_lengths, mesh_errors, unresolved
 from beltdyn.model.rest_estimate import estimate_at_rest

@@ -19,11 +19,52 @@ from beltdyn.machines.profiles.harmonic import SpeedHarmonics
 from beltdyn.machines.profiles.profile import Profile
 from beltdyn.model.belt import Belt, Side, read_side
 from beltdyn.model.contact import Contact
-from beltdyn.model.cover import Cover
 from beltdyn.model.toothing import FEWEST_TEETH, LARGEST_PITCH_ERROR, MOST_TEETH
 from beltdyn.parts.kind_fields import OneOf, key_field
 from beltdyn.parts.part import Part
-from beltdyn.parts.quantity import Angle, Coordinate, Count, Inertia, Length, Mass, Name, Ratio
+from beltdyn.parts.quantity import Angle, Coordinate, Count, Inertia, Length, Mass, Name, Ratio, Stress
+from beltdyn.theory.nip import cover_modulus, plane_modulus
+
+# Covers of rollers
+
+
+class Cover(Part):
+    """An elastic cover of a roller: a layer that is thin against the radius, on a rigid core.
+
+    Without a thickness the roller is solid, and gives way in a nip as Hertz's line contact does.
+
+    Examples
+    --------
+    >>> rubber = bd.model.Cover(thickness="15 mm", youngs_modulus="4 MPa", poissons_ratio=0.45)
+    >>> round(rubber.modulus / 1e6, 2)  # MPa
+    15.17
+    """
+
+    thickness: Length | None = Field(
+        None,
+        gt=0,
+        description="the thickness of the cover, within the radius of the pulley, in m; without it the roller is "
+        "solid, of this material throughout",
+    )
+    youngs_modulus: Stress = Field(gt=0, description="Young's modulus of the cover, in Pa")
+    poissons_ratio: Ratio = Field(ge=0, lt=0.5, description="Poisson's ratio of the cover")
+
+    loss_factor: Ratio = Field(0.0, ge=0, le=0.5, description="the loss factor (tan delta) of compression of the cover")
+
+    @property
+    def modulus(self) -> float:
+        """Modulus of a layer that cannot expand sideways, E (1 - nu) / ((1 + nu) (1 - 2 nu)), Pa."""
+        return cover_modulus(self.youngs_modulus, self.poissons_ratio)
+
+    def stiffness(self, width: float) -> float:
+        """Normal force per meter of belt of a width (m) and meter of compression, N/m^2; infinite of a solid roller."""
+        return math.inf if self.thickness is None else self.modulus / self.thickness * width
+
+    @property
+    def solid_modulus(self) -> float:
+        """Modulus of a solid roller in plane strain, E / (1 - nu^2), Pa; infinite of a cover."""
+        return plane_modulus(self.youngs_modulus, self.poissons_ratio) if self.thickness is None else math.inf
+
 
 # Surfaces of pulleys other than smooth circles, a part for each kind
 

@@ -4,9 +4,8 @@ from typing import Final, NamedTuple
 
 import numpy as np
 
-from beltdyn.arrays import FloatArray
+from beltdyn.arrays import FloatArray, blank, record
 from beltdyn.kernel import kernel
-from beltdyn.records import blank, record
 from beltdyn.system.arrays import ENERGY_WORKS, POWERS, BodyForces, Motion, System
 from beltdyn.system.body_forces import body_forces_history
 from beltdyn.system.missed_action import missed_action

@@ -13,9 +13,8 @@ from typing import Literal
 
 import numpy as np
 
-from beltdyn.arrays import FloatArray
+from beltdyn.arrays import FloatArray, Records
 from beltdyn.errors import ConvergenceError
-from beltdyn.records import Records
 from beltdyn.solvers.engine import correct, linearise
 from beltdyn.system.arrays import Equations, Motion, System, TangentFactors
 from beltdyn.system.meshing import phases, turning_grooves, unloaded

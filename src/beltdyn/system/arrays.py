@@ -11,14 +11,13 @@ from typing import Any, Final, NamedTuple
 
 import numpy as np
 
-from beltdyn.arrays import BoolArray, FloatArray, IntArray
+from beltdyn.arrays import BoolArray, FloatArray, IntArray, Records, record
 from beltdyn.contact.law import ContactLaw
 from beltdyn.contact.surface import MeshingRims, PolygonRims, RoundRims, ShapedRims, ToothedRims
 from beltdyn.elements import Element
 from beltdyn.machines.loads.shaft import ShaftLoads
 from beltdyn.machines.profiles.functions import Profiles
 from beltdyn.quadrature import Quadrature
-from beltdyn.records import Records, record
 
 PULLEY = record(
     center="2f8",  # m; where a tensioner carries the pulley, its place at coordinate zero

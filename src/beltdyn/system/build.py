@@ -8,7 +8,7 @@ from typing import Any, Literal
 
 import numpy as np
 
-from beltdyn.arrays import FloatArray
+from beltdyn.arrays import FloatArray, records
 from beltdyn.contact.friction import ForceSlope, as_common
 from beltdyn.contact.law import ContactLaw
 from beltdyn.contact.normal import NoPull
@@ -22,7 +22,6 @@ from beltdyn.model.nip import beside_the_path, damping_ratios, foundations, rim_
 from beltdyn.model.pulley import friction_on, surface_part
 from beltdyn.model.routing import radii as effective_radii
 from beltdyn.quadrature import Quadrature, gauss_points, lobatto_points
-from beltdyn.records import records
 from beltdyn.system.arc_mesh import arc_count, staying_by_arcs, with_own_mesh
 from beltdyn.system.arrays import BODY, Supports, System
 from beltdyn.system.build_machines import body_arrays, carrying_arrays, machine_arrays, on_other_lengths, pulley_arrays

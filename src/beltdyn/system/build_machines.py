@@ -6,7 +6,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from beltdyn.arrays import FloatArray, IntArray
+from beltdyn.arrays import FloatArray, IntArray, Records, as_values, offsets, records
 from beltdyn.errors import ModelError
 from beltdyn.machines import Goods, MovingTensioner, Tensioner
 from beltdyn.machines.carrying import GOODS, SUPPORT_ROWS
@@ -18,7 +18,6 @@ from beltdyn.model import Path, Prepared, Pulley
 from beltdyn.model.carrier import carriers_of
 from beltdyn.model.carrying import Stretch, normal_load, stiffness_of, upper_side
 from beltdyn.quadrature import gauss_points
-from beltdyn.records import Records, as_values, offsets, records
 from beltdyn.system.arrays import BODY, PULLEY, Bare, Carrying
 
 

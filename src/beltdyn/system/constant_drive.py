@@ -5,14 +5,13 @@ from typing import Any
 
 import numpy as np
 
-from beltdyn.arrays import BoolArray, FloatArray, IntArray
+from beltdyn.arrays import BoolArray, FloatArray, IntArray, Records, records
 from beltdyn.errors import ModelError
 from beltdyn.kernel import interpreted
 from beltdyn.machines.links import link_torque
 from beltdyn.machines.loads.shaft import mean_loads, shaft_torque
 from beltdyn.machines.profiles.functions import PROFILE, profile_value
 from beltdyn.machines.profiles.profile import SEGMENT
-from beltdyn.records import Records, records
 from beltdyn.system.arrays import Carrying, System
 from beltdyn.system.body_forces import controls
 from beltdyn.system.state import State

@@ -2,14 +2,13 @@
 
 import numpy as np
 
-from beltdyn.arrays import FloatArray
+from beltdyn.arrays import FloatArray, blank, record
 from beltdyn.contact.contact_force import contact_record
 from beltdyn.contact.contact_zone import Curve
 from beltdyn.contact.surface import element_start
 from beltdyn.elements import damping_force
 from beltdyn.elements.kind import DampingFactors, is_damped
 from beltdyn.kernel import kernel
-from beltdyn.records import blank, record
 from beltdyn.system.arrays import BENDING_LOSS, STRETCH_LOSS, Bare, BodyForces, RingMatrix, System, TangentFactors
 from beltdyn.system.frame import Travelling, add_flow, flow_record
 from beltdyn.system.material_loss import add_hysteresis, hysteresis_scratch

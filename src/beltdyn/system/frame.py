@@ -16,10 +16,9 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from beltdyn.arrays import FloatArray, IntArray
+from beltdyn.arrays import FloatArray, IntArray, record
 from beltdyn.kernel import by_type, kernel
 from beltdyn.quadrature import gauss_points
-from beltdyn.records import record
 from beltdyn.system.arrays import System
 from beltdyn.system.state import curve_lengths
 

@@ -13,12 +13,11 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from beltdyn.arrays import FloatArray, IntArray
+from beltdyn.arrays import FloatArray, IntArray, Records, record, records
 from beltdyn.kernel import by_type, kernel
 from beltdyn.machines.profiles.functions import Profiles, profile_rows, profile_value
 from beltdyn.machines.tensioners.tensioner import SPRING, spring_force
 from beltdyn.model import Prepared
-from beltdyn.records import Records, record, records
 from beltdyn.system.arc_mesh import arc_count
 from beltdyn.system.arrays import (
     BODY,

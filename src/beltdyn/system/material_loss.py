@@ -15,13 +15,12 @@ from math import atan2, comb
 
 import numpy as np
 
-from beltdyn.arrays import FloatArray
+from beltdyn.arrays import FloatArray, Records, record, records
 from beltdyn.elements.planar_curve import Hysteretic, hysteretic
 from beltdyn.kernel import kernel
 from beltdyn.model import Belt
 from beltdyn.model.hysteresis import SMOOTHED, Passing
 from beltdyn.quadrature import gauss_points
-from beltdyn.records import Records, record, records
 
 
 def hysteresis_record(vectors: int) -> np.dtype[np.void]:

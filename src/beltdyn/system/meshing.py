@@ -9,7 +9,7 @@ from typing import Any
 
 import numpy as np
 
-from beltdyn.arrays import FloatArray, IntArray
+from beltdyn.arrays import FloatArray, IntArray, Records, records
 from beltdyn.contact.contact_force import tooth_force, tooth_numbers
 from beltdyn.contact.contact_zone import out_of_reach
 from beltdyn.contact.surface import TEETH, MeshingRims, PolygonRims, RoundRims, ShapedRims, ToothedRims
@@ -17,7 +17,6 @@ from beltdyn.contact.surface.toothed import FOLLOWS, PHASE, SPEED
 from beltdyn.kernel import by_type, kernel
 from beltdyn.model import Prepared
 from beltdyn.model.toothing import DISCRETE
-from beltdyn.records import Records, records
 from beltdyn.system.arrays import BodyForces, Motion, NoCarriage, RingMatrix, System, TangentFactors
 from beltdyn.system.body_forces import add_machines
 from beltdyn.system.constant_drive import constant_drive, without_actions

@@ -13,12 +13,11 @@ from typing import NamedTuple
 
 import numpy as np
 
-from beltdyn.arrays import FloatArray
+from beltdyn.arrays import FloatArray, record, records
 from beltdyn.contact.law import PulleyState
 from beltdyn.contact.surface import rim_unknown, surface_at
 from beltdyn.kernel import interpreted, kernel
 from beltdyn.machines.tensioners import TENSIONER, free_slide, tensioner_center
-from beltdyn.records import record, records
 from beltdyn.system.arrays import BODY, RingMatrix, System
 from beltdyn.system.frame import passed_length
 from beltdyn.system.state import State

@@ -6,11 +6,10 @@ from typing import Annotated, NamedTuple, get_type_hints
 
 import numpy as np
 
-from beltdyn.arrays import FloatArray, IntArray
+from beltdyn.arrays import FloatArray, IntArray, blank, record
 from beltdyn.contact.contact_zone import combine, fill_bernstein
 from beltdyn.contact.law import PulleyState
 from beltdyn.kernel import kernel
-from beltdyn.records import blank, record
 from beltdyn.system.arrays import PENALTY_ENERGY, SPRING_ENERGY, BodyForces, System
 from beltdyn.system.element_state import element_workspace
 

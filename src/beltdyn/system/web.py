@@ -15,11 +15,10 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from beltdyn.arrays import FloatArray
+from beltdyn.arrays import FloatArray, Records, record, records
 from beltdyn.kernel import by_type, interpreted, kernel
 from beltdyn.machines.profiles.functions import Profiles, profile_rows, profile_value
 from beltdyn.model import Prepared
-from beltdyn.records import Records, record, records
 from beltdyn.stretch import stretching
 from beltdyn.system.arrays import TORQUE_WORK, BodyForces, Equations, Motion, NoCarriage, System
 

@@ -37,13 +37,12 @@ from typing import NamedTuple, TypeVar
 
 import numpy as np
 
-from beltdyn.arrays import BoolArray, ComplexArray, FloatArray, IntArray
+from beltdyn.arrays import BoolArray, ComplexArray, FloatArray, IntArray, blank, fill
 from beltdyn.kernel import interpreted
 from beltdyn.model import Drive, Prepared
 from beltdyn.model.nip import refuse_nips
 from beltdyn.model.path import span_directions, span_points, wrap_angles
 from beltdyn.points.quasi_steady import Running
-from beltdyn.records import blank, fill
 from beltdyn.vibration.excitation import LOAD, SPEED, Excitation, own_excitations, speed_waves, torque_waves
 from beltdyn.vibration.response_answers import friction_dashpots
 

@@ -6,13 +6,12 @@ import numpy as np
 import pytest
 from hypothesis import strategies as st
 
-from beltdyn.arrays import FloatArray
+from beltdyn.arrays import FloatArray, records
 from beltdyn.contact.contact_zone import fill_bernstein
 from beltdyn.contact.friction import LAWS, FrictionParameters
 from beltdyn.contact.law import ContactLaw, PulleyState
 from beltdyn.contact.normal import NoPull
 from beltdyn.contact.surface import KINDS, SHAPE, SHAPES, Round, ShapedRims, surface_at
-from beltdyn.records import records
 
 
 @pytest.fixture(scope="session")

@@ -52,7 +52,7 @@ def test_intervals_hold_exactly_the_points_inside(belt_like: st.SearchStrategy[F
     assert_exact(data.draw(belt_like))
 
 
-@pytest.mark.parametrize("degree", [1, 2, 4, 5, 7])
+@pytest.mark.parametrize("degree", [1, 2, *(pytest.param(one, marks=pytest.mark.slow) for one in (4, 5, 7))])
 @given(seed=st.integers(0, 2**32 - 1), size=st.floats(0.1, 1.0))
 def test_intervals_of_curves_of_any_degree(degree: int, seed: int, size: float) -> None:
     """Random curves that wind near the rim; the higher the degree, the more often they cross it."""
@@ -62,6 +62,7 @@ def test_intervals_of_curves_of_any_degree(degree: int, seed: int, size: float) 
     assert_exact(chord + size * random.normal(size=chord.shape))
 
 
+@pytest.mark.slow
 @given(st.data())
 def test_a_curve_of_a_higher_degree_touches_at_the_same_places(
     belt_like: st.SearchStrategy[FloatArray], elevate: Callable[[FloatArray, int], FloatArray], data: Any

@@ -5,7 +5,7 @@ from collections.abc import Callable
 import numpy as np
 import pytest
 
-from beltdyn.arrays import FloatArray
+from beltdyn.arrays import FloatArray, records
 from beltdyn.contact.contact_zone import out_of_reach, touching_intervals, zone_scratch
 from beltdyn.contact.law import PulleyState
 from beltdyn.contact.surface import (
@@ -22,7 +22,6 @@ from beltdyn.contact.surface import (
     shaped_gap,
     surface_at,
 )
-from beltdyn.records import records
 
 RADIUS, ECCENTRICITY, DIRECTION = 0.1, 4e-3, 0.3
 POINTS = [(0.103, 0.02), (-0.06, 0.07), (0.01, -0.099), (-0.09, -0.05)]

@@ -34,7 +34,7 @@ Hosts = Callable[[Path], Any]
 """Makes a program that simulates a unit; see conftest."""
 
 
-@pytest.fixture(scope="module", params=BOTH)
+@pytest.fixture(scope="module", params=["3.0", pytest.param("2.0", marks=pytest.mark.slow)])
 def unit(request: pytest.FixtureRequest, short: Drive, tmp_path_factory: pytest.TempPathFactory) -> Path:
     return fmu(short, tmp_path_factory.mktemp("units") / "drive.fmu", fmi=request.param)
 

@@ -59,6 +59,7 @@ LOST = ("friction_loss", "damping_loss", "numerical_loss")
 HELD = ("kinetic_energy", "strain_energy", "penalty_energy")
 
 
+@pytest.mark.slow
 def test_work_through_the_shaft_is_held_or_lost(
     unit: Path, page: dict[str, Any], host: Callable[[Path], Any], inside: dict[str, float]
 ) -> None:

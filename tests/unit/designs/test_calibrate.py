@@ -185,6 +185,7 @@ def test_wrong_tables_are_told(drive: Drive, tmp_path: Path, text: str, said: st
     assert said in str(error.value)
 
 
+@pytest.mark.slow
 def test_a_result_is_shown(drive: Drive, slips: FloatArray, tmp_path: Path) -> None:
     write(tmp_path, slips)
     found: Result = calibrate(drive, study=study_file(tmp_path))

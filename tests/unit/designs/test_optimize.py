@@ -78,6 +78,7 @@ def test_the_mean_of_efficiencies_can_be_maximized(loaded: Drive) -> None:
     assert float(dataset.goal_found) == pytest.approx(mean)
 
 
+@pytest.mark.slow
 def test_a_design_that_slips_through_is_no_solution(loaded: Drive) -> None:
     """Without a requirement less tension is better until the belt slips; what slips is marked with its reason."""
     wanted = study(requirement=[], number=[FREE | {"least": 20.0}], points={})
@@ -89,6 +90,7 @@ def test_a_design_that_slips_through_is_no_solution(loaded: Drive) -> None:
     assert steady_state(found.drive).status == "completed"
 
 
+@pytest.mark.slow
 def test_where_no_design_keeps_to_all_limits(loaded: Drive) -> None:
     found = optimize(
         loaded, study=study(requirement=[{"result": "hub_load", "at_most": "300 N"}, SAFE], points={}), most=6

@@ -37,6 +37,7 @@ def test_both_spreads_agree(found: Result) -> None:
     assert values.mean_of_points.values == pytest.approx(values["value"].values, rel=2e-3)
 
 
+@pytest.mark.slow
 def test_a_hub_carries_the_tension_twice(found: Result) -> None:
     """Straight spans: dH = 2 dT; friction takes no part in it."""
     spread = float(found.dataset.spread.sel(result="hub_load[driven]"))

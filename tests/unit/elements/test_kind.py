@@ -5,12 +5,11 @@ from typing import Any
 import numpy as np
 import pytest
 
-from beltdyn.arrays import FloatArray
+from beltdyn.arrays import FloatArray, blank
 from beltdyn.elements import ELEMENTS, damping_force, elastic_force, strain_energy, tension
 from beltdyn.elements.kind import DampingFactors, ElementKind, Section
 from beltdyn.model import Drive
 from beltdyn.quadrature import gauss_points
-from beltdyn.records import blank
 from beltdyn.stretch import StretchParameters
 from beltdyn.system.state import belt_section
 

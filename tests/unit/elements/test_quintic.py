@@ -3,13 +3,12 @@
 import numpy as np
 import pytest
 
-from beltdyn.arrays import FloatArray
+from beltdyn.arrays import FloatArray, blank
 from beltdyn.elements.ancf.elastic_force import energy_density
 from beltdyn.elements.kind import DampingFactors, Section
 from beltdyn.elements.planar_curve import hysteretic
 from beltdyn.elements.quintic import QUINTIC, Quintic, bending_of, bends, slopes, thirds
 from beltdyn.quadrature import gauss_points
-from beltdyn.records import blank
 from beltdyn.stretch import Green, stretching
 from beltdyn.system.frame import staying
 

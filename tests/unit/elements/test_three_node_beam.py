@@ -7,11 +7,10 @@ from typing import Any
 import numpy as np
 import pytest
 
-from beltdyn.arrays import FloatArray
+from beltdyn.arrays import FloatArray, blank
 from beltdyn.elements.kind import Section
 from beltdyn.elements.three_node_beam import LINKS, THREE_NODE_BEAM, ThreeNodeBeam
 from beltdyn.quadrature import gauss_points
-from beltdyn.records import blank
 from beltdyn.stretch import Green
 
 AXIAL, BENDING = 1e4, 0.02

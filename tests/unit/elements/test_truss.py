@@ -6,11 +6,10 @@ from typing import Any
 import numpy as np
 import pytest
 
-from beltdyn.arrays import FloatArray
+from beltdyn.arrays import FloatArray, blank
 from beltdyn.elements.kind import Section
 from beltdyn.elements.truss import TRUSS, Truss, add_link, link_energy, lumped_mass
 from beltdyn.quadrature import gauss_points
-from beltdyn.records import blank
 from beltdyn.stretch import Green
 
 AXIAL = 1e4

@@ -8,8 +8,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from beltdyn.arrays import record, row
 from beltdyn.kernel import CACHE_VARIABLE, PLAIN_VARIABLE, choice, interpreted, kernel
-from beltdyn.records import record, row
 
 _LAW = """
 from typing import NamedTuple
@@ -64,7 +64,7 @@ def own_load(factor):
 
 from beltdyn.machines.loads.load import ShaftState
 from beltdyn.machines.loads import SHAFT_LOADS, torque_of_kind
-from beltdyn.records import row
+from beltdyn.arrays import row
 
 for factor in (3.0, 5.0):
     kind = own_load(factor)
@@ -102,6 +102,7 @@ def test_a_law_is_compiled_once_and_again_where_it_has_changed(tmp_path: Path, m
     assert counts == [1, 1, 2, 3, 3]
 
 
+@pytest.mark.slow
 def test_plain_compilation_knows_a_changed_law(tmp_path: Path) -> None:
     (tmp_path / "slopes.py").write_text(_SLOPES.format(double=2.0), encoding="utf-8")
     found = [run(tmp_path, _LAW.format(factor=factor) + _CALL, plain=True)[0] for factor in (1.0, 4.0)]
@@ -152,7 +153,7 @@ import numpy as np
 from beltdyn.kernel import interpreted
 from beltdyn.machines.tensioners import tensioner_force
 from beltdyn.machines.tensioners import TENSIONER
-from beltdyn.records import row
+from beltdyn.arrays import row
 spring = {"preload": 20.0, "rate": 30.0, "creep_speed": 0.1, "lower": -np.inf, "upper": np.inf}
 tensioner = row(TENSIONER, kind=1, sliding={"spring": spring})
 print(interpreted(tensioner_force)(tensioner, 0.1, 0.0).force, "numba" in sys.modules)

@@ -6,6 +6,7 @@ from typing import Any
 import numpy as np
 import pytest
 
+from beltdyn.arrays import row
 from beltdyn.errors import ModelError
 from beltdyn.machines.loads.load import ShaftState
 from beltdyn.machines.loads.resistance import RESISTANCE, resistance
@@ -21,7 +22,6 @@ from beltdyn.model import (
     RotaryTensioner,
     SlidingTensioner,
 )
-from beltdyn.records import row
 
 MACHINES: dict[str, Any] = {
     "isolator": Isolator(kind="isolator", stiffness=30.0),

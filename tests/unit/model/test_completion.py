@@ -163,6 +163,7 @@ def test_a_copy_is_the_drive_that_is_written_so(one: dict[str, Any], other: dict
         assert what_follows(part_by_part) == what_follows(expected)
 
 
+@pytest.mark.slow
 @given(arguments())
 @settings(max_examples=25)
 def test_what_follows_depends_on_what_is_given_alone(written: dict[str, Any]) -> None:

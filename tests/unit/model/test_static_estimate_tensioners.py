@@ -84,6 +84,7 @@ def test_stops_hold_the_arm(make_drive: MakeDrive, preload: float, stop: float) 
     assert installation.tension * slope == pytest.approx(moment, rel=1e-6)
 
 
+@pytest.mark.slow
 def test_two_tensioners(make_drive: MakeDrive) -> None:
     second = {"kind": "sliding", "pulley": "idler", "direction": (-1, 0), "mass": 0.5, "preload": 500.0, "rate": 1e4}
     drive = make_drive("serpentine", length=1.84, tensioner=[ROTARY, second])

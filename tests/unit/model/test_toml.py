@@ -140,6 +140,7 @@ def test_arbitrary_toml(data: dict[str, Any]) -> None:
     read(tomli_w.dumps(data))
 
 
+@pytest.mark.slow
 @given(st.data())
 @settings(max_examples=300)
 def test_the_papers_drive_with_an_arbitrary_value(drive: Drive, data: st.DataObject) -> None:
@@ -151,6 +152,7 @@ def test_the_papers_drive_with_an_arbitrary_value(drive: Drive, data: st.DataObj
     read(tomli_w.dumps(content))
 
 
+@pytest.mark.slow
 @given(st.data())
 @settings(max_examples=300)
 def test_the_papers_drive_with_arbitrary_numbers(drive: Drive, data: st.DataObject) -> None:

@@ -89,6 +89,7 @@ def test_a_drive_file_holds_own_kinds(own: Drive) -> None:
     assert bd.loads(text) == own
 
 
+@pytest.mark.slow
 def test_a_belt_of_a_profile_takes_the_keys_of_an_own_law(own: Drive) -> None:
     given: dict[str, Any] = {"profile": "PJ", "ribs": 6, "length": 1.0, "stretch_law": "cubic"}
     belt = bd.Belt(**given | {"growth": 9.0, "limit": 5.0})
@@ -96,6 +97,7 @@ def test_a_belt_of_a_profile_takes_the_keys_of_an_own_law(own: Drive) -> None:
         assert cast(Cubic, one.stretch_parameters)[1:] == (9.0, 5.0)
 
 
+@pytest.mark.slow
 def test_schema_and_help_have_own_kinds(own: Drive) -> None:
     schema = bd.model.json_schema()["$defs"]
     assert "sloped" in schema["Contact"]["properties"]["friction_law"]["enum"]
@@ -113,6 +115,7 @@ def test_messages_have_the_keys_of_own_kinds(own: Drive) -> None:
         bd.loads(bd.dumps(own).replace("slope =", "slop ="))
 
 
+@pytest.mark.slow
 def test_parts_from_before_lack_the_keys(drive: Drive, own: Drive) -> None:
     assert drive.contact.slope is None
     assert drive.contact.replace(friction=0.2).friction == 0.2
@@ -159,6 +162,7 @@ except bd.ModelError as error:
 """
 
 
+@pytest.mark.slow
 def test_other_processes_say_that_they_do_not_run_the_script(tmp_path: Path) -> None:
     (tmp_path / "script.py").write_text(SCRIPT + BATCH, encoding="utf-8")
     done = subprocess.run([sys.executable, "script.py"], cwd=tmp_path, capture_output=True, text=True, check=True)

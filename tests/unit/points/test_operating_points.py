@@ -100,7 +100,9 @@ def loaded() -> Drive:
 
 
 @pytest.mark.parametrize("broken", [{0}, {1}, {0, 1}, {1, 2}], ids=str)
-@pytest.mark.parametrize("name", ANALYSES)
+@pytest.mark.parametrize(
+    "name", [pytest.param(one, marks=pytest.mark.slow) if one in ("campbell", "response") else one for one in ANALYSES]
+)
 def test_whatever_goes_wrong_at_points_leaves_the_others(
     monkeypatch: pytest.MonkeyPatch, tmp_path: Path, loaded: Drive, name: str, broken: set[int]
 ) -> None:

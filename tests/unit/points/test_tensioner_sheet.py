@@ -58,6 +58,7 @@ def slide() -> Drive:
     return loads(SLIDE)
 
 
+@pytest.mark.slow
 def test_a_slide_of_two_equal_pulleys(slide: Drive) -> None:
     """Two spans pull: T = (F - k q) / 2; each meter of travel takes two of belt, and the friction half of itself."""
     sheet = tensioner_sheet(slide, tolerance="3 mm", wear="6 mm").dataset

@@ -62,7 +62,7 @@ def numbers(path: Path) -> xr.Dataset:
 
 
 @pytest.mark.filterwarnings("ignore")
-@pytest.mark.parametrize("name", ["completed", "killed", "some"])
+@pytest.mark.parametrize("name", ["completed", pytest.param("killed", marks=pytest.mark.slow), "some"])
 @pytest.mark.parametrize(
     ("seeds", "longest"),
     [(range(10), math.inf), pytest.param(range(10, COUNT), LONGEST, marks=pytest.mark.slow)],

@@ -118,7 +118,9 @@ def test_file_is_readable_while_it_grows(
         assert any("the run is still going, or was killed" in warning for warning in run.warnings)
 
 
-@pytest.mark.parametrize("status", ["completed", "interrupted", "failed"])
+@pytest.mark.parametrize(
+    "status", ["completed", *(pytest.param(one, marks=pytest.mark.slow) for one in ("interrupted", "failed"))]
+)
 def test_without_outputs_there_is_no_file(tmp_path: Path, layout: Layout, attributes: Any, status: Status) -> None:
     recorder, memory = FileRecorder(tmp_path / "result.nc", layout, attributes), MemoryRecorder(layout, attributes)
     for one in (recorder, memory):
@@ -128,7 +130,9 @@ def test_without_outputs_there_is_no_file(tmp_path: Path, layout: Layout, attrib
     xr.testing.assert_identical(recorder.dataset(), memory.dataset())
 
 
-@pytest.mark.parametrize("status", ["completed", "interrupted", "failed"])
+@pytest.mark.parametrize(
+    "status", ["completed", *(pytest.param(one, marks=pytest.mark.slow) for one in ("interrupted", "failed"))]
+)
 def test_an_earlier_result_stays_until_there_are_outputs(
     result: FileRecorder, layout: Layout, attributes: Any, make_chunk: Callable[..., Any], status: Status
 ) -> None:
@@ -159,6 +163,7 @@ def test_a_file_that_came_meanwhile_stays(
     assert list(tmp_path.iterdir()) == [recorder.path]
 
 
+@pytest.mark.slow
 def test_interrupted_append_is_cut_off(
     tmp_path: Path, layout: Layout, attributes: Any, make_chunk: Callable[..., Any]
 ) -> None:

@@ -39,6 +39,7 @@ def test_a_step_ends_on_the_stop_that_rounding_would_miss() -> None:
     assert new_step(METHOD, 0.0, 0.1, 0.2).end == 0.1
 
 
+@pytest.mark.slow
 def test_constant_acceleration_is_exact(spinning: System) -> None:
     state = straight(spinning)
     integration, equations = (

@@ -35,6 +35,7 @@ def end_with(state: IntegratorState, change: np.ndarray) -> None:
     state.trial.auxiliary[:] = state.auxiliary + change
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("persistence", [0.0, 0.4, 1.0])
 def test_guess_is_a_step_of_the_method(flowing: System, persistence: float) -> None:
     """Equations of `alpha_step` with A1 = A0 + persistence times the change before, in all that is not prescribed."""

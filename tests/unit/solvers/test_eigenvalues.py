@@ -82,6 +82,7 @@ def test_constraints_give_no_modes() -> None:
     assert values == pytest.approx([20j])
 
 
+@pytest.mark.slow
 def test_nearest_to_a_shift() -> None:
     given = pencil(*chain(300), none(300))
     values, vectors = nearest(given, 500j, 12)
@@ -108,7 +109,7 @@ def oscillators(count: int) -> tuple[Matrices, FloatArray, FloatArray]:
 
 
 @pytest.mark.parametrize("batch", [30, 40, 60])
-@pytest.mark.parametrize("count", [5, 20])
+@pytest.mark.parametrize("count", [5, pytest.param(20, marks=pytest.mark.slow)])
 def test_which_modes_are_given_is_a_rule(batch: int, count: int, monkeypatch: pytest.MonkeyPatch) -> None:
     """Those damped by less than 0.9, and no others, up to the last lightly damped one, whatever finds them."""
     monkeypatch.setattr(arnoldi, "_BATCH", batch)

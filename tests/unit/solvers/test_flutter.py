@@ -162,6 +162,7 @@ def test_a_run_says_when_its_belt_flutters() -> None:
     assert any(warning.startswith("the belt may flutter where it slides") for warning in run.warnings)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(("elements", "contact"), [(20, {}), (60, {"damping": 1000.0}), (60, {"friction": 20.0})])
 def test_no_flutter_on_coarse_meshes_with_damping_or_without_sliding(elements: int, contact: dict[str, float]) -> None:
     run = simulate(case_1(elements, **contact))

@@ -205,6 +205,7 @@ def test_a_drive_of_given_length_is_left_alone() -> None:
     assert bring_to_rest(drive).drive == drive
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     "elements", [12, pytest.param(80, marks=pytest.mark.slow), pytest.param(200, marks=pytest.mark.slow)]
 )
@@ -215,6 +216,7 @@ def test_an_equilibrium_that_leaves_a_pulley_is_none(elements: int) -> None:
         equilibrium(two(0.005, 0.06, belt | {"installed_tension": 300.0}))
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("bending", "mass", "cause"), [(0.2, 0.1, "bending stiffness"), (1e-4, 8.0, "weight")], ids=["stiff", "heavy"]
 )

@@ -31,6 +31,7 @@ def test_the_tension_is_found(seed: int) -> None:
     )
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("seed", "reason"),
     [

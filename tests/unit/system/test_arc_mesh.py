@@ -43,6 +43,7 @@ def side(
     return work.equations.matrix
 
 
+@pytest.mark.slow
 def test_every_pulley_has_a_zone(standing: Standing) -> None:
     zones = zones_of(standing.prepared)
     assert sorted(zone.arc for zone in zones) == [0, 1]
@@ -73,6 +74,7 @@ def test_a_support_takes_elements_of_its_own_span_alone() -> None:
     assert lengths[held].sum() * prepared.laid.stretch > 0.999 * path.span_lengths[2]
 
 
+@pytest.mark.slow
 def test_shifts_lengthen_one_span_by_what_they_take_from_another(standing: Standing) -> None:
     system, position = standing.system, standing.state.position
     frame = system.frame
@@ -90,6 +92,7 @@ def test_shifts_lengthen_one_span_by_what_they_take_from_another(standing: Stand
     np.testing.assert_allclose(system.length, before, rtol=1e-15)
 
 
+@pytest.mark.slow
 def test_the_tangent_of_steady_running_is_that_of_its_residual(standing: Standing) -> None:
     system = with_speeds_unknown(constant_drive(standing.system, 1.0))
     system = system._replace(carrying=with_resistance(system.carrying, 1.0))
@@ -123,6 +126,7 @@ def test_the_tangent_of_steady_running_is_that_of_its_residual(standing: Standin
     np.testing.assert_allclose(columns, found, atol=2e-3 * np.abs(found).max())  # weight and bending are left out
 
 
+@pytest.mark.slow
 def test_flows_are_coordinates_of_a_system_over_time(standing: Standing) -> None:
     system = flowing_system(standing.system, np.array([1.0, 0.0]))
     assert isinstance(system.frame, FlowingByArcs)
@@ -130,6 +134,7 @@ def test_flows_are_coordinates_of_a_system_over_time(standing: Standing) -> None
     assert system.bodies.unknown.max() == np.asarray(system.bodies.unknown)[system.frame.place - system.first_body]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("kind", "factors"),
     [("velocity", TangentFactors(by_velocity=1.0)), ("acceleration", TangentFactors(by_acceleration=1.0))],
@@ -159,6 +164,7 @@ def test_goods_move_with_flows_that_differ(standing: Standing, kind: str, factor
         np.testing.assert_allclose(columns[between, :4, number], found[between, :4], rtol=1e-4, atol=1e-4)
 
 
+@pytest.mark.slow
 def test_a_mesh_without_a_node_on_the_arc_of_the_driver_holds_the_belt_there_too() -> None:
     """Four equal elements of 10 m, as before a mesh is graded."""
     prepared = prepare(conveyor())

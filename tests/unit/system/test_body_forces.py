@@ -19,6 +19,8 @@ from beltdyn.system.element_state import element_workspace
 from beltdyn.system.state import laid
 
 EXAMPLES = sorted(path.name[:-5] for path in (files("beltdyn") / "examples").iterdir() if path.name.endswith(".toml"))
+QUICK = ("two_pulley", "tensioner_stop")
+"""Examples that need no kernels of their own."""
 
 SIGNALING_NAN = np.uint64(0x7FF0000000000001)
 """Bits that even adding zero changes."""
@@ -36,7 +38,9 @@ def test_prescribe_writes_prescribed_pulleys_only(drive: Drive) -> None:
     assert np.all(acceleration[:-2] == 7.0)
 
 
-@pytest.mark.parametrize("name", EXAMPLES)
+@pytest.mark.parametrize(
+    "name", [one if one in QUICK else pytest.param(one, marks=pytest.mark.slow) for one in EXAMPLES]
+)
 def test_forces_alone_touch_no_tangent(name: str) -> None:
     """Whatever machines a drive has: who asks for forces has no tangent, and its array may be empty."""
     prepared = prepare(example(name))

@@ -119,6 +119,7 @@ def test_only_a_carriage_frees_the_ends(system: System) -> None:
     assert without.supports.fixed.sum() == 4
 
 
+@pytest.mark.slow
 def test_force_guide_and_weight_on_the_carriage(system: System) -> None:
     """F + m g u - f tanh(v / v_c) - c v, and their power but that of the weight, which is stored."""
     motion = place(system, 0.005, 0.2, np.random.default_rng(2))

@@ -3,10 +3,9 @@
 import numpy as np
 import pytest
 
-from beltdyn.arrays import FloatArray
+from beltdyn.arrays import FloatArray, Records, blank
 from beltdyn.model import Belt, Drive, prepare
 from beltdyn.model.hysteresis import Passing
-from beltdyn.records import Records, blank
 from beltdyn.system.arrays import System
 from beltdyn.system.build import belt_system, drive_system
 from beltdyn.system.element_state import element_workspace

@@ -3,9 +3,9 @@
 import numpy as np
 import pytest
 
+from beltdyn.arrays import Records
 from beltdyn.contact.surface import ToothedRims
 from beltdyn.model import Prepared, prepare
-from beltdyn.records import Records
 from beltdyn.system.arrays import System
 from beltdyn.system.body_forces import body_forces_at
 from beltdyn.system.build import drive_system

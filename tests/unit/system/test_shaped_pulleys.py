@@ -53,6 +53,7 @@ def test_only_a_drive_with_a_shaped_pulley_knows_of_shapes(drive_of: Drive) -> N
     np.testing.assert_array_equal(rims.table.reach, [0.0, 1e-3])
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("factors", [(1.0, 0.0), (0.0, 1.0), (1.0, 2e3)], ids=["angle", "speed", "step"])
 def test_tangent_by_the_angle_of_the_driven_pulley(
     turned: tuple[System, State],

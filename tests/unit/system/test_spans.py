@@ -63,6 +63,7 @@ def chord(height: float, radius: float) -> float:
     return float(2.0 * np.arccos(height / radius))
 
 
+@pytest.mark.slow
 def test_points_between_two_pulleys(drive: Drive) -> None:
     """Each pulley touches the middle of a link."""
     system = rectangle(drive, ((0.5, 0.09), 0.1), ((0.5, 0.86), 0.1))

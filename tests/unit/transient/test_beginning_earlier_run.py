@@ -35,7 +35,7 @@ DRIVES: dict[str, Callable[[], Drive]] = {
 """With an arm, a clutch and a length that is found for the tension; and of the paper's elements."""
 
 
-@pytest.fixture(scope="module", params=DRIVES)
+@pytest.fixture(scope="module", params=["staying", pytest.param("travelling", marks=pytest.mark.slow)])
 def whole(request: pytest.FixtureRequest, tmp_path_factory: pytest.TempPathFactory) -> Run:
     return simulate(DRIVES[request.param](), tmp_path_factory.mktemp(request.param) / "whole.nc")
 

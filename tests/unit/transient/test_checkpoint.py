@@ -130,6 +130,7 @@ class _FullFrom:
         return self._pack(packing, point)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(("number", "whence"), [(1, "its beginning"), (2, "the previous checkpoint")])
 def test_a_run_goes_on_where_a_checkpoint_cannot_be_written(
     number: int, whence: str, travelling: Drive, tmp_path: Path, monkeypatch: pytest.MonkeyPatch

@@ -12,9 +12,9 @@ from hypothesis import given
 from hypothesis import strategies as st
 from hypothesis.extra.numpy import array_shapes, arrays, scalar_dtypes
 
+from beltdyn.arrays import blank, record, records
 from beltdyn.errors import ModelError
 from beltdyn.model import Drive
-from beltdyn.records import blank, record, records
 from beltdyn.transient.checkpoint import Packing
 
 

@@ -191,6 +191,7 @@ WRITERS: dict[str, Callable[[Run, Path], object]] = {
 }
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", WRITERS)
 def test_what_has_no_room_leaves_the_earlier_file(
     name: str, run: Run, tmp_path: Path, largest_file: LargestFile

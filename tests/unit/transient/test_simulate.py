@@ -14,8 +14,8 @@ from beltdyn.results import open_run
 from beltdyn.solvers.run_progress import Progress
 
 Change = Callable[..., Drive]
-SLOW = [pytest.param(one, marks=pytest.mark.slow) for one in ("ida", "bdf", "radau")]
-INTEGRATORS = ["generalized_alpha", "cvode", *SLOW]
+SLOW = [pytest.param(one, marks=pytest.mark.slow) for one in ("cvode", "ida", "bdf", "radau")]
+INTEGRATORS = ["generalized_alpha", *SLOW]
 
 
 @pytest.mark.parametrize("integrator", INTEGRATORS)

@@ -21,6 +21,7 @@ def simulator(short: Drive) -> Simulator:
     return Simulator(short)
 
 
+@pytest.mark.slow
 def test_steps_are_those_of_a_run(short: Drive, simulator: Simulator) -> None:
     """But for where they end, to the tolerance of steps: 1e-4 of a velocity of 2 m/s over 0.03 s, some times."""
     run = simulate(short).dataset

@@ -73,6 +73,7 @@ def test_flutter_is_not_found_where_nothing_grows(found: bd.Result) -> None:
     assert float(found.dataset.flutter_bound.min()) > 0.0
 
 
+@pytest.mark.slow
 def test_file_tables_and_screen(
     found: bd.Result, loaded: Drive, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:

@@ -90,6 +90,7 @@ def test_lightly_damped_modes_come_first_and_keep_their_numbers() -> None:
     assert [len(table.rows) for table in tables] == [4, light.size - 4]
 
 
+@pytest.mark.slow
 def test_modes_with_stuck_tensioners_have_numbers_of_their_own(drive: Drive) -> None:
     """Whatever the count, so that a number names one mode."""
     slide = {"kind": "sliding", "pulley": "slide", "direction": [0.0, 1.0], "mass": 0.5, "preload": 400.0, "rate": 2e4}

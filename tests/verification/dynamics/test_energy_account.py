@@ -76,6 +76,7 @@ def test_what_the_integrator_takes_is_told_apart(small: Drive, change: Change, m
     assert closure(run) < 0.25 * taken[-1]
 
 
+@pytest.mark.slow
 def test_numerical_loss_falls_with_the_tolerance(small: Drive, change: Change, measured: Measured) -> None:
     rtols = (1e-2, 1e-3, 1e-4)
     runs = [

@@ -122,9 +122,10 @@ CASES: dict[str, tuple[list[dict[str, Any]], dict[str, Any], set[str]]] = {
         set(),
     ),
 }  # fmt: skip
+COSTLY = ("weight", "one-way clutch", "friction clutch", "isolator")
 
 
-@pytest.mark.parametrize("case", CASES)
+@pytest.mark.parametrize("case", [pytest.param(one, marks=pytest.mark.slow) if one in COSTLY else one for one in CASES])
 def test_closes(make: Make, measured: Measured, case: str) -> None:
     """Within five times the tolerance; what is not there loses nothing, and no loss is given back."""
     pulleys, others, lost = CASES[case]

@@ -51,6 +51,7 @@ def run(request: pytest.FixtureRequest, make: Make) -> xr.Dataset:
     return dataset
 
 
+@pytest.mark.slow
 def test_overruns_as_its_load_lets_it(run: xr.Dataset, measured: Measured) -> None:
     sense, time = float(run.sense), run.time.values
     rim, shaft = sense * run.pulley_speed.values[:, 1], sense * run.shaft_speed.values[:, 1]

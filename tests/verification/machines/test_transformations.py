@@ -134,7 +134,7 @@ def difference(values: NDArray[Any], expected: NDArray[Any]) -> float:
     return float(np.max(np.abs(values - expected)) / np.max(np.abs(expected)))
 
 
-@pytest.mark.parametrize("case", [pytest.param(one, marks=[pytest.mark.slow] * ("mirrored" in one)) for one in CASES])
+@pytest.mark.parametrize("case", [pytest.param(one, marks=[pytest.mark.slow] * (one != "relabelled")) for one in CASES])
 def test_results_follow(
     build: Callable[[Data], Drive],
     places: tuple[float, float],

@@ -71,6 +71,7 @@ def test_a_sliding_ring_flutters(measured: Callable[..., None]) -> None:
         assert frequency == pytest.approx(expected.frequency, rel=0.02)
 
 
+@pytest.mark.slow
 def test_a_ring_that_creeps_does_not() -> None:
     """Up to rounding in 1e4 1/s."""
     contact = two_pulley().contact.replace(integration="zone")

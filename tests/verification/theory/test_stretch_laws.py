@@ -11,10 +11,10 @@ import pytest
 from scipy.linalg import eigh
 
 from beltdyn import simulate
+from beltdyn.arrays import blank
 from beltdyn.elements import ANCF, ELEMENTS, QUINTIC, ElementKind
 from beltdyn.model import Drive
 from beltdyn.quadrature import gauss_points
-from beltdyn.records import blank
 from beltdyn.state.installation import bring_to_rest
 from beltdyn.system.state import belt_section
 from beltdyn.theory.creep import speed_loss

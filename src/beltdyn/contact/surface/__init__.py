@@ -8,8 +8,7 @@ from collections.abc import Callable
 from math import cos, sin
 from typing import Any, NamedTuple
 
-from beltdyn.arrays import FloatArray
-from beltdyn.contact.surface import circular as circular
+from beltdyn.arrays import FloatArray, Records
 from beltdyn.contact.surface.kind import KINDS as KINDS
 from beltdyn.contact.surface.kind import Gap as Gap
 from beltdyn.contact.surface.kind import SurfaceKind as SurfaceKind
@@ -23,7 +22,6 @@ from beltdyn.contact.surface.toothed import Toothed as Toothed
 from beltdyn.contact.surface.toothed import ToothedRims as ToothedRims
 from beltdyn.contact.surface.toothed import meshing_at, toothed_at
 from beltdyn.kernel import KindRows, by_type, choice, kernel
-from beltdyn.records import Records
 
 SHAPES = KindRows(KINDS, lambda kind: kind.constants, reach="f8")
 """Rows of surfaces: how far each goes beyond the effective radius (m), its kind, and the parameters of that."""

@@ -12,9 +12,8 @@ belt runs around the pulley.
 
 from typing import Any, Final, NamedTuple
 
-from beltdyn.arrays import FloatArray, IntArray
+from beltdyn.arrays import FloatArray, IntArray, Records, record
 from beltdyn.kernel import kernel
-from beltdyn.records import Records, record
 
 TEETH = record(
     stiffness="f8",  # force along the belt per length of belt and misfit, N/m^2; zero of a pulley without teeth

@@ -10,7 +10,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from beltdyn.arrays import FloatArray
+from beltdyn.arrays import FloatArray, record
 from beltdyn.elements.ancf.element import (
     Ancf,
     Four,
@@ -23,7 +23,6 @@ from beltdyn.elements.ancf.element import (
 )
 from beltdyn.elements.kind import Section
 from beltdyn.kernel import kernel
-from beltdyn.records import record
 from beltdyn.stretch import stretching
 
 # Strain energy of the belt element per length, with its first and second derivatives (Eqs. 8-15)

@@ -14,12 +14,11 @@ from typing import NamedTuple
 
 import numpy as np
 
-from beltdyn.arrays import FloatArray
+from beltdyn.arrays import FloatArray, record
 from beltdyn.elements.ancf.elastic_force import centreline
 from beltdyn.elements.ancf.element import Ancf, Four, add_shear_curvature, bends, nodal_shear, shear_gradient, slopes
 from beltdyn.elements.kind import DampingFactors
 from beltdyn.kernel import kernel
-from beltdyn.records import record
 
 DAMPING_WORKSPACE = record(
     slope="(2,12)f8",  # derivatives of eps and kappa with respect to the coordinates e at a point

@@ -2,13 +2,13 @@
 
 from typing import Annotated
 
+from beltdyn.arrays import record
 from beltdyn.kernel import KindRows, choice
 from beltdyn.machines.carrying.support import SUPPORTS, Support
 from beltdyn.machines.carrying.support import Goods as Goods
 from beltdyn.machines.carrying.support import Guide as Guide
 from beltdyn.machines.carrying.support import Idlers as Idlers
 from beltdyn.parts.kind_fields import OneOf
-from beltdyn.records import record
 
 AnySupport = Annotated[Support, OneOf(SUPPORTS)]
 

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any, ClassVar, Literal, NamedTuple, Self
 import numpy as np
 from pydantic import Field, model_validator
 
+from beltdyn.arrays import record
 from beltdyn.kernel import KernelKinds, kernel
 from beltdyn.kinds import register
 from beltdyn.machines.profiles import Schedule
@@ -23,7 +24,6 @@ from beltdyn.parts.quantity import (
     Speed,
     Stiffness,
 )
-from beltdyn.records import record
 
 
 class LineForce(NamedTuple):

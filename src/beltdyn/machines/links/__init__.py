@@ -5,6 +5,7 @@ from typing import Annotated, NamedTuple
 
 import numpy as np
 
+from beltdyn.arrays import Records, records
 from beltdyn.kernel import KindRows, choice, kernel
 from beltdyn.machines.links.couplings import FrictionClutch as FrictionClutch
 from beltdyn.machines.links.couplings import Isolator as Isolator
@@ -12,7 +13,6 @@ from beltdyn.machines.links.couplings import OneWayClutch as OneWayClutch
 from beltdyn.machines.links.link import LINKS, HubLink, LinkTorque
 from beltdyn.machines.profiles.functions import Profiles, schedule_value
 from beltdyn.parts.kind_fields import OneOf
-from beltdyn.records import Records, records
 
 AnyHubLink = Annotated[HubLink, OneOf(LINKS)]
 

@@ -13,12 +13,12 @@ from typing import Any, Literal, Self
 import numpy as np
 from pydantic import Field
 
+from beltdyn.arrays import record
 from beltdyn.kernel import kernel
 from beltdyn.kinds import register
 from beltdyn.machines.links.link import HubLink, LinkTorque
 from beltdyn.machines.profiles import Schedule
 from beltdyn.parts.quantity import Torque, TorsionalDamping, TorsionalStiffness
-from beltdyn.records import record
 
 ISOLATOR = record(
     stiffness="f8",  # k, N m/rad

@@ -12,7 +12,7 @@ from typing import Any, Literal
 import numpy as np
 from pydantic import Field
 
-from beltdyn.arrays import FloatArray
+from beltdyn.arrays import FloatArray, record
 from beltdyn.kernel import kernel
 from beltdyn.kinds import register
 from beltdyn.machines.loads.load import Load, LoadTorque, ShaftState
@@ -20,7 +20,6 @@ from beltdyn.machines.profiles import BrakingProfile, ForceProfile
 from beltdyn.machines.profiles.profile import Profile
 from beltdyn.machines.profiles.ramps import Constant
 from beltdyn.parts.quantity import Angle, AngularSpeed, Length, Ratio, Torque
-from beltdyn.records import record
 
 BRAKE = record(
     forward="f8",  # torque over the command against a counter-clockwise motion, N m over the unit of the command

@@ -6,14 +6,13 @@ from typing import Any, Literal, Self
 import numpy as np
 from pydantic import Field, PrivateAttr, field_serializer, field_validator
 
-from beltdyn.arrays import FloatArray
+from beltdyn.arrays import FloatArray, record
 from beltdyn.errors import ModelError
 from beltdyn.kernel import kernel
 from beltdyn.kernel.callback import address_of, call_at
 from beltdyn.kinds import register
 from beltdyn.machines.loads.load import Load, LoadTorque, ShaftState
 from beltdyn.parts.quantity import AngularSpeed, Ratio
-from beltdyn.records import record
 
 FUNCTION = record(
     torque="i8",  # address of the torque

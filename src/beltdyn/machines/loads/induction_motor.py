@@ -16,7 +16,7 @@ from typing import Any, Literal, Self
 import numpy as np
 from pydantic import Field, model_validator
 
-from beltdyn.arrays import FloatArray
+from beltdyn.arrays import FloatArray, record
 from beltdyn.kernel import kernel
 from beltdyn.kinds import register
 from beltdyn.machines.loads.load import Load, LoadTorque, ShaftState, nearer_kink
@@ -26,7 +26,6 @@ from beltdyn.machines.profiles.profile import Profile
 from beltdyn.machines.profiles.ramps import Constant, Step
 from beltdyn.parts.messages import apart
 from beltdyn.parts.quantity import AngularSpeed, Frequency, Power, Ratio, Time
-from beltdyn.records import record
 
 INDUCTION_MOTOR = record(
     breakdown_torque="f8",  # N m

@@ -6,14 +6,13 @@ from typing import TYPE_CHECKING, Any, ClassVar, NamedTuple, Self
 import numpy as np
 from pydantic import Field
 
-from beltdyn.arrays import FloatArray
+from beltdyn.arrays import FloatArray, blank, fill
 from beltdyn.kernel import KernelKinds, interpreted, kernel
 from beltdyn.machines.profiles import Schedule
 from beltdyn.machines.profiles.harmonic import Harmonic
 from beltdyn.machines.profiles.profile import Profile
 from beltdyn.machines.tensioners.tensioner import MovingTensioner
 from beltdyn.parts.part import Part
-from beltdyn.records import blank, fill
 
 
 class ShaftState(NamedTuple):

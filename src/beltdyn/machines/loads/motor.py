@@ -14,14 +14,13 @@ from typing import Any, Literal, Self
 import numpy as np
 from pydantic import Field, model_validator
 
-from beltdyn.arrays import FloatArray
+from beltdyn.arrays import FloatArray, record
 from beltdyn.kernel import kernel
 from beltdyn.kinds import register
 from beltdyn.machines.loads.load import Load, LoadTorque, ShaftState, StateRate, nearer_kink
 from beltdyn.machines.profiles import PowerProfile, SpeedProfile
 from beltdyn.machines.profiles.profile import Profile
 from beltdyn.parts.quantity import AngularSpeed, Power, Ratio, Time, Torque, TorsionalDamping
-from beltdyn.records import record
 
 MOTOR = record(
     breakdown_torque="f8",  # M_b, the largest torque, N m

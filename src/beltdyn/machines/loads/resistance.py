@@ -7,7 +7,7 @@ from typing import Annotated, Any, Literal, Self
 import numpy as np
 from pydantic import Field, model_validator
 
-from beltdyn.arrays import FloatArray
+from beltdyn.arrays import FloatArray, record
 from beltdyn.kernel import kernel
 from beltdyn.kinds import register
 from beltdyn.machines.loads.brake import BRAKE, braking_torque
@@ -15,7 +15,6 @@ from beltdyn.machines.loads.load import Load, LoadTorque, ShaftState
 from beltdyn.machines.profiles import PressureProfile
 from beltdyn.machines.profiles.profile import Profile
 from beltdyn.parts.quantity import AngularSpeed, Power, QuadraticDamping, Ratio, Torque, TorsionalDamping, quantity
-from beltdyn.records import record
 
 RESISTANCE = record(
     constant="f8",  # c, N m

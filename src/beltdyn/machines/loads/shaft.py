@@ -7,7 +7,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from beltdyn.arrays import FloatArray, IntArray
+from beltdyn.arrays import FloatArray, IntArray, Records, offsets, records
 from beltdyn.kernel import kernel, labels
 from beltdyn.machines.loads import (
     NO_STATE,
@@ -21,7 +21,6 @@ from beltdyn.machines.loads.load import LOADS, Load, LoadTorque, SensorSlope, Sh
 from beltdyn.machines.profiles.functions import Profiles, command_value, profile_bend, profile_value, schedule_value
 from beltdyn.machines.profiles.harmonic import harmonic_factor, harmonic_rows
 from beltdyn.machines.tensioners.tensioner import MovingTensioner
-from beltdyn.records import Records, offsets, records
 
 NO_SENSORS: Mapping[str, "Sensor"] = MappingProxyType({})
 

@@ -8,14 +8,13 @@ from typing import Annotated, Any, Literal, Self
 import numpy as np
 from pydantic import ConfigDict, Field, ValidationInfo, model_validator
 
-from beltdyn.arrays import FloatArray
+from beltdyn.arrays import FloatArray, record
 from beltdyn.kernel import kernel
 from beltdyn.kinds import register
 from beltdyn.machines.loads.load import Load, LoadTorque, ShaftState, nearer_kink
 from beltdyn.machines.profiles.functions import first_above
 from beltdyn.parts.quantity import Angle, AngularSpeed, Power, Torque
 from beltdyn.parts.table_file import check_points, describe_file, take_file, take_grid
-from beltdyn.records import record
 
 LOAD_TABLE = record(
     count="i8",  # number of its points

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Annotated, Any, Literal, Self
 import numpy as np
 from pydantic import Field, model_validator
 
-from beltdyn.arrays import FloatArray
+from beltdyn.arrays import FloatArray, record
 from beltdyn.kernel import kernel
 from beltdyn.kinds import register
 from beltdyn.machines.loads.load import Load, LoadTorque, SensorSlope, ShaftState, StateRate
@@ -18,7 +18,6 @@ from beltdyn.machines.profiles import SpeedProfile, TorqueProfile
 from beltdyn.machines.profiles.profile import Profile
 from beltdyn.machines.tensioners.tensioner import MovingTensioner
 from beltdyn.parts.quantity import Coordinate, Force, Name, Ratio, Time, TorsionalDamping, quantity
-from beltdyn.records import record
 
 TRIM = record(
     gain="f8",  # g, trim over the error, 1/m or 1/N

@@ -6,11 +6,10 @@ from typing import NamedTuple
 
 import numpy as np
 
-from beltdyn.arrays import FloatArray
+from beltdyn.arrays import FloatArray, Records, offsets, record, records
 from beltdyn.kernel import interpreted, kernel
 from beltdyn.machines.profiles.harmonic import Harmonic, harmonic_factor, harmonic_rows
 from beltdyn.machines.profiles.profile import SEGMENT, Profile, segment_integral, segment_value
-from beltdyn.records import Records, offsets, record, records
 
 NO_SCHEDULE = -1
 """Number of a missing profile."""

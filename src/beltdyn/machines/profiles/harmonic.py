@@ -7,12 +7,11 @@ from typing import Annotated, Any, Self
 import numpy as np
 from pydantic import BeforeValidator, ConfigDict, Field, ValidationInfo, model_validator
 
-from beltdyn.arrays import FloatArray, IntArray
+from beltdyn.arrays import FloatArray, IntArray, Records, offsets, record, records
 from beltdyn.kernel import kernel
 from beltdyn.parts.part import Part
 from beltdyn.parts.quantity import Angle, AngularSpeed, Ratio
 from beltdyn.parts.table_file import check_points, describe_file, take_file
-from beltdyn.records import Records, offsets, record, records
 
 HARMONIC = record(
     order="f8",  # over an angle

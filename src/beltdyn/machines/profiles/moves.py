@@ -14,11 +14,11 @@ from typing import Any, ClassVar, Generic, Literal, NamedTuple, Self
 import numpy as np
 from pydantic import ConfigDict, Field, ValidationInfo, model_validator
 
+from beltdyn.arrays import Records, records
 from beltdyn.kinds import register
 from beltdyn.machines.profiles.profile import SEGMENT, Profile, Value
 from beltdyn.parts.quantity import Angle, AngularAcceleration, AngularJerk, AngularSpeed, Time
 from beltdyn.parts.table_file import check_points, describe_file, take_file
-from beltdyn.records import Records, records
 
 
 class _Piece(NamedTuple):

@@ -9,11 +9,10 @@ import numpy as np
 from numpy.typing import ArrayLike
 from typing_extensions import TypeVar
 
-from beltdyn.arrays import FloatArray
+from beltdyn.arrays import FloatArray, Records, record
 from beltdyn.kernel import interpreted, kernel
 from beltdyn.kinds import Registry
 from beltdyn.parts.part import Part
-from beltdyn.records import Records, record
 
 Value = TypeVar("Value", bound=float, default=float)
 

@@ -5,11 +5,11 @@ from typing import Any, ClassVar, Generic, Literal, Self, cast
 import numpy as np
 from pydantic import ConfigDict, Field, ValidationInfo, model_validator
 
+from beltdyn.arrays import Records, records
 from beltdyn.kinds import register
 from beltdyn.machines.profiles.profile import SEGMENT, Profile, Value
 from beltdyn.parts.quantity import Time
 from beltdyn.parts.table_file import check_points, describe_file, take_file
-from beltdyn.records import Records, records
 
 # A constant value
 

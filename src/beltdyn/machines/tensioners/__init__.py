@@ -4,14 +4,13 @@ from typing import Annotated
 
 import numpy as np
 
-from beltdyn.arrays import FloatArray
+from beltdyn.arrays import FloatArray, row
 from beltdyn.kernel import KindRows, choice
 from beltdyn.machines.tensioners.rotary import RotaryTensioner as RotaryTensioner
 from beltdyn.machines.tensioners.sliding import SlidingTensioner as SlidingTensioner
 from beltdyn.machines.tensioners.tensioner import TENSIONERS, MovingTensioner, Tensioner
 from beltdyn.machines.tensioners.tensioner import FixedTensioner as FixedTensioner
 from beltdyn.parts.kind_fields import OneOf
-from beltdyn.records import row
 
 AnyTensioner = Annotated[Tensioner, OneOf(TENSIONERS)]
 

@@ -9,7 +9,7 @@ import numpy as np
 from pydantic import ConfigDict, Field, model_validator
 from pydantic.fields import FieldInfo
 
-from beltdyn.arrays import FloatArray
+from beltdyn.arrays import FloatArray, record
 from beltdyn.kernel import kernel
 from beltdyn.kinds import register
 from beltdyn.machines.tensioners.tensioner import LEAST_LEVERAGE, SPRING, Center, MovingTensioner
@@ -26,7 +26,6 @@ from beltdyn.parts.quantity import (
     TorsionalDamping,
     TorsionalStiffness,
 )
-from beltdyn.records import record
 
 ArmAngle = Annotated[Angle, Field(ge=-np.pi, le=np.pi)]
 

@@ -6,12 +6,11 @@ from typing import Any, Literal
 import numpy as np
 from pydantic import Field
 
-from beltdyn.arrays import FloatArray
+from beltdyn.arrays import FloatArray, record
 from beltdyn.kernel import kernel
 from beltdyn.kinds import register
 from beltdyn.machines.tensioners.tensioner import LEAST_LEVERAGE, SPRING, Center, Direction, MovingTensioner
 from beltdyn.parts.quantity import Coordinate, Damping, Force, Mass, Speed, Stiffness
-from beltdyn.records import record
 
 SLIDE = record(
     center="2f8",  # c, the nominal center of the pulley, m

@@ -8,12 +8,11 @@ from typing import TYPE_CHECKING, Annotated, Any, ClassVar, Literal, NamedTuple,
 import numpy as np
 from pydantic import AfterValidator, Field, model_validator
 
-from beltdyn.arrays import FloatArray
+from beltdyn.arrays import FloatArray, record
 from beltdyn.kernel import KernelKinds, kernel
 from beltdyn.kinds import register
 from beltdyn.parts.part import Part
 from beltdyn.parts.quantity import Coordinate, Name, Ratio
-from beltdyn.records import record
 
 # A direction in the plane of the drive
 

@@ -1,13 +1,12 @@
 import numpy as np
 import pytest
 
-from beltdyn.arrays import FloatArray
+from beltdyn.arrays import FloatArray, blank
 from beltdyn.elements.ancf import ANCF
 from beltdyn.elements.ancf.elastic_force import element_energy, element_force
 from beltdyn.elements.ancf.element import Ancf
 from beltdyn.elements.kind import Section
 from beltdyn.quadrature import gauss_points
-from beltdyn.records import blank
 
 
 @pytest.fixture

@@ -3,14 +3,13 @@ from collections.abc import Callable
 import numpy as np
 import pytest
 
-from beltdyn.arrays import FloatArray
+from beltdyn.arrays import FloatArray, blank
 from beltdyn.elements.ancf import ANCF
 from beltdyn.elements.ancf.elastic_force import element_energy, element_force
 from beltdyn.elements.ancf.element import Ancf
 from beltdyn.elements.ancf.material_damping import damping_force
 from beltdyn.elements.kind import DampingFactors, Section, damping_tension
 from beltdyn.quadrature import gauss_points
-from beltdyn.records import blank
 from beltdyn.stretch import Green, Linear
 
 Damping = Callable[..., tuple[float, FloatArray, FloatArray]]

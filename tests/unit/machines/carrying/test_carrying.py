@@ -3,11 +3,11 @@
 import numpy as np
 import pytest
 
+from beltdyn.arrays import blank, fill
 from beltdyn.errors import ModelError
 from beltdyn.kernel import interpreted
 from beltdyn.machines import Goods, Guide, Idlers, Support
 from beltdyn.machines.carrying.support import SUPPORTS
-from beltdyn.records import blank, fill
 
 SPAN = ("tail", "head")
 IDLERS = Idlers(

@@ -5,11 +5,11 @@ from typing import Any
 import numpy as np
 import pytest
 
+from beltdyn.arrays import Records
 from beltdyn.machines.links import link_torque, torque_of_kind
 from beltdyn.machines.links.link import LinkTorque
 from beltdyn.machines.profiles.functions import Profiles
 from beltdyn.model import Pulley
-from beltdyn.records import Records
 from beltdyn.system.build_machines import machine_arrays
 
 ENGAGE = {"kind": "step", "time": 0.5, "value": 1.0}

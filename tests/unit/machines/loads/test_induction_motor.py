@@ -6,11 +6,11 @@ from typing import Any
 import numpy as np
 import pytest
 
+from beltdyn.arrays import row
 from beltdyn.errors import ModelError
 from beltdyn.machines.loads.induction_motor import INDUCTION_MOTOR, induction_torque
 from beltdyn.machines.loads.load import LoadTorque, ShaftState
 from beltdyn.model import InductionMotor
-from beltdyn.records import row
 
 Torque = Callable[..., LoadTorque]
 Kinks = Callable[..., list[float]]
@@ -32,6 +32,7 @@ def inverter(frequency: float, **more: Any) -> dict[str, Any]:
     return MOTOR | {"supply": {"kind": "constant", "value": frequency}} | more
 
 
+@pytest.mark.slow
 def test_the_curve_goes_through_the_points_of_the_catalogue(torque: Torque) -> None:
     assert torque(MOTOR, 1465.0 * RPM).torque == pytest.approx(RATED, rel=1e-12)
     assert torque(MOTOR, SYNCHRONOUS).torque == pytest.approx(0.0, abs=1e-9)

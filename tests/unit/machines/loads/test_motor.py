@@ -6,6 +6,7 @@ from typing import Any
 import numpy as np
 import pytest
 
+from beltdyn.arrays import row
 from beltdyn.errors import ModelError
 from beltdyn.kernel import interpreted
 from beltdyn.machines.loads.load import LOADS, LoadTorque, ShaftState
@@ -13,7 +14,6 @@ from beltdyn.machines.loads.motor import SERVO_MOTOR, servo_rate, servo_torque
 from beltdyn.machines.loads.trim import TRIM
 from beltdyn.model import Pulley, RotaryTensioner, ServoMotor, SlidingTensioner, SpeedTrim
 from beltdyn.model.carrier import check_sensors
-from beltdyn.records import row
 from beltdyn.system.build_machines import body_arrays, machine_arrays
 
 Torque = Callable[..., LoadTorque]

@@ -5,6 +5,7 @@ from typing import Any
 import numpy as np
 import pytest
 
+from beltdyn.arrays import row
 from beltdyn.machines.loads.load import LoadTorque, ShaftState
 from beltdyn.machines.loads.motor import MOTOR as MOTOR_CONSTANTS
 from beltdyn.machines.loads.motor import kloss as kloss_torque
@@ -13,7 +14,6 @@ from beltdyn.machines.loads.resistance import resistance as resistance_torque
 from beltdyn.machines.loads.shaft import ShaftLoads, load_bend, shaft_loads, shaft_torque
 from beltdyn.machines.profiles.functions import NO_SCHEDULE, Profiles, profile_rows
 from beltdyn.model import Pulley, Resistance, Step
-from beltdyn.records import row
 from beltdyn.system.build_machines import machine_arrays
 
 Machines = tuple[Profiles, ShaftLoads]

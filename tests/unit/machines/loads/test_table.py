@@ -36,6 +36,7 @@ def test_it_goes_through_its_points_in_every_cycle(torque: Torque, turns: int) -
     assert found == pytest.approx(WAVE, abs=1e-12)
 
 
+@pytest.mark.slow
 def test_it_does_not_overshoot_a_narrow_pulse_and_has_its_area(torque: Torque) -> None:
     """A point of height 1 between zeros 0.05 rad away: two smooth steps, of the area of a triangle."""
     pulse = {"kind": "angle_table", "angles": [0.0, 1.0, 1.05, 1.1, 4.0], "torques": [0, 0, 1, 0, 0]}

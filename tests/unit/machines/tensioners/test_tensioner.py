@@ -6,12 +6,12 @@ from typing import Any
 import numpy as np
 import pytest
 
+from beltdyn.arrays import Records
 from beltdyn.errors import ModelError
 from beltdyn.machines import MovingTensioner
 from beltdyn.machines.tensioners import tensioner_center, tensioner_force
 from beltdyn.model import Belt, Path, Pulley, RotaryTensioner, SlidingTensioner
 from beltdyn.model.routing import lay_path
-from beltdyn.records import Records
 from beltdyn.system.build_machines import machine_arrays
 
 BELT = Belt(length=1.0, width=0.01, thickness=0.01, density=1e3, youngs_modulus=1e8, poissons_ratio=0.3)

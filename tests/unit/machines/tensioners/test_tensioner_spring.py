@@ -5,8 +5,8 @@ from math import inf, tanh
 import numpy as np
 import pytest
 
+from beltdyn.arrays import record, row
 from beltdyn.machines.tensioners.tensioner import SPRING, TensionerForce, dry_friction, spring_force
-from beltdyn.records import record, row
 
 HOLDER = record(spring=SPRING)
 LINEAR = {"preload": 20.0, "rate": 30.0, "lower": -inf, "upper": inf, "creep_speed": 0.1}

@@ -164,6 +164,7 @@ def test_stops_of_a_tensioner_are_drawn_where_its_pulley_stands(idler_drive: Dri
         assert rim.radius == 0.03
 
 
+@pytest.mark.slow
 def test_a_long_drive_is_drawn_wide(drive: Drive) -> None:
     first, last = drive.pulleys
     far = drive.replace(pulley=[first, last.replace(center=(8.0, 0.0))], belt=drive.belt.replace(length=16.8))
@@ -183,6 +184,7 @@ def test_numbers_below_a_narrow_drive_do_not_meet(drive: Drive) -> None:
     assert all(one.x1 < other.x0 for one, other in itertools.pairwise(boxes))
 
 
+@pytest.mark.slow
 def test_the_tension_is_that_of_equilibrium(drive: Drive, ax: Axes) -> None:
     """Of what is asked for, and of what a length gives; by hand where there is no equilibrium."""
     tight = drive.replace(belt=drive.belt.replace(installed_tension=40.0))

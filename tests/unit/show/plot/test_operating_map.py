@@ -51,6 +51,7 @@ def test_large_slip_safeties_are_cut_off_where_there_are_small_ones(drive: Drive
     assert plot.operating_points(large, "slip_safety").get_ylim()[1] == pytest.approx(1.1 * 35.0)
 
 
+@pytest.mark.slow
 def test_all_of_a_kind_are_saved(drive: Drive, tmp_path: Path) -> None:
     assert [path.stem for path in plot.save_all(made(drive, "operating_map", speed=4), tmp_path)] == [
         "operating_points"

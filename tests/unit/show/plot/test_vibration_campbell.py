@@ -21,6 +21,7 @@ def texts(ax: Axes) -> list[str]:
     return [one.get_text() for one in ax.texts]
 
 
+@pytest.mark.slow
 def test_modes_orders_and_critical_speeds(found: bd.Result, ax: Axes) -> None:
     plot.campbell(found, ax=ax)
     assert {"order 1.5 of driver", "order 11 of driver", "1", "2"} <= set(texts(ax))

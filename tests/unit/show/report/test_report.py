@@ -257,6 +257,7 @@ def test_a_result_without_a_time_has_a_report(run: Run, tmp_path: Path) -> None:
     assert "limit" not in text[: text.index('id="drive"')].partition("<body>")[2]
 
 
+@pytest.mark.slow
 def test_a_drive_that_stands_still_does_not_move(make_run: Callable[..., Run], tmp_path: Path) -> None:
     still = make_run(pulley_speed=np.zeros((101, 2)))
     assert data(write_report(still, tmp_path / "still.html").read_text(encoding="utf-8"), "motions") == {}
@@ -345,9 +346,7 @@ def reported(tmp_path_factory: pytest.TempPathFactory) -> Reported:
 @pytest.mark.parametrize(
     "kind",
     [
-        pytest.param(
-            kind, marks=pytest.mark.slow if kind in ("run", "sweep", "traction", "campbell", "calibrate") else ()
-        )
+        pytest.param(kind, marks=() if kind in ("steady", "map", "sheet", "modes") else pytest.mark.slow)
         for kind in MAKERS
     ],
 )

@@ -22,6 +22,7 @@ def test_a_notebook_gets_charts_in_a_frame_that_fetches_nothing(run: Run) -> Non
     assert 'src="http' not in page.partition("<script>")[0]
 
 
+@pytest.mark.slow
 def test_figures_of_a_report_are_drawn_by_default(run: Run) -> None:
     assert {"Speeds", "Configuration"} <= set(interactive([run]).names)
 

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from beltdyn.records import fill, offsets, record, records, row
+from beltdyn.arrays import fill, offsets, record, records, row
 
 INNER = record(stiffness="f8", ends="2f8")
 OUTER = record(number="i8", inner=INNER)
