@@ -122,6 +122,7 @@ def test_numbers_stand_beside_their_names(shown: Shown) -> None:
         assert "dl" not in Page(html).tags
 
 
+@pytest.mark.slow
 def test_figures_are_charts_in_a_frame_or_pictures(shown: Shown) -> None:
     (frame,) = Page(shown["interactive"]["text/html"]).frames
     for part in ('id="speeds-0"', 'id="span_tensions-0"', "Bokeh"):

@@ -64,7 +64,8 @@ def reversal(backlash: float, law: str) -> float:
     return float(error.sel(time=BACK).mean() - error.sel(time=THERE).mean())
 
 
-@pytest.mark.parametrize("law", ["spread", pytest.param("discrete", marks=pytest.mark.slow)])
+@pytest.mark.slow
+@pytest.mark.parametrize("law", ["spread", "discrete"])
 def test_an_axis_that_turns_back_loses_the_backlash(law: str) -> None:
     """The pitches agree, and the idler turns freely: the play of the driver's teeth alone is taken up.
 

@@ -70,6 +70,7 @@ def exact() -> tuple[float, float, float]:
     return radius * sin(angle), radius * (1.0 - cos(angle)), angle
 
 
+@pytest.mark.slow
 def test_a_moment_bends_a_cantilever_into_an_arc(measured: Callable[..., None]) -> None:
     """The end converges with the eighth order of the length of elements at least, twice that of the curvature."""
     meshes = np.array([3, 4, 6])
@@ -96,6 +97,7 @@ def installed() -> Callable[[int], tuple[float, float]]:
     return tension
 
 
+@pytest.mark.slow
 def test_tension_of_a_belt_at_rest(
     installed: Callable[[int], tuple[float, float]], measured: Callable[..., None]
 ) -> None:

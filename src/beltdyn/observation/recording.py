@@ -86,7 +86,7 @@ def result_layout(prepared: Prepared, system: System) -> Layout:
         carriages=_carriages(prepared),
         rolls=tuple(one.name for one in prepared.drive.rolls),
         bodies=_bodies(prepared, system),
-        nips=tuple(prepared.drive.pulleys[roller].name for roller, _ in prepared.path.nips_by_roller),
+        nips=tuple(prepared.pulleys[roller].name for roller, _ in prepared.path.nips_by_roller),
         tooth_coordinate=tuple(tooth_coordinates(system).tolist()),
     )
 

@@ -263,7 +263,7 @@ def require_one_pulley_at_a_time(prepared: Prepared, system: System, state: Stat
     touched = ((_sampled(system, state)[1] >= 0.0) & (system.pulleys.beside == 0)[:, None]).astype(int)
     pairs = np.argwhere(np.triu(touched @ touched.T, 1))
     if pairs.size:
-        first, second = (prepared.drive.pulleys[number].name for number in pairs[0].tolist())
+        first, second = (prepared.pulleys[number].name for number in pairs[0].tolist())
         raise ConvergenceError(
             f'the belt touches "{first}" and "{second}" at the same place: the forces move them together. Move them '
             "apart, reduce the load, or limit the travel of the tensioner by stops."

@@ -73,7 +73,7 @@ def search_from(prepared: Prepared, start: Run, time: float) -> SteadySearch:
     found = start.dataset
     lengths = lengths_of(found, start.prepared)
     system, state = carried(prepared, start.prepared, lengths, found.nodal_coordinates.values[-1].ravel())
-    for number, one in enumerate(reversed(prepared.drive.moving_tensioners), 1):
+    for number, one in enumerate(reversed(prepared.moving_tensioners), 1):
         if one.pulley in found.get("tensioner", ()):  # the roller of a nip that was held stands where its slide begins
             state.position[-number] += float(found.tensioner_position.sel(tensioner=one.pulley)[-1])
     held = system.first_body + controllers(system)

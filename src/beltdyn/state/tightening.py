@@ -263,7 +263,7 @@ def _jumps(rest: Tightened, ahead: Tightened) -> bool:
 
 def _jump_of(rest: Tightened, ahead: Tightened) -> str:
     """Say which tensioner jumps."""
-    name = rest.prepared.drive.pulleys[int(np.argmax(_moved(rest, ahead)))].name
+    name = rest.prepared.pulleys[int(np.argmax(_moved(rest, ahead)))].name
     return (
         f"at {rest.tension:.5g} N, with a belt length of {rest.prepared.belt_length:.6g} m, the balance of the "
         f'tensioner of "{name}" ends. Change its pivot or direction, increase its spring rate, or give stops.'

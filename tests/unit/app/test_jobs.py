@@ -52,6 +52,7 @@ def test_what_fails_says_why(drive_text: str, tmp_path: Path) -> None:
     assert '"none"' in outcome.error or "'none'" in outcome.error
 
 
+@pytest.mark.slow
 def test_a_run_that_is_cancelled_keeps_what_was_computed(drive_text: str, tmp_path: Path) -> None:
     job = Job("simulate", drive_text.replace("duration = 1.0", "duration = 50.0"), tmp_path, tmp_path / "drive.nc", {})
     while job.outcome is None and job.step.phase != "integrating":

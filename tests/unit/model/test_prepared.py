@@ -1,16 +1,21 @@
 """What a drive leaves open is found once."""
 
 import pickle
+import re
+from dataclasses import fields
+from pathlib import Path
 from typing import Any
 
 import numpy as np
 import pytest
 
-from beltdyn.model import Drive, install, layer_lengths, prepare
+from beltdyn.model import Drive, Prepared, install, layer_lengths, prepare
 from beltdyn.model.resolution import graded_mesh, layer_length
 from tests.unit.model.conftest import MakeDrive
 
 SLIDE = {"kind": "sliding", "pulley": "idler", "direction": [0, 1], "mass": 1.0, "preload": 60.0}
+
+SOURCE = Path(__file__).parents[3] / "src" / "beltdyn"
 
 
 def test_nothing_is_open(make_drive: MakeDrive) -> None:
@@ -67,3 +72,20 @@ def test_it_travels_as_its_drive(drive: Drive) -> None:
     sent: Any = pickle.loads(pickle.dumps(prepare(drive)))
     assert sent.drive == drive
     np.testing.assert_array_equal(sent.path.centers, drive.path.centers)
+
+
+AS_GIVEN = {"belt", "tensioners", "simulation"}
+"""What a prepared drive and the drive both have, and some ask for as it was given."""
+
+
+def test_what_a_prepared_drive_knows_is_not_asked_of_its_drive_again() -> None:
+    known = {name for name in dir(Prepared) if not name.startswith("_")} | {one.name for one in fields(Prepared)}
+    asked = {
+        f"{path.relative_to(SOURCE)}: {name}"
+        for path in SOURCE.rglob("*.py")
+        for name in re.findall(r"prepared\.drive\.(\w+)", path.read_text(encoding="utf-8"))
+        if name in known - AS_GIVEN - {"replace"}
+    }
+    assert asked == set()
+    below = [path for name in ("system", "solvers", "contact", "elements") for path in (SOURCE / name).rglob("*.py")]
+    assert [path for path in below if re.search(r"import .*\bDrive\b", path.read_text(encoding="utf-8"))] == []

@@ -57,6 +57,7 @@ def test_constant_acceleration_is_exact(spinning: System) -> None:
     assert integration.clock.time == 0.0
 
 
+@pytest.mark.slow
 def test_no_solution_without_mass(spinning: System) -> None:
     state = straight(spinning)
     integration, equations = (

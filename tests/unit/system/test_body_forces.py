@@ -19,7 +19,7 @@ from beltdyn.system.element_state import element_workspace
 from beltdyn.system.state import laid
 
 EXAMPLES = sorted(path.name[:-5] for path in (files("beltdyn") / "examples").iterdir() if path.name.endswith(".toml"))
-QUICK = ("two_pulley", "tensioner_stop")
+QUICK = ("two_pulley",)
 """Examples that need no kernels of their own."""
 
 SIGNALING_NAN = np.uint64(0x7FF0000000000001)

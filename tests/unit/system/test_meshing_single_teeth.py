@@ -46,6 +46,7 @@ def test_a_tooth_to_a_pitch(system: System, prepared: Prepared) -> None:
     assert tooth_coordinates(spread).size == 0
 
 
+@pytest.mark.slow
 def test_forces_of_teeth_make_the_moment_on_the_pulley(system: System, state: State) -> None:
     position = np.tile(state.position, (2, 1))
     position[1, system.first_body + 1] += 1e-3  # the driven pulley ahead

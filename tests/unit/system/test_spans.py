@@ -73,6 +73,7 @@ def test_points_between_two_pulleys(drive: Drive) -> None:
     assert see(system).wrap_angle[0, 0] == pytest.approx(chord(0.09, 0.1), rel=1e-9)
 
 
+@pytest.mark.slow
 def test_a_pulley_that_is_touched_between_points(drive: Drive) -> None:
     """The nearest point counts to it, whichever side of it that is."""
     system = rectangle(drive, ((0.96, 0.35 * 0.9), 0.05), ((0.96, 0.8 * 0.9), 0.05))

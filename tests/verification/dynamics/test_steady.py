@@ -135,7 +135,11 @@ def peaks(run: bd.Run, pulleys: int) -> list[float]:
     return [float(np.where(touched == p, forces, 0.0).max(axis=1).mean()) for p in range(pulleys)]
 
 
-STEADY = [name for name in EXAMPLES if name not in ("servo_axis", "slip_through") and not example(name).ends]
+STEADY = [
+    pytest.param(name, marks=[pytest.mark.slow] * example(name).carries)
+    for name in EXAMPLES
+    if name not in ("servo_axis", "slip_through") and not example(name).ends
+]
 
 
 @pytest.mark.parametrize("name", STEADY)

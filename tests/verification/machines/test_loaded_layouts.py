@@ -90,7 +90,8 @@ def sliding(run: xr.Dataset, pulley: int, friction: float) -> float:
     return float(np.mean(shares))
 
 
-@pytest.mark.parametrize(("driven", "load"), [pytest.param("back", 5.0, marks=pytest.mark.slow), ("inside", -10.0)])
+@pytest.mark.slow
+@pytest.mark.parametrize(("driven", "load"), [("back", 5.0), ("inside", -10.0)])
 def test_elastic_creep(make: Make, measured: Measured, driven: str, load: float) -> None:
     """Rims at their effective radii differ by 1 - g(T2) / g(T1), and the belt slides over ln(T1 / T2) / mu on both.
 
