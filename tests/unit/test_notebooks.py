@@ -12,6 +12,8 @@ import pytest
 from nbclient import NotebookClient
 from nbformat.v4 import new_code_cell, new_notebook
 
+pytestmark = pytest.mark.slow  # IPython takes ten seconds
+
 CELLS = {
     "watch": """
 import sys
@@ -97,7 +99,6 @@ def shown(notebook: Path) -> Shown:
     return found
 
 
-@pytest.mark.slow
 def test_drives_and_results_show_themselves_as_html(shown: Shown) -> None:
     kinds = {"drive": None, "run": "Run", "steady": "Steady running", "modes": "Modes", "equilibrium": "Equilibrium"}
     for name, kind in kinds.items():
@@ -108,7 +109,6 @@ def test_drives_and_results_show_themselves_as_html(shown: Shown) -> None:
     assert [name for name, forms in shown.items() if {"stdout", "stderr"} & forms.keys()] == []
 
 
-@pytest.mark.slow
 def test_numbers_stand_beside_their_names(shown: Shown) -> None:
     """In tables: lists of definitions lie in each other where a notebook's own style lets their terms float."""
     (tension, *frequencies), warnings = ast.literal_eval(shown["numbers"]["text/plain"])
@@ -122,7 +122,6 @@ def test_numbers_stand_beside_their_names(shown: Shown) -> None:
         assert "dl" not in Page(html).tags
 
 
-@pytest.mark.slow
 def test_figures_are_charts_in_a_frame_or_pictures(shown: Shown) -> None:
     (frame,) = Page(shown["interactive"]["text/html"]).frames
     for part in ('id="speeds-0"', 'id="span_tensions-0"', "Bokeh"):

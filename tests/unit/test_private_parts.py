@@ -10,9 +10,6 @@ DOCUMENTED = {"_replace", "_asdict", "_fields", "_make", "_exit", "_getframe"}
 BARE_SCRIPTS = "designs/processes.py"
 """Processes of a batch see an empty script in place of a caller's, which each of them would run otherwise."""
 
-LEFT = {"designs/processes.py: _processes"}
-"""The processes of a pool, to kill them: `ProcessPoolExecutor.kill_workers` is there from Python 3.14."""
-
 
 def is_private(name: str) -> bool:
     return name.startswith("_") and not (name.startswith("__") and name.endswith("__"))
@@ -53,7 +50,7 @@ def test_no_private_parts_of_other_libraries() -> None:
         for name in used(tree)
         if is_private(name) and name not in ours
     }
-    assert foreign == LEFT
+    assert foreign == set()
 
 
 def test_the_script_of_a_caller_is_left_alone() -> None:

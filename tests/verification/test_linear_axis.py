@@ -8,6 +8,8 @@ import pytest
 import beltdyn as bd
 from beltdyn.arrays import FloatArray
 
+pytestmark = pytest.mark.slow  # kernels of axes
+
 AXIAL, TOOTH, PITCH, TEETH = 1e5, 1e6, 8e-3, 30
 RADIUS = TEETH * PITCH / (2.0 * np.pi)
 DISTANCE, LENGTH, MASS, TENSION = 0.8, 0.1, 5.0, 200.0
@@ -64,7 +66,6 @@ def reversal(backlash: float, law: str) -> float:
     return float(error.sel(time=BACK).mean() - error.sel(time=THERE).mean())
 
 
-@pytest.mark.slow
 @pytest.mark.parametrize("law", ["spread", "discrete"])
 def test_an_axis_that_turns_back_loses_the_backlash(law: str) -> None:
     """The pitches agree, and the idler turns freely: the play of the driver's teeth alone is taken up.
@@ -87,7 +88,6 @@ def at_teeth(run: bd.Run, window: slice) -> tuple[FloatArray, FloatArray]:
     return orders, 2.0 * np.abs(waves @ (weights * laid)) / weights.sum()
 
 
-@pytest.mark.slow
 def test_single_teeth_of_a_printer_leave_bands_a_pitch_apart() -> None:
     """Vertical banding: at 300 mm/s the meshing frequency is 150 Hz, whatever the speed a wave of 2 mm on the print."""
     changes = {"simulation.duration": 0.35, "simulation.output_interval": 2e-4, "simulation.rtol": 1e-3}
@@ -249,7 +249,6 @@ def in_a_run(teeth: int, stiffness: float, land: float | None = LAND) -> tuple[F
     return passed, np.abs(late.carriage_speed.values[:, 0] / late.pulley_speed.values[:, 0])
 
 
-@pytest.mark.slow
 @pytest.mark.parametrize(("teeth", "stiffness"), [(12, 1e10), (20, 1e11)])
 def test_a_belt_that_runs_straight_from_land_to_land_has_the_ripple_of_a_polygon(teeth: int, stiffness: float) -> None:
     passed, speed = in_a_run(teeth, stiffness)
@@ -260,12 +259,10 @@ def test_a_belt_that_runs_straight_from_land_to_land_has_the_ripple_of_a_polygon
     assert wave(passed, speed) == pytest.approx(wave(np.arange(1000) / 1000, expected), rel=0.08)
 
 
-@pytest.mark.slow
 def test_a_belt_on_a_circle_has_no_ripple_of_a_polygon() -> None:
     assert wave(*in_a_run(20, 1e10, None)) < 0.03 * wave(np.arange(1000) / 1000, on_a_polygon(20))
 
 
-@pytest.mark.slow
 def test_teeth_between_lands_are_in_mesh() -> None:
     """Half of the twelve grooves, with the force of each."""
     run = bd.simulate(on_lands(12, 1e10).with_({"simulation.duration": 0.12}))

@@ -16,7 +16,7 @@ from concurrent.futures import CancelledError, Future, ProcessPoolExecutor
 from concurrent.futures.process import BrokenProcessPool
 from contextlib import closing, contextmanager
 from dataclasses import dataclass, replace
-from multiprocessing.context import SpawnProcess
+from multiprocessing.context import SpawnContext, SpawnProcess
 from multiprocessing.process import BaseProcess
 from multiprocessing.synchronize import Event as SharedEvent
 from pathlib import Path
@@ -148,6 +148,19 @@ def start_process(function: Callable[..., None], *arguments: Any) -> SpawnProces
     return process
 
 
+class _Noting(SpawnContext):
+    """Starts processes, and keeps them in a list."""
+
+    def __init__(self) -> None:
+        super().__init__()
+        self.started = list[BaseProcess]()
+
+    def Process(self, *arguments: Any, **keys: Any) -> SpawnProcess:  # type: ignore[override]
+        process = SPAWN.Process(*arguments, **keys)
+        self.started.append(process)
+        return process
+
+
 class LocalProcesses:
     """A pool of local processes of one thread each; one that is killed is replaced."""
 
@@ -160,7 +173,8 @@ class LocalProcesses:
         self._pool = self._new()
 
     def _new(self) -> ProcessPoolExecutor:
-        return ProcessPoolExecutor(self.slots, SPAWN, self._begin, (self._stop, *self._shared))
+        self._context = _Noting()
+        return ProcessPoolExecutor(self.slots, self._context, self._begin, (self._stop, *self._shared))
 
     def submit(self, function: Callable[..., Any], *arguments: Any) -> Future[Any]:
         """Have a function of a module computed."""
@@ -182,7 +196,7 @@ class LocalProcesses:
     @property
     def processes(self) -> list[BaseProcess]:
         """Those that run now."""
-        return list((self._pool._processes or {}).values())
+        return [one for one in self._context.started if one.is_alive()]
 
     def close(self, *, abandon: bool = False, stop: bool = False) -> None:
         """Wait for the processes to end.

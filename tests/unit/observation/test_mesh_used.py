@@ -76,6 +76,7 @@ def test_a_mesh_that_is_to_stay_tells_of_elements_that_it_does_not_have(change: 
     assert run.dataset.attrs["mesh_frame_reason"] == "as given"
 
 
+@pytest.mark.slow
 def test_other_integrators_take_a_mesh_that_travels(asked: Callable[[str | None], Drive]) -> None:
     drive = asked(None)
     other = drive.replace(simulation=drive.simulation.replace(integrator="cvode"))

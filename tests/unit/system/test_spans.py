@@ -13,6 +13,8 @@ from beltdyn.system.build import belt_system
 from beltdyn.system.observations import Observations
 from beltdyn.system.observe import observe
 
+pytestmark = pytest.mark.slow  # kernels of points in fixed places
+
 CORNERS = np.array([(0.0, 0.0), (1.0, 0.0), (1.0, 0.9), (0.0, 0.95)])
 VELOCITIES = np.array([(1.0, 0.3), (1.2, 0.4), (-0.2, 1.5), (-1.1, -0.7)])
 SHARES = np.array([5.0, 8.0, 5.0]) / 18.0
@@ -63,7 +65,6 @@ def chord(height: float, radius: float) -> float:
     return float(2.0 * np.arccos(height / radius))
 
 
-@pytest.mark.slow
 def test_points_between_two_pulleys(drive: Drive) -> None:
     """Each pulley touches the middle of a link."""
     system = rectangle(drive, ((0.5, 0.09), 0.1), ((0.5, 0.86), 0.1))
@@ -73,7 +74,6 @@ def test_points_between_two_pulleys(drive: Drive) -> None:
     assert see(system).wrap_angle[0, 0] == pytest.approx(chord(0.09, 0.1), rel=1e-9)
 
 
-@pytest.mark.slow
 def test_a_pulley_that_is_touched_between_points(drive: Drive) -> None:
     """The nearest point counts to it, whichever side of it that is."""
     system = rectangle(drive, ((0.96, 0.35 * 0.9), 0.05), ((0.96, 0.8 * 0.9), 0.05))

@@ -141,7 +141,9 @@ def test_contact_points(make_drive: Make, kind: str) -> None:
 
 
 @pytest.mark.parametrize("places", ["fixed", "nodal"])
-@pytest.mark.parametrize("kind", ["ancf", "truss", pytest.param("three-node-beam", marks=pytest.mark.slow)])
+@pytest.mark.parametrize(
+    "kind", ["ancf", *(pytest.param(one, marks=pytest.mark.slow) for one in ("truss", "three-node-beam"))]
+)
 def test_forces_at_rest_are_the_slope_of_the_energies(make_drive: Make, kind: str, places: str) -> None:
     """Elasticity and penalty contact of a belt that is pushed 0.4 mm into its pulleys and disturbed by 0.1 mm."""
     system = drive_system(prepare(make_drive("force_slope", places, discretization=kind)))

@@ -54,7 +54,10 @@ def reference(solve: Callable[..., xr.Dataset]) -> xr.Dataset:
 
 @pytest.mark.parametrize(
     "integrator",
-    [pytest.param(name, marks=[pytest.mark.slow] if name in ("radau", "bdf", "ida") else []) for name in TOLERANCES],
+    [
+        pytest.param(name, marks=[pytest.mark.slow] if name in ("cvode", "radau", "bdf", "ida") else [])
+        for name in TOLERANCES
+    ],
 )
 def test_agree(solve: Callable[..., xr.Dataset], reference: xr.Dataset, measured: Measured, integrator: str) -> None:
     run = solve(integrator, TOLERANCES[integrator])
