@@ -224,8 +224,8 @@ class Belt(Part):
     elements: Count | None = Field(None, ge=3, le=10_000, description="the number of belt elements")
     discretization: Annotated[str, NameOf(ELEMENTS)] | None = Field(
         None,
-        description=f"the kind of elements: {_ELEMENTS}; by default quintic on a staying mesh, ancf on a travelling "
-        "mesh",
+        description=f"the kind of elements: {_ELEMENTS}; by default quintic on a staying mesh and with teeth, ancf "
+        "on a travelling mesh without",
     )
     integration: Literal["full", "reduced"] = Field(
         "full",

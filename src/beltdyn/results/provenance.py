@@ -13,10 +13,9 @@ import numpy as np
 
 from beltdyn.analyses import RUN
 from beltdyn.arrays import FloatArray
-from beltdyn.elements import ANCF, QUINTIC
 from beltdyn.kinds import Registry
 from beltdyn.model import ERROR_LIMITS, Drive, Prepared, Running, elements_needed, layer_lengths, mesh_errors
-from beltdyn.model.simulation import Frame, unused_settings
+from beltdyn.model.simulation import Frame, element_of, unused_settings
 from beltdyn.results.schema import FORMAT, Recorded
 
 # Mesh error of a run: `beltdyn.model.resolution` with the tension and speed of the run
@@ -146,7 +145,7 @@ def _versions() -> dict[str, str]:
 
 def mesh_used(drive: Drive, frame: Frame, elements: int | None = None) -> dict[str, Any]:
     """Attributes of the mesh of an analysis, and the settings of the drive that it does not use."""
-    element = QUINTIC.name if frame.stays else drive.belt.discretization or ANCF.name
+    element = element_of(drive.belt, frame)
     unused = unused_settings(drive.belt, drive.contact) if frame.stays else []
     known = {} if elements is None else {"mesh_elements": elements}
     values = (*frame, element, ", ".join(unused))

@@ -7,7 +7,7 @@ import pytest
 
 from beltdyn import equilibrium, modes, simulate, steady_state
 from beltdyn.elements import ELEMENTS
-from beltdyn.model import Drive
+from beltdyn.model import Drive, example
 from beltdyn.results import Result
 from beltdyn.show.sheet import Facts, sheet
 
@@ -74,6 +74,14 @@ def test_a_mesh_that_is_to_stay_tells_of_elements_that_it_does_not_have(change: 
     run = simulate(change(belt={"discretization": "truss"}, simulation={"frame": "staying"}))
     assert mesh_of(run) == ("staying", "quintic", 'belt.discretization = "truss"')
     assert run.dataset.attrs["mesh_frame_reason"] == "as given"
+
+
+def test_the_elements_that_are_named_are_those_of_the_result() -> None:
+    """By their coordinates: open belts with teeth travel on quintics, without teeth on the paper's elements."""
+    for drive, name in ((example("printer_axis"), "quintic"), (example("band_brake"), "ancf")):
+        rest = equilibrium(drive).dataset
+        assert tuple(rest.coordinate.values.tolist()) == ELEMENTS[name].coordinates
+        assert (rest.attrs["mesh_frame"], rest.attrs["mesh_element"]) == ("travelling", name)
 
 
 @pytest.mark.slow
