@@ -53,6 +53,7 @@ def test_examples(name: str, measured: Callable[..., None]) -> None:
     assert prepared.belt_length == pytest.approx(rest.drive.belt_length, rel=5e-5)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("lift", [0.058, 0.046], ids=["wrap 17 degrees", "wrap 9 degrees"])
 @pytest.mark.parametrize("bending", [0.005, 0.1], ids=["flexible", "stiff"])
 def test_idlers_of_small_wrap(lift: float, bending: float, measured: Callable[..., None]) -> None:

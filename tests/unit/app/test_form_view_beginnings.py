@@ -29,6 +29,7 @@ def offered(data: Mapping[str, Any], location: Location) -> Iterator[list[Edit]]
             yield edits_of_group(data, one.location)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", EXAMPLES)
 def test_whatever_is_added_to_a_drive_leaves_it_valid(name: str) -> None:
     data = EXAMPLES[name]

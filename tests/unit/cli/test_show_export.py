@@ -16,6 +16,7 @@ def result_file(make_run: Callable[..., Run], tmp_path: Path) -> Path:
     return make_run(11).save(tmp_path / "drive.nc")
 
 
+@pytest.mark.slow
 def test_what_is_written_is_named(run_main: RunMain, result_file: Path) -> None:
     folder = result_file.parent
     names = ("drive-belt.vtkhdf", "drive-pulleys.vtkhdf", "drive.mat")

@@ -63,6 +63,7 @@ def test_it_is_valid_and_tells_of_its_variables(unit: Path, short: Drive) -> Non
     assert (units["N m"].kg, units["N m"].m, units["N m"].s, units["rad/s"].rad) == (1, 2, -2, 1)
 
 
+@pytest.mark.slow
 def test_it_runs_as_a_simulator_does_after_it_was_moved(unit: Path, short: Drive, tmp_path: Path) -> None:
     """To the bit, by the schedule of the file; as `simulate` to 1e-9, whose outputs are where the host steps to."""
     other = tmp_path / "an other place"

@@ -59,6 +59,7 @@ def study_file(folder: Path) -> Path:
     return file
 
 
+@pytest.mark.slow
 def test_stiffness_from_slip(drive: Drive, slips: FloatArray, tmp_path: Path) -> None:
     """Without noise it is that of the measurements, within what two meshes differ."""
     write(tmp_path, slips)

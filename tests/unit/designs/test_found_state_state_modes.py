@@ -39,6 +39,7 @@ def slopes(found: Callable[[float], FoundState], step: float) -> FloatArray:
     return np.array([up.value(name) - down.value(name) for name in NAMES]) / (2.0 * step)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("path", "step"), [pytest.param(MODULUS, 1e-5, marks=pytest.mark.slow), ("contact.friction", 1e-5)]
 )

@@ -169,6 +169,7 @@ SPRING = {"kind": "rotary", "pulley": "tensioner", "pivot": [-0.17, 0.17], "iner
 FIXED = {"kind": "fixed", "pulley": "idler", "direction": [0.6, 0.8], "take_up": 1e-3}
 
 
+@pytest.mark.slow
 @given(st.sampled_from(sorted(LENGTHS)), st.data())
 @settings(max_examples=200)
 def test_any_layout_with_arbitrary_numbers(make_drive: Callable[..., Drive], layout: str, data: st.DataObject) -> None:

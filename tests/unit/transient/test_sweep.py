@@ -91,6 +91,7 @@ def test_a_sweep_is_a_run_that_names_its_pulley(drive: Drive, start: float | str
     assert float(run.dataset.time[-1]) == pytest.approx(0.01)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("frame", "closure"), [("travelling", 1e-3), pytest.param("staying", 5e-3, marks=pytest.mark.slow)]
 )
@@ -116,6 +117,7 @@ def test_a_sweep_begins_at_its_first_speed_where_the_settling_ended(drive: Drive
     )
 
 
+@pytest.mark.slow
 def test_a_pulley_that_slips_through_ends_the_sweep_with_one_warning(drive: Drive, tmp_path: Path) -> None:
     slippery = drive.replace(contact=drive.contact.replace(friction=0.02))
     file = tmp_path / "slips.nc"

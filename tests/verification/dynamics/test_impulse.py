@@ -179,6 +179,7 @@ def quiet(drive: Drive) -> xr.Dataset:
     return _run(drive, {"kind": "constant", "value": 0.0})
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("place", [0.9002, 0.9005])
 @pytest.mark.parametrize(
     ("width", "height"), [(1e-4, 400.0), (5e-4, 400.0), pytest.param(2e-3, 100.0, marks=pytest.mark.slow)]

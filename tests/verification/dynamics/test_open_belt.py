@@ -50,6 +50,7 @@ def braked(brake: Drive, *, mirrored: bool, pull: bool) -> Run:
     )
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("mirrored", "pull"),
     [

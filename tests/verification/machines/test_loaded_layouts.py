@@ -40,6 +40,7 @@ FREE = {"inertia": 1e-4}
 TURNS = {"speed": {"kind": "cosine_ramp", "start": 0.0, "end": 0.05, "value": 10.0}}
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(("held", "friction"), [("back", 0.3), ("inside", 0.1)], ids=["flat back", "groove"])
 def test_a_held_pulley_is_a_capstan(
     make: Make, measured: Measured, span_lines: Callable[..., Any], held: str, friction: float

@@ -145,6 +145,7 @@ def test_closes(make: Make, measured: Measured, case: str) -> None:
         assert (loss[-1] > 1e-4) == (name in lost | {"friction_loss", "damping_loss"})
 
 
+@pytest.mark.slow
 def test_a_tensioner_does_meet_its_stop(make: Make) -> None:
     pulleys, others, _ = CASES["sliding tensioner against a stop"]
     run = simulate(make(pulleys, **others, simulation={"duration": 0.1})).dataset

@@ -67,6 +67,7 @@ def test_overruns_as_its_load_lets_it(run: xr.Dataset, measured: Measured) -> No
     np.testing.assert_allclose(shaft[inside], expected, rtol=1e-4)
 
 
+@pytest.mark.slow
 def test_drives_again_and_never_backwards(run: xr.Dataset, measured: Measured) -> None:
     """The torque through the clutch, from the motion of the inertia behind it by differences over 0.5 ms."""
     sense, time = float(run.sense), run.time.values

@@ -21,6 +21,7 @@ def test_nothing_to_draw_is_a_model_error(run: Run, draw: Callable[..., Any]) ->
         draw(Run(run.dataset.isel(time=slice(0)), run.drive))
 
 
+@pytest.mark.slow
 def test_save_all(tmp_path: Path, run: Run) -> None:
     paths = plot.save_all(run, tmp_path / "figures")
     names = ["configuration", "speeds", "span_tensions", "slip", "hub_load_sizes", "hub_loads", "slip_safety"]

@@ -32,6 +32,7 @@ def test_an_unknown_mode(found: bd.Result) -> None:
         plot.mode_shape(found, 9)
 
 
+@pytest.mark.slow
 def test_all_on_a_page_and_moving(found: bd.Result, tmp_path: Path) -> None:
     assert [path.name for path in plot.save_all(found, tmp_path)] == ["mode_shape.png"]
     film = plot.animate_modes(found, tmp_path / "modes.gif")

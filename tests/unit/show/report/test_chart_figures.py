@@ -11,6 +11,7 @@ from beltdyn.show.plot.figures import FIGURES, chosen_by_default
 from beltdyn.show.report.chart import charted
 
 
+@pytest.mark.slow
 def test_figures_of_lines_have_charts_and_others_have_none(run: Run) -> None:
     shown, charts = charted([run])
     assert [one.name.lower().replace(" ", "_") for one in shown] == list(chosen_by_default([run]))
