@@ -78,6 +78,7 @@ def run(folder: Path, script: str, plain: bool = False, module: bool = False) ->
     file = folder / ("own_law.py" if module else "script.py")
     file.write_text(script, encoding="utf-8")
     environment = os.environ | {CACHE_VARIABLE: str(folder / "cache"), PLAIN_VARIABLE: "1" if plain else ""}
+    environment |= {"PYTHONDONTWRITEBYTECODE": "1"}  # Python takes bytecode of the same second and size for its own
     program = ["-c", "from own_law import Slope" + _CALL] if module else [str(file)]
     command = [sys.executable, "-W", "ignore", *program]
     done = subprocess.run(command, cwd=folder, env=environment, capture_output=True, text=True, check=False)

@@ -7,8 +7,9 @@ import pytest
 
 from beltdyn import equilibrium, modes, simulate, steady_state
 from beltdyn.elements import ELEMENTS
-from beltdyn.model import Drive, example
+from beltdyn.model import Drive, example, prepare
 from beltdyn.results import Result
+from beltdyn.results.provenance import mesh_used
 from beltdyn.show.sheet import Facts, sheet
 
 Change = Callable[..., Drive]
@@ -76,12 +77,21 @@ def test_a_mesh_that_is_to_stay_tells_of_elements_that_it_does_not_have(change: 
     assert run.dataset.attrs["mesh_frame_reason"] == "as given"
 
 
-def test_the_elements_that_are_named_are_those_of_the_result() -> None:
-    """By their coordinates: open belts with teeth travel on quintics, without teeth on the paper's elements."""
-    for drive, name in ((example("printer_axis"), "quintic"), (example("band_brake"), "ancf")):
+def test_the_elements_that_are_named_are_those_of_the_drive() -> None:
+    """Open belts with teeth travel on quintics, without teeth on the paper's elements."""
+    found = []
+    for drive in (example("printer_axis"), example("band_brake"), example("timing_drive"), example("two_pulley")):
+        prepared = prepare(drive)
+        found.append(mesh_used(drive, prepared.frame)["mesh_element"])
+        assert found[-1] == prepared.element_kind.name
+    assert found == ["quintic", "ancf", "quintic", "ancf"]
+
+
+@pytest.mark.slow
+def test_they_are_those_of_results_by_their_coordinates() -> None:
+    for drive in (example("printer_axis"), example("band_brake")):
         rest = equilibrium(drive).dataset
-        assert tuple(rest.coordinate.values.tolist()) == ELEMENTS[name].coordinates
-        assert (rest.attrs["mesh_frame"], rest.attrs["mesh_element"]) == ("travelling", name)
+        assert tuple(rest.coordinate.values.tolist()) == ELEMENTS[rest.attrs["mesh_element"]].coordinates
 
 
 @pytest.mark.slow

@@ -63,6 +63,7 @@ def kloss(name: str, speed: float) -> float:
     return 2.0 * torque / (part + 1.0 / part)
 
 
+@pytest.mark.slow
 def test_two_drums_share_the_pull_by_the_lines_of_their_motors() -> None:
     """The belt that comes to the second drum is less stretched by the pull of the first, and so much slower it turns.
 
