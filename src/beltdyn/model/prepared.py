@@ -25,11 +25,9 @@ from beltdyn.model.installation import Installation, span_frequencies
 from beltdyn.model.layout import loaded
 from beltdyn.model.path import Path
 from beltdyn.model.pulley import Pulley
-from beltdyn.model.rating import RatedBelt
 from beltdyn.model.resolution import CARRIED_ELEMENTS, SPAN_ELEMENTS, Laid, graded_mesh, layer_length, layer_lengths
 from beltdyn.model.simulation import Frame, Simulation
 from beltdyn.model.static_estimate import StaticEstimate, TensionerBalance, all_balances, balance_tensioners
-from beltdyn.model.toothing import RatedTeeth
 
 
 @dataclass(frozen=True, eq=False)
@@ -154,11 +152,6 @@ class Prepared:
     def belt_length(self) -> float:
         """Unstretched length of the belt, m."""
         return self.belt.given_length
-
-    @property
-    def rated_belt(self) -> RatedBelt | RatedTeeth | None:
-        """The belt as its profile is rated; None without a rating."""
-        return None if self.ends else self.belt.rated(self.belt_length)
 
     @property
     def elements(self) -> int:

@@ -27,7 +27,7 @@ def rate(
     Wrap angles are those of straight spans, as in catalogues. NaN for pulleys on the back of the belt, for which
     catalogues have no rating, and of a toothed belt for those without teeth.
     """
-    belt = prepared.rated_belt
+    belt = prepared.drive.rated_belt
     if belt is None:
         return None
     sizes = np.abs(powers)

@@ -118,9 +118,7 @@ def test_file_is_readable_while_it_grows(
         assert any("the run is still going, or was killed" in warning for warning in run.warnings)
 
 
-@pytest.mark.parametrize(
-    "status", ["completed", *(pytest.param(one, marks=pytest.mark.slow) for one in ("interrupted", "failed"))]
-)
+@pytest.mark.parametrize("status", ["completed", "interrupted", "failed"])
 def test_without_outputs_there_is_no_file(tmp_path: Path, layout: Layout, attributes: Any, status: Status) -> None:
     recorder, memory = FileRecorder(tmp_path / "result.nc", layout, attributes), MemoryRecorder(layout, attributes)
     for one in (recorder, memory):

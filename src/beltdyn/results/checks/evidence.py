@@ -14,6 +14,7 @@ from beltdyn.results.means import PulleySummary, pulley_means, span_means
 from beltdyn.results.provenance import Resolution
 from beltdyn.results.schema import Recorded
 from beltdyn.results.tension_balance import Balance, power_balance
+from beltdyn.results.tooth_loads import ToothLoads, extreme_loads
 
 IDLE = 0.01
 """Power input over tension times belt speed below which a drive idles."""
@@ -44,6 +45,11 @@ class Evidence:
     def pulleys(self) -> tuple[PulleySummary, ...]:
         """Means of the pulleys over the end of the run."""
         return pulley_means(self.recorded, self.prepared, self.window)
+
+    @cached_property
+    def tooth_loads(self) -> tuple[ToothLoads, ...]:
+        """Extremes of the loads of teeth on each pulley."""
+        return extreme_loads(self.recorded, self.prepared)
 
     @cached_property
     def balance(self) -> Balance:

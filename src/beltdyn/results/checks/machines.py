@@ -11,7 +11,6 @@ from beltdyn.model.carrying import in_batch, lies_on, upper_side
 from beltdyn.parts.messages import Finding, listing
 from beltdyn.results.checks.evidence import Evidence
 from beltdyn.results.incidents import jumps_in, on_stops
-from beltdyn.results.tooth_loads import extreme_loads
 from beltdyn.theory.span import sag_ratio
 
 GROWTH = "growth"
@@ -131,8 +130,7 @@ LIFTS = 1.01
 
 def lifted_teeth(evidence: Evidence) -> Iterator[Finding]:
     """Teeth whose flanks carry all that presses the belt on, so that they lift, at any of some outputs."""
-    found = extreme_loads(evidence.recorded, evidence.prepared)
-    lifted = {one.name: one.jump_margin for one in found if one.jump_margin < LIFTS}
+    lifted = {one.name: one.jump_margin for one in evidence.tooth_loads if one.jump_margin < LIFTS}
     if lifted:
         yield Finding(
             f"teeth lift off {listing([f'{name} at {margin:.0%} of the load' for name, margin in lifted.items()])}.",
@@ -157,7 +155,7 @@ def jumped_teeth(evidence: Evidence) -> Iterator[Finding]:
 
 def overloaded_teeth(evidence: Evidence) -> Iterator[Finding]:
     """Teeth that carry more than allowed, at any of some outputs."""
-    over = [one for one in extreme_loads(evidence.recorded, evidence.prepared) if one.largest > one.allowed]
+    over = [one for one in evidence.tooth_loads if one.largest > one.allowed]
     if over:
         worst, allowed = {one.name: one.largest for one in over}, over[0].allowed
         factor = max(worst.values()) / allowed

@@ -126,17 +126,12 @@ def _over_both(result: Result) -> bool:
     return {"speed", "load"} <= set(result.dataset.dims)
 
 
-def _over_torque(result: Result) -> bool:
-    """Whether a traction curve is that of a pulley with teeth."""
-    return "torque" in result.dataset.dims
+def _over_slip(result: Result) -> bool:
+    """Whether it is the traction curve of a pulley without teeth."""
+    return "slip" in result.dataset.dims
 
 
-def _of_points(result: Result) -> bool:
-    """Whether operating points are drawn one variable at a time."""
-    return result.kind != "traction" or _over_torque(result)
-
-
-@figure(_of_points, _all_panels, of=("operating_map", "duty", "traction"))
+@figure(lambda result: not _over_slip(result), _all_panels, of=("operating_map", "duty", "traction"))
 def operating_points(result: Result, variable: str = "span_tension", *, ax: Axes | None = None) -> Axes:
     """Draw a variable of operating points over speed, load, torque on teeth, or the rows of a duty table.
 
@@ -254,11 +249,6 @@ def efficiency_map(result: Result, ax: Axes | None = None) -> Axes:
     return ax
 
 
-def _over_slip(result: Result) -> bool:
-    """Whether a traction curve is that of a pulley without teeth."""
-    return not _over_torque(result)
-
-
 @figure(_over_slip, of=("traction",))
 def traction_curve(result: Result, ax: Axes | None = None) -> Axes:
     """Draw slip over torque past gross slip, with elastic creep and what bending and the friction law add to it.
@@ -288,7 +278,7 @@ def traction_curve(result: Result, ax: Axes | None = None) -> Axes:
     >>> bd.plot.traction_curve(bd.traction(drive, slip="0..0.2 %", points=3)).get_ylabel()
     'Slip [%]'
     """
-    if _over_torque(result):
+    if not _over_slip(result):
         raise ModelError("a belt does not slip on teeth. Use `bd.plot.operating_points`, with the variable tooth_load.")
     dataset, ax = result.dataset, axes_or_new(ax)
     torque = dataset["torque"].values
