@@ -226,6 +226,8 @@ _RELATIVE = 1e-9
 _PART = 0.02
 """Error that one step may make, over that of the run: the errors of steps add up."""
 _HUGE = 1e30
+_ROUNDINGS = 16.0
+"""Least step of a method of SciPy, which refuses those of less than ten roundings; none goes beyond a stop."""
 _HIGHEST_A_STABLE_ORDER = 2
 """Of the backward differentiation formulas: higher orders feed the belt's fast vibrations, which nothing damps."""
 
@@ -343,7 +345,8 @@ class _SciPy:
         self.time, self.y, self._longest = leg.start, leg.y, self._solver.max_step
 
     def step(self, farthest: float) -> None:
-        self._solver.max_step = min(self._longest, farthest - self.time)
+        rest = max(farthest - self.time, _ROUNDINGS * float(np.spacing(self.time)))
+        self._solver.max_step = min(self._longest, rest)
         try:
             message = self._solver.step()
         except ValueError as error:  # infinite forces

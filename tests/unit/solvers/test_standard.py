@@ -2,7 +2,8 @@
 
 import sys
 from collections.abc import Callable
-from typing import get_args
+from types import SimpleNamespace
+from typing import Any, get_args
 
 import numpy as np
 import pytest
@@ -10,7 +11,7 @@ import pytest
 from beltdyn.arrays import FloatArray
 from beltdyn.elements.ancf.element import Ancf
 from beltdyn.errors import ConvergenceError, ModelError
-from beltdyn.solvers.standard import Name, StandardIntegrator
+from beltdyn.solvers.standard import Name, StandardIntegrator, _Leg, _SciPy
 from beltdyn.solvers.trajectory import Chunk, Task
 from beltdyn.stretch import Green, as_common
 from beltdyn.system.arrays import System
@@ -59,3 +60,15 @@ def test_a_missing_package_is_named(spin: Spin, monkeypatch: pytest.MonkeyPatch)
     monkeypatch.setitem(sys.modules, "sksundae", None)
     with pytest.raises(ModelError, match="scikit-sundae"):
         list(StandardIntegrator("cvode", 1e-3)(spin(INTERVAL)))
+
+
+@pytest.mark.parametrize("name", ["bdf", "radau"])
+def test_a_stop_that_rounding_keeps_away_is_reached(name: Name) -> None:
+    """Steps up to a stop may end one rounding before it, less than SciPy's methods step."""
+    decay: Any = SimpleNamespace(rates=lambda time, y: -y, jacobian=lambda time, y: -np.eye(1))
+    solver = _SciPy(_Leg(StandardIntegrator(name, 1e-4), decay, np.full(1, 1e-6), 0.0, np.ones(1), 1.0))
+    solver.step(0.1)
+    begun = solver.time
+    for _ in range(20):
+        solver.step(float(np.nextafter(solver.time, 1.0)))
+    assert begun < solver.time < begun + 1e-12
