@@ -18,8 +18,6 @@ CLOSURE = 5e-3
 NAMES = list(EXAMPLES)
 WARNINGS = {
     "two_pulley": ["the belt has too few elements for peak pressure"],
-    "printer_axis": ["the belt has too few elements for peak pressure"],
-    "gantry_axis": ["the belt has too few elements for peak pressure"],
     "tensioner_stop": ["the tensioner of tensioner was on its upper stop between t = 0.46"],
     "slip_through": [
         "gross slip: the belt slides on the whole arc of driver and conveyor",

@@ -1,5 +1,6 @@
 """Linear axes against closed forms: stiffness and frequency over the stroke, the way of a turn, energy, motion."""
 
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -7,6 +8,7 @@ import pytest
 
 import beltdyn as bd
 from beltdyn.arrays import FloatArray
+from beltdyn.results.mechanics import centerline, present_lengths, recorded_kind
 
 pytestmark = pytest.mark.slow  # kernels of axes
 
@@ -22,8 +24,6 @@ BELT = {
     "mass_per_length": 0.05,
     "installed_tension": TENSION,
     "toothing": {"pitch": PITCH, "tooth_stiffness": TOOTH},
-    "discretization": "quintic",
-    "elements": 150,
 }
 
 
@@ -270,3 +270,87 @@ def test_teeth_between_lands_are_in_mesh() -> None:
     assert motor.in_mesh == pytest.approx(6.0, abs=0.6)  # an arc ends at lands
     forces = run.fields_at().tooth_force.values
     assert np.sort(motor.loads) == pytest.approx(np.sort(-forces[forces != 0.0]))  # along the belt, which runs back
+
+
+# The mesh that stays at both arcs, against the one that travels with the belt
+
+TOOTHED: dict[str, Any] = {}
+FLAT: dict[str, Any] = {
+    "belt": {**BELT, "teeth": None, "toothing": None, "width": 0.02, "installed_tension": 4.0 * TENSION},
+    "pulley": [
+        {"name": "motor", "center": [0.0, 0.0], "diameter": 2.0 * RADIUS - 4e-3, "speed": REVERSED},
+        {"name": "idler", "center": [DISTANCE, 0.0], "diameter": 2.0 * RADIUS - 4e-3, "inertia": 1e-4},
+    ],
+    "contact": {"friction": 0.4},
+}
+
+
+def on_both_meshes(changes: dict[str, Any]) -> tuple[bd.Run, bd.Run]:
+    """The same reversal on the mesh that stays at arcs, and on one that travels."""
+    given = axis(REVERSED, duration=0.2, friction=RUBBING)
+    belt = {**BELT, "stretch_damping_time": 1e-4, "bending_loss_factor": 0.1} | changes.get("belt", {})
+    parts = {**changes, "belt": {name: value for name, value in belt.items() if value is not None}}
+    stays = given.replace(**parts).with_({"simulation.rtol": 1e-4})
+    travels = stays.with_({"simulation.frame": "travelling", "belt.discretization": "quintic", "belt.elements": 200})
+    return bd.simulate(stays), bd.simulate(travels)
+
+
+@pytest.mark.parametrize("changes", [TOOTHED, FLAT], ids=["toothed", "flat"])
+def test_two_meshes_move_a_carriage_alike(changes: dict[str, Any]) -> None:
+    """Spans of the one become longer and shorter, nodes of the other pass the ends of arcs.
+
+    The mesh that travels has wrap angles, sliding and losses of bending to some per cent; on 400 elements to one.
+    """
+    one, other = on_both_meshes(changes)
+    assert (one.dataset.attrs["mesh_frame"], other.dataset.attrs["mesh_frame"]) == ("staying", "travelling")
+    assert one.dataset.sizes["element"] < 50
+    for name, tolerance in {
+        "carriage_position": 5e-5,
+        "span_tension": 2e-3,
+        "hub_force": 2e-3,
+        "strain_energy": 1e-3,
+        "driver_work": 2e-3,
+        "pulley_torque": 2e-2,
+        "wrap_angle": 1e-2,
+    }.items():
+        mine, theirs = one.dataset[name].values, other.dataset[name].values
+        assert np.sqrt(np.mean((mine - theirs) ** 2)) < tolerance * np.sqrt(np.mean(theirs**2)), name
+    for run in (one, other):
+        assert float(np.abs(run.dataset.energy_closure).max()) < 3e-4
+    loss, expected = (float(run.dataset.material_loss[-1]) for run in (one, other))
+    assert loss == pytest.approx(expected, rel=0.12)
+
+
+def test_friction_falls_on_the_same_belt_on_both_meshes() -> None:
+    """The belt passes the arcs of the one by as much as the carriage moves; pieces of spans are long there."""
+    shares = []
+    for run in on_both_meshes(FLAT):
+        work = np.abs(run.dataset.friction_work_on_belt.values[:, 1:].sum(axis=(0, 1)))
+        ends = np.append(run.dataset.node_coordinate.values, run.drive.belt_length)[: work.size + 1]
+        shares.append(np.interp(np.linspace(0.0, ends[-1], 200), ends, np.append(0.0, np.cumsum(work) / work.sum())))
+    assert np.abs(shares[0] - shares[1]).max() < 0.1
+
+
+def test_the_mesh_of_an_axis_goes_over_to_another_run(tmp_path: Path) -> None:
+    """A run that goes on where another one ended has its mesh, whatever its driver does next."""
+    drive = axis(REVERSED, duration=0.1, friction=RUBBING).with_({"simulation.rtol": 1e-4})
+    whole = bd.simulate(drive.with_({"simulation.duration": 0.12}))
+    first = bd.simulate(drive, tmp_path / "first.nc").dataset.attrs["mesh_shares"]
+    start = {"file": str(tmp_path / "first.nc")}
+    after = bd.simulate(drive.with_({"simulation.start": start, "simulation.duration": 0.02}))
+    way = whole.dataset.carriage_position.sel(time=after.dataset.time.values, method="nearest").values
+    np.testing.assert_allclose(after.dataset.carriage_position.values, way, atol=2e-6)
+    np.testing.assert_array_equal(after.dataset.attrs["mesh_shares"], first)
+
+
+def test_pictures_show_spans_as_long_as_they_are() -> None:
+    """At every instant the points of the belt follow each other, and none of them lies beyond the carriage."""
+    run = bd.simulate(axis(REVERSED, duration=0.12))
+    for time in (0.0, 0.06, 0.12):
+        instant = run.fields_at(time)
+        lengths = present_lengths(instant, run.drive.belt_length)
+        assert lengths.sum() == pytest.approx(run.drive.belt_length, rel=1e-12)
+        points = centerline(recorded_kind(run.dataset, run.prepared), instant["nodal_coordinates"].values, lengths)
+        ways = np.linalg.norm(np.diff(points, axis=1), axis=-1)
+        assert ways.sum() == pytest.approx(run.drive.belt_length * (1.0 + TENSION / AXIAL), rel=1e-3)
+        np.testing.assert_allclose(ways, (lengths[:, None] / ways.shape[1]) * np.ones_like(ways), rtol=0.02)

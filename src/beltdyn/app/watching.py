@@ -27,7 +27,7 @@ _LONGEST = 3.0
 """Interval of snapshots after which one is taken, whatever it costs: the first one loads libraries, s."""
 _SEEN = (
     *("pulley_speed", "pulley_angle", "pulley_torque", "hub_force", "pulley_center"),
-    *("nodal_coordinates", "belt_tension", "normal_force"),
+    *("nodal_coordinates", "body_position", "belt_tension", "normal_force"),
 )
 """What is read."""
 _PIECES = 60

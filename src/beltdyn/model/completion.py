@@ -109,8 +109,8 @@ def _choices(given: Given, estimate: StaticEstimate) -> tuple[Choice, ...]:
     if belt.elements is None:
         on_path = OnPath(belt, estimate.length, np.abs(path.radii), estimate.stiffness)
         chosen.append(
-            choose_graded_elements(on_path, path, estimate.tension)
-            if given.graded
+            choose_graded_elements(on_path, path, estimate.tension, given.fineness)
+            if given.fineness
             else choose_elements(on_path, estimate.tension)
         )
     return tuple(chosen)

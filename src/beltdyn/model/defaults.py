@@ -156,10 +156,10 @@ def choose_elements(belt: OnPath, tension: float) -> Choice:
     return Choice("belt.elements", number, "", reason + more)
 
 
-def choose_graded_elements(belt: OnPath, path: Path, tension: float) -> Choice:
+def choose_graded_elements(belt: OnPath, path: Path, tension: float, fineness: float) -> Choice:
     """Choose the number of elements of a staying mesh."""
     layer = layer_length(*layer_lengths(belt, tension))
     arcs = Laid.on(path, belt.belt_length, path.longest_span).arcs()
-    number = graded_mesh(belt.belt_length, arcs, layer).size
+    number = graded_mesh(belt.belt_length, arcs, layer, fineness).size
     reason = f"a staying mesh with short elements within {1e3 * layer:.2g} mm of the ends of arcs"
     return Choice("belt.elements", min(number, MOST), "", reason if number <= MOST else f"upper limit; {reason}")

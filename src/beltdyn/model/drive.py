@@ -28,6 +28,7 @@ from beltdyn.model.parameter_study import DutyPoint, check_duty
 from beltdyn.model.path import Path
 from beltdyn.model.pulley import Pulley, friction_on
 from beltdyn.model.rating import RatedBelt
+from beltdyn.model.resolution import AXIS_FINENESS, FINENESS
 from beltdyn.model.routing import radii, span_names
 from beltdyn.model.simulation import Frame, Limits, Simulation, Steady, choose_frame, element_of
 from beltdyn.model.toothing import DISCRETE, RatedTeeth
@@ -182,12 +183,17 @@ class Drive(Part):
                 f"simulation.force_tolerance = {tolerance:g} is incompatible with a travelling mesh, which is not "
                 f"refined; the mesh of this drive travels, {frame.reason}. Remove one of the two"
             )
+        if tolerance is not None and self.carriage is not None:
+            raise ValueError(
+                f"simulation.force_tolerance = {tolerance:g} is incompatible with [carriage]: the mesh of an axis is "
+                "not refined. Omit it, and give belt.elements"
+            )
         if self.belt.has_single_teeth and frame.stays:
             raise ValueError(
                 f'belt.toothing.law = "{DISCRETE}" is incompatible with simulation.frame = "staying": single teeth '
                 'travel with their mesh. Omit frame, or set law = "spread"'
             )
-        if self.ends and frame.stays and not self.is_web:
+        if self.given_ends and frame.stays:
             raise ValueError(
                 'simulation.frame = "staying" is incompatible with an open belt: no belt flows past its ends. Set '
                 'simulation.frame = "travelling", or omit it'
@@ -419,22 +425,29 @@ class Drive(Part):
     @cached_property
     def frame(self) -> Frame:
         """The mesh of runs over time, with the reason."""
-        return choose_frame(self.simulation, self.belt, self.contact, bool(self.ends) and not self.is_web)
+        return choose_frame(self.simulation, self.belt, self.contact, bool(self.given_ends))
 
     @property
     def element_kind(self) -> ElementKind:
         """The element kind of that mesh."""
         return ELEMENTS[element_of(self.belt, self.frame)]
 
+    @property
+    def fineness(self) -> float:
+        """Fineness of its mesh, if that is graded and the number of elements is not given; zero of others."""
+        if not self.frame.stays or self.simulation.mesh == "uniform":
+            return 0.0
+        return FINENESS if self.carriage is None else AXIS_FINENESS
+
     @cached_property
     def layout(self) -> Layout:
         """The belt laid around its pulleys, before its state is computed."""
-        graded = self.frame.stays and self.simulation.mesh == "auto"
         belt = self.belt.replace(discretization=self.element_kind.name)
         if self.unwinder is not None and belt.length is None and belt.installed_tension is None:
             tension = self.unwinder.tension_at(self.simulation.begin, self.belt.thickness)
             belt = belt.replace(installed_tension=tension)
-        return lay_out(Given(belt, self.pulleys, self.contact, self.tensioners, self.path_ends, graded, self.nips))
+        given = Given(belt, self.pulleys, self.contact, self.tensioners, self.path_ends, self.fineness, self.nips)
+        return lay_out(given)
 
     @cached_property
     def completed(self) -> Completed:

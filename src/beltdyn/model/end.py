@@ -289,6 +289,17 @@ def _check_way(
             )
 
 
+def reach_of(carriage: Carriage, path: Path, pulleys: Sequence[Pulley], duration: float) -> tuple[float, float]:
+    """Ways between which a carriage moves, m: its stroke, those of a driver with prescribed speed, or its room."""
+    if carriage.stroke is not None:
+        return carriage.stroke
+    for number, pulley in enumerate(pulleys):
+        if pulley.speed is not None:
+            ways = carriage_rate(carriage, path, number) * turned(pulley.speed, duration)
+            return float(ways.min()), float(ways.max())
+    return free_stroke(carriage, path)
+
+
 def carriage_rate(carriage: Carriage, path: Path, pulley: int) -> float:
     """Way of the carriage in a radian of a pulley, counter-clockwise, with a belt that does not stretch, m."""
     return -float(path.radii[pulley] * np.dot(path.ways_out[0], carriage.direction))

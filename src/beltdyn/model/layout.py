@@ -41,8 +41,8 @@ class Given(NamedTuple):
     contact: Contact
     tensioners: tuple[Tensioner, ...]
     ends: tuple[PathEnd, ...] = ()
-    graded: bool = False
-    """Whether the mesh is a staying one, graded towards the ends of arcs."""
+    fineness: float = 0.0
+    """Of a staying mesh that is graded towards the ends of arcs; zero of others."""
     nips: tuple[Nip, ...] = ()
 
     def path_around(self, pulleys: Sequence[Pulley]) -> Path:

@@ -34,6 +34,8 @@ from beltdyn.theory.nip import equivalent_radius, half_width
 
 FINENESS = 1.4
 """Fineness of the mesh of a run without a given number of elements."""
+AXIS_FINENESS = 0.5
+"""The same of an axis, where contact at the ends of arcs moves the carriage little."""
 _FIRST = 1.5
 """First element over the layer length."""
 _GROWTH = 0.7

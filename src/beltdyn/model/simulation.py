@@ -416,13 +416,13 @@ class Frame(NamedTuple):
         return f"{self.name}, {self.reason}" if self.reason else self.name
 
 
-def choose_frame(simulation: Simulation, belt: Belt, contact: Contact, is_open: bool) -> Frame:
+def choose_frame(simulation: Simulation, belt: Belt, contact: Contact, has_ends: bool) -> Frame:
     """Choose the mesh of a run: staying, unless the drive needs features of the travelling mesh."""
     if simulation.frame is not None:
         return Frame(simulation.frame, "as given")
     misfits = [("simulation", *one[:2]) for one in simulation.misfits_staying]
     reasons = [
-        *["the belt is open"] * is_open,
+        *["the belt is open"] * has_ends,
         *[_written("belt.toothing", "law", DISCRETE)] * belt.has_single_teeth,
         *(_written(*one) for one in (*misfits, *element_settings(belt, contact))),
     ]

@@ -19,14 +19,14 @@ from beltdyn.results.schema import FILTERED
 from beltdyn.results.slip_safety import sliding_of_pulleys
 from beltdyn.solvers.flutter import Flutter, FlutterWatch
 from beltdyn.solvers.trajectory import Chunk
+from beltdyn.system.arc_mesh import recorded_lengths
 from beltdyn.system.arrays import BENDING_LOSS, ENERGY_WORKS, STRETCH_LOSS, System
-from beltdyn.system.frame import OverTime, Travelling
+from beltdyn.system.frame import OverTime, Travelling, passed_lengths
 from beltdyn.system.meshing import JumpWatch, tooth_coordinates, tooth_forces
 from beltdyn.system.moving_center import pulley_speeds
 from beltdyn.system.nips import seen_nips
 from beltdyn.system.observations import OBSERVED
 from beltdyn.system.observe import observe_motion
-from beltdyn.system.state import curve_lengths
 
 # The energy account of a run: what goes in, what is stored, what is lost, and whether that adds up
 
@@ -90,7 +90,7 @@ class Observer:
 
     def __init__(self, prepared: Prepared, system: System, belt_coordinate: FloatArray) -> None:
         self._prepared, self._system, self._belt_coordinate = prepared, system, belt_coordinate
-        lengths = curve_lengths(system)
+        lengths = recorded_lengths(system)
         self._shares = lengths / np.sum(lengths)
         self._friction_work = FrictionWork(prepared, np.outer(lengths, system.contact.weights).ravel(), len(lengths))
         self._material_work = MaterialWork(lengths)
@@ -153,7 +153,8 @@ class Observer:
         frame = self._system.frame
         if isinstance(frame, OverTime):
             on_arc, on_mesh = self._friction_work.take(touch, np.ones_like(shown))
-            return on_arc[shown], self._material_work.take(on_mesh, states.position[:, frame.place])[shown]
+            passed = passed_lengths(frame, states.position, len(self._shares))
+            return on_arc[shown], self._material_work.take(on_mesh, passed)[shown]
         on_arc, on_belt = self._friction_work.take(touch, shown)
         if not isinstance(frame, Travelling):  # all of the belt passes
             on_belt = np.sum(on_belt, axis=-1, keepdims=True) * self._shares

@@ -19,16 +19,18 @@ from beltdyn.observation.band_limit import BandLimit
 from beltdyn.observation.compilation import compile_kernels
 from beltdyn.observation.observer import WORKS, Arrays, Observer
 from beltdyn.results import RECORDED, FileRecorder, Layout, MemoryRecorder, Recorder, Run, Status, provenance
+from beltdyn.results.mechanics import PASSED
 from beltdyn.results.provenance import mesh_used, own_kinds
 from beltdyn.results.recorder import status_after
 from beltdyn.results.schema import FILTER_REACH, FILTERED, TIMES
 from beltdyn.signals import uninterrupted
 from beltdyn.solvers.run_progress import Pace, Phase, Progress, Report
 from beltdyn.solvers.trajectory import Chunk, Statistics, interpolated
+from beltdyn.system.arc_mesh import recorded_lengths
 from beltdyn.system.arrays import System
 from beltdyn.system.frame import FlowingByArcs, OverTime, Travelling
 from beltdyn.system.meshing import tooth_coordinates
-from beltdyn.system.state import curve_lengths, element_kind, laid, point_coordinates
+from beltdyn.system.state import element_kind, laid
 
 # What makes the steps of a simulation as short as they are
 
@@ -73,12 +75,13 @@ def result_layout(prepared: Prepared, system: System) -> Layout:
     """Names and reference coordinates of the results."""
     names = tuple(pulley.name for pulley in prepared.pulleys)
     spans = tuple(f"{a}-{b}" for a, b in prepared.spans)
-    lengths = curve_lengths(system)
-    starts = np.cumsum(lengths) - lengths
+    lengths = recorded_lengths(system)
+    ends = np.append(0.0, np.cumsum(lengths))
+    starts = ends[:-1]
     return Layout(
         pulleys=names,
         spans=spans,
-        node_coordinate=point_coordinates(system),
+        node_coordinate=ends[: system.nodes * system.points],
         element_coordinate=starts + 0.5 * lengths,
         belt_coordinate=(starts[:, None] + lengths[:, None] * system.contact.points).ravel(),
         coordinate_names=element_kind(system).coordinates,
@@ -102,8 +105,8 @@ def _bodies(prepared: Prepared, system: System) -> tuple[str, ...]:
         if load.state_lag is not None
     ]
     winder = [] if prepared.drive.winder is None else [prepared.drive.winder.name]
-    arcs = [f"belt at {names[pulley]}" for pulley in prepared.path.on]
-    flow = [*arcs, *(f"belt at {name}" for name in winder)] if isinstance(system.frame, FlowingByArcs) else []
+    arcs = [f"{PASSED}{names[pulley]}" for pulley in prepared.path.on]
+    flow = [*arcs, *(f"{PASSED}{name}" for name in winder)] if isinstance(system.frame, FlowingByArcs) else []
     flow += ["belt"] if isinstance(system.frame, OverTime) else []
     tensioners = (f"{names[pulley]} tensioner" for pulley in system.tensioners.pulley)
     return (*names, *hubs, *lags, *flow, *tensioners, *_carriages(prepared))

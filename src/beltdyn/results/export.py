@@ -17,7 +17,7 @@ from numpy.typing import NDArray
 from beltdyn.arrays import FloatArray, IntArray
 from beltdyn.errors import ModelError
 from beltdyn.results.atomic import MARK, atomic_path, is_marked, make_folder, require_replaceable
-from beltdyn.results.mechanics import curve_points, element_lengths, recorded_kind
+from beltdyn.results.mechanics import curve_points, element_lengths, present_lengths, recorded_kind
 from beltdyn.results.result import Result
 from beltdyn.results.run import Run
 from beltdyn.results.staged_file import staged_hdf5
@@ -79,13 +79,14 @@ class Ribbon:
     def __init__(self, run: Run) -> None:
         dataset, self._width = run.dataset, run.drive.belt.width
         self._kind = recorded_kind(dataset, run.prepared)
-        self._lengths = element_lengths(dataset, run.prepared.belt_length)
+        self._belt_length = run.prepared.belt_length
+        lengths = element_lengths(dataset, self._belt_length)
         closed = run.prepared.path.ends is None
         start = float(dataset["node_coordinate"][0])
         contact = dataset["belt_coordinate"].values
-        self._curve, self._xi = _stations(self._lengths, contact - start, closed)
-        ends = start + np.cumsum(self._lengths)
-        self.coordinate: FloatArray = (ends - self._lengths)[self._curve] + self._xi * self._lengths[self._curve]
+        self._curve, self._xi = _stations(lengths, contact - start, closed)
+        ends = start + np.cumsum(lengths)
+        self.coordinate: FloatArray = (ends - lengths)[self._curve] + self._xi * lengths[self._curve]
         """Belt coordinates of the pairs of points, m."""
         period = run.prepared.belt_length if closed else None
         self._before, self._after, self._share = _between(contact, self.coordinate, period)
@@ -98,7 +99,11 @@ class Ribbon:
     def frames(self, instants: "xr.Dataset") -> Frames:
         """Give the ribbon at instants of `Run.fields`, shape (k,)."""
         line = curve_points(
-            self._kind, instants["nodal_coordinates"].values, self._lengths, self._curve, self._xi
+            self._kind,
+            instants["nodal_coordinates"].values,
+            present_lengths(instants, self._belt_length),
+            self._curve,
+            self._xi,
         ).repeat(2, axis=1)
         across = np.tile([-0.5 * self._width, 0.5 * self._width], len(self._curve))
         places = np.concatenate([line, np.broadcast_to(across[:, None], (*line.shape[:2], 1))], axis=2)

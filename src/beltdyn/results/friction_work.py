@@ -22,20 +22,20 @@ class MaterialWork:
     def __init__(self, lengths: FloatArray) -> None:
         self._ends = np.concatenate([[0.0], np.cumsum(lengths)])
         self._before: FloatArray | None = None
-        self._passed = 0.0
+        self._passed = np.zeros(lengths.size)
 
     def take(self, by_mesh: FloatArray, passed: FloatArray) -> FloatArray:
         """Work on each piece of the belt since the beginning, J, from that in each piece of the mesh, shape (m, P, E).
 
-        `passed` is the length of belt that has passed by then, m.
+        `passed` is the length of belt that has passed each of these by then, m, shape (m, E).
         """
         if self._before is None:
             self._before, self._total = np.zeros(by_mesh.shape[1:]), np.zeros(by_mesh.shape[1:])
         grown = np.diff(by_mesh, axis=0, prepend=self._before[None])
-        ways = np.concatenate([[self._passed], passed])
+        ways = np.concatenate([self._passed[None], passed])
         work = np.empty_like(by_mesh)
         spread_on_belt(grown, ways, self._ends, self._total, work)
-        self._before, self._passed = by_mesh[-1].copy(), float(passed[-1])
+        self._before, self._passed = by_mesh[-1].copy(), passed[-1].copy()
         return work
 
 
@@ -43,23 +43,23 @@ class MaterialWork:
 def spread_on_belt(grown: FloatArray, ways: FloatArray, ends: FloatArray, total: FloatArray, work: FloatArray) -> None:
     """Spread what work grows by from state to state on the belt that has passed.
 
-    `grown`: by piece of the mesh, J, shape (m, P, E); `ways`: length of belt that has passed, m, in the state before
-    and in each of these, shape (m + 1,); `ends`: of the pieces, from zero, m, shape (E + 1,); `total`: work on each
-    piece of the belt up to the state before, J; afterwards up to the last, shape (P, E); `work`: overwritten by the
-    work up to each state, J, shape (m, P, E).
+    `grown`: by piece of the mesh, J, shape (m, P, E); `ways`: length of belt that has passed each piece, m, in the
+    state before and in each of these, shape (m + 1, E); `ends`: of the pieces, from zero, m, shape (E + 1,); `total`:
+    work on each piece of the belt up to the state before, J; afterwards up to the last, shape (P, E); `work`:
+    overwritten by the work up to each state, J, shape (m, P, E).
     """
     states, pulleys, pieces = grown.shape
     length = ends[pieces]
     for k in range(states):
-        p, q = min(ways[k], ways[k + 1]), max(ways[k], ways[k + 1])
-        turns = np.floor((q - p) / length)
-        even = turns * length / (q - p) if turns > 0.0 else 0.0
-        q = max(q - turns * length, p + _LEAST * length)
         for pulley in range(pulleys):
             for piece in range(pieces):
                 done = grown[k, pulley, piece]
                 if done == 0.0:
                     continue
+                p, q = min(ways[k, piece], ways[k + 1, piece]), max(ways[k, piece], ways[k + 1, piece])
+                turns = np.floor((q - p) / length)
+                even = turns * length / (q - p) if turns > 0.0 else 0.0
+                q = max(q - turns * length, p + _LEAST * length)
                 a, b = ends[piece], ends[piece + 1]
                 if even > 0.0:
                     for other in range(pieces):

@@ -201,8 +201,8 @@ def _sizes(prepared: Prepared) -> dict[str, int]:
 def _bodies(prepared: Prepared) -> int:
     """Number of what has a coordinate beside the belt: rims, hub chains, controllers, belt, tensioners or carriage."""
     behind = sum(len(one.hub) + sum(load.state_lag is not None for load in one.load) for one in prepared.pulleys)
-    arcs = (prepared.drive.is_web or prepared.carries) * len(prepared.path.on) + prepared.drive.is_web
-    flows = prepared.frame.stays + arcs
+    by_arcs = prepared.drive.is_web or prepared.carries or prepared.carriage is not None
+    flows = prepared.frame.stays * (1 + by_arcs * len(prepared.path.on) + prepared.drive.is_web)
     carried = len(prepared.moving_tensioners) + (prepared.carriage is not None)
     return len(prepared.pulleys) + behind + flows + carried
 

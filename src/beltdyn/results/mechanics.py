@@ -107,6 +107,23 @@ def element_lengths(dataset: "xr.Dataset", belt_length: float) -> FloatArray:
     return np.diff(nodes, append=nodes[0] + belt_length)[: dataset.sizes["element"]]
 
 
+PASSED = "belt at "
+"""Before the name of a pulley: what of the belt has passed there, among the bodies."""
+MESH_SHARES = "mesh_shares"
+"""Attribute of runs on a mesh that stays at every arc: shares of arcs in what goes over at nodes, by nodes."""
+
+
+def present_lengths(instants: "xr.Dataset", belt_length: float) -> FloatArray:
+    """Reference lengths of the elements at instants of a run, m, shape (..., elements): spans may become longer."""
+    lengths = element_lengths(instants, belt_length)
+    if MESH_SHARES not in instants.attrs:
+        return lengths
+    passed = instants["body"].str.startswith(PASSED).values
+    shares = np.reshape(instants.attrs[MESH_SHARES], (-1, int(passed.sum())))
+    shifts = instants["body_position"].values[..., passed] @ shares.T
+    return np.asarray(lengths - (np.roll(shifts, -1, axis=-1) - shifts)[..., : lengths.size])
+
+
 def recorded_kind(dataset: "xr.Dataset", prepared: Prepared) -> ElementKind:
     """Give the kind of the elements whose nodal coordinates a result holds."""
     given, names = prepared.element_kind, tuple(dataset["coordinate"].values.tolist())
@@ -182,12 +199,12 @@ def curve_controls(kind: ElementKind, coordinates: FloatArray, lengths: FloatArr
     """Control points of the Bezier curves, shape (..., curves, degree + 1, 2), m; arguments as for `curve_points`."""
     instants = coordinates.shape[:-2]
     first = coordinates.reshape(*instants, -1, kind.dof)
-    elements = len(lengths) // kind.points
+    elements = lengths.shape[-1] // kind.points
     element = np.concatenate([first, np.roll(first, -1, axis=-2)], axis=-1)[..., :elements, :]
     vectors = np.stack([element[..., start : start + 2] for start in kind.vectors], axis=-2)
-    control = kind.control(lengths.reshape(elements, -1).sum(axis=1))
-    points = np.einsum("ncpv,...nva->...ncpa", control, vectors)
-    return np.asarray(points.reshape(*instants, -1, control.shape[2], 2))
+    control = kind.control(lengths.reshape(*lengths.shape[:-1], elements, -1).sum(axis=-1))
+    points = np.einsum("...ncpv,...nva->...ncpa", control, vectors)
+    return np.asarray(points.reshape(*instants, -1, control.shape[-2], 2))
 
 
 def mean_curvature(kind: ElementKind, coordinates: FloatArray, lengths: FloatArray) -> FloatArray:

@@ -118,10 +118,11 @@ def is_compiled(drive: Drive) -> bool:
 
 
 def on_equal_elements(drive: Drive) -> Drive:
-    """Give the drive on the travelling mesh, on which equilibrium is found."""
+    """Give the drive on the travelling mesh, on which equilibrium is found; as many graded elements are too few."""
     if not drive.frame.stays:
         return drive
-    return drive.replace(simulation=drive.simulation.replace(frame="travelling", force_tolerance=None))
+    belt = drive.belt if drive.carriage is None else drive.belt.replace(elements=None)
+    return drive.replace(belt=belt, simulation=drive.simulation.replace(frame="travelling", force_tolerance=None))
 
 
 def _tell(prepared: Prepared, progress: Report | None, phase: Phase) -> None:

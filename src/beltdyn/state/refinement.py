@@ -205,7 +205,7 @@ def _seen(system: System, state: State) -> Observations:
 def errors_at_rest(rest: Standing, elements: int | None = None) -> dict[str, float]:
     """Errors of a mesh in tension and contact pressures at rest, relative, by a finer one."""
     try:
-        return _between(rest, _finer(rest, elements))
+        return errors_between(rest, _finer(rest, elements))
     except ConvergenceError:
         return {}
 
@@ -214,7 +214,7 @@ def refine_at_rest(rest: Standing, tolerance: float) -> tuple[Standing, dict[str
     """Refine a graded mesh of a drive at rest."""
     while True:
         finer = _finer(rest, None)
-        errors = _between(rest, finer)
+        errors = errors_between(rest, finer)
         if is_fine(errors, tolerance) or rest.system.nodes > MOST_ELEMENTS:
             return rest, errors
         rest = finer
@@ -227,7 +227,7 @@ def _finer(rest: Standing, elements: int | None) -> Standing:
     return stand(rest.prepared, round(FINER * elements))
 
 
-def _between(rest: Standing, finer: Standing) -> dict[str, float]:
+def errors_between(rest: Standing, finer: Standing) -> dict[str, float]:
     """Differences of a drive at rest on two meshes, relative."""
     none = np.zeros(rest.system.pulleys.size)
     before, after = (Solution(one.system, one.state, _seen(one.system, one.state), none) for one in (rest, finer))

@@ -1,6 +1,7 @@
 """What goes before a run and is not recorded: the drive runs at constant speeds, and its transients die."""
 
 from collections.abc import Iterator, Mapping
+from contextlib import suppress
 from dataclasses import dataclass, replace
 from types import MappingProxyType
 from typing import Any, NamedTuple
@@ -8,6 +9,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from beltdyn.arrays import FloatArray
+from beltdyn.errors import ConvergenceError
 from beltdyn.kernel import interpreted
 from beltdyn.machines.profiles.functions import go_on, profile_integral
 from beltdyn.model import Drive, Prepared, Pulley
@@ -16,19 +18,23 @@ from beltdyn.model.resolution import FINENESS
 from beltdyn.model.simulation import Instants
 from beltdyn.results import mesh_error_attribute
 from beltdyn.results.checks.ending import LEAST_WINDOWS, SETTLED, least_window
+from beltdyn.results.mechanics import MESH_SHARES
 from beltdyn.results.tension_balance import WEB_LINE
 from beltdyn.solvers.run_progress import Progress, Report
 from beltdyn.solvers.trajectory import Chunk, Integrator, Statistics, Task, drive_task
-from beltdyn.state.refinement import MeshRule, errors_at_rest, refine_at_rest, steady_from_rest
+from beltdyn.state.installation import Rest, bring_to_rest
+from beltdyn.state.refinement import MeshRule, errors_at_rest, errors_between, refine_at_rest, steady_from_rest
 from beltdyn.state.search import SteadySearch
+from beltdyn.state.static import find_equilibrium
 from beltdyn.state.staying import FINER, Standing, bring_to_stand, stand
 from beltdyn.system.arc_mesh import base_lengths, mesh_attributes, shifts_of
 from beltdyn.system.arrays import System
-from beltdyn.system.build import flowing_system, on_other_mesh, open_ended
+from beltdyn.system.build import axis_by_arcs, axis_system, flow_place, flowing_system, on_other_mesh, open_ended
 from beltdyn.system.build_machines import profile_arrays
-from beltdyn.system.meshing import tooth_phases, turning
+from beltdyn.system.frame import FlowingByArcs, centreline_points, node_shares
+from beltdyn.system.meshing import at_phases, has_teeth, tooth_phases, turned_as, turning
 from beltdyn.system.observe import observe_motion
-from beltdyn.system.state import State
+from beltdyn.system.state import State, at_rest, nodal_coordinates, point_coordinates
 from beltdyn.system.steady_assembly import anchor_at
 
 _WINDOWS = 20
@@ -206,7 +212,7 @@ def begin_flowing(prepared: Prepared, progress: Report | None) -> Beginning:
     """Find the state in which a run on a staying mesh begins, and the mesh."""
     if progress is not None:
         progress(Progress(0.0, prepared.simulation.duration, 0.0, 0, "equilibrium"))
-    meshed = _meshed(prepared)
+    meshed = _meshed(prepared) if prepared.carriage is None else _axis(prepared)
     if prepared.simulation.start == "steady":
         meshed = _running(meshed, prepared.simulation.force_tolerance)
     system, direction = open_ended(meshed.rest.prepared, meshed.system), anchor_at(meshed.state, True).direction
@@ -214,6 +220,8 @@ def begin_flowing(prepared: Prepared, progress: Report | None) -> Beginning:
     flowing = with_angles(meshed.rest.prepared, flowing_system(toothed, direction))
     errors = meshed.errors or {"peak pressure": float("nan")}  # not known
     said = {mesh_error_attribute(name): error for name, error in errors.items()} | {DIRECTION: direction}
+    if isinstance(flowing.frame, FlowingByArcs):
+        said |= {MESH_SHARES: node_shares(flowing.frame.arcs).ravel()}
     said |= tooth_phases(toothed) | mesh_attributes(system) | ({WEB_LINE: 1} if prepared.drive.is_web else {})
     return Beginning(meshed.rest.prepared, flowing, with_passage(system, meshed.state, meshed.speed), attributes=said)
 
@@ -247,6 +255,36 @@ def _meshed(prepared: Prepared) -> _Meshed:
     return _Meshed(rest, rest.system, rest.state, 0.0, errors)
 
 
+def _axis(prepared: Prepared) -> _Meshed:
+    """An axis at rest, whose belt has its length, or its take-up, and its tension on elements that travel."""
+    found = bring_to_rest(prepared.drive)
+    own, given, fineness = found.prepared, prepared.drive.belt.elements, prepared.drive.fineness
+    if fineness:
+        count = own.graded_lengths(fineness).size
+        fineness *= (given or min(count, MOST)) / count
+
+    def finer_by(ratio: float) -> Standing:
+        equal = own.equal_lengths(round(ratio * prepared.elements))
+        return _axis_on(found, own.graded_lengths(ratio * fineness) if fineness else equal, ratio * fineness)
+
+    rest = finer_by(1.0)
+    with suppress(ConvergenceError):
+        return _Meshed(rest, rest.system, rest.state, 0.0, errors_between(rest, finer_by(FINER)))
+    return _Meshed(rest, rest.system, rest.state, 0.0, {})
+
+
+def _axis_on(found: Rest, lengths: FloatArray, fineness: float) -> Standing:
+    """The same axis at rest on elements of other lengths (m), on a mesh that stays at its arcs."""
+    own = found.prepared
+    system = axis_system(own, lengths)
+    nodes = centreline_points(found.system, found.state.position, point_coordinates(system))
+    state = at_rest(system, nodal_coordinates(system, *nodes))
+    state.position[system.first_body :] = found.state.position[found.system.first_body :]
+    balance = find_equilibrium(turned_as(system, found.system), state)
+    system = axis_by_arcs(own, at_phases(system, balance.phases) if has_teeth(system) else system)
+    return Standing(own, system, balance.state, balance.state.position.copy(), found.tension, own.layer, fineness)
+
+
 def _running(meshed: _Meshed, force_tolerance: float | None) -> _Meshed:
     """Steady running at the beginning, on the same mesh, or on one that is refined up to a tolerance."""
     rest, prepared, time = meshed.rest, meshed.rest.prepared, meshed.rest.prepared.simulation.begin
@@ -271,7 +309,7 @@ def _same_mesh(rest: Standing) -> MeshRule:
 
 def with_passage(system: System, state: State, speed: float) -> State:
     """Add the length of belt that has passed, zero, and its speed (m/s) to a state on a staying mesh."""
-    at = system.first_body + system.bodies.size - system.tensioners.size
+    at = system.first_body + flow_place(system)
     shifts = shifts_of(system.frame)
     still = np.zeros_like(shifts)
     passed = (np.append(shifts, 0.0), np.append(still, speed), np.append(still, 0.0))

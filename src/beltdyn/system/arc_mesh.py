@@ -4,6 +4,9 @@ Where a belt is long, its stretch moves material past pulleys by more than they 
 belt that has passed then differs from arc to arc.  It is s + U, with s that at node 0 and U the shift of the mesh at a
 node: that of an arc at all its nodes, zero at node 0, and linear in between over the belt coordinate at rest.  An
 element has the reference length l = l_0 - (U_j - U_i).
+
+On the belt of an axis no belt flows past node 0 or the last node, where the carriage holds it: s is zero, and its spans
+become longer and shorter as the carriage moves.
 """
 
 from collections.abc import Callable
@@ -13,9 +16,11 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import numpy as np
 
 from beltdyn.arrays import ComplexArray, FloatArray, IntArray
+from beltdyn.contact.surface import move_start, with_own_starts
 from beltdyn.kernel import by_type, kernel
 from beltdyn.machines.tensioners import tensioner_center
 from beltdyn.model import Prepared
+from beltdyn.model.end import free_stroke
 from beltdyn.system.arrays import Motion, RingMatrix, System, TangentFactors
 from beltdyn.system.frame import (
     ArcMesh,
@@ -28,6 +33,7 @@ from beltdyn.system.frame import (
     node_shift,
 )
 from beltdyn.system.moving_center import pulley_center, tensioner_coordinate
+from beltdyn.system.state import curve_lengths
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -50,7 +56,7 @@ class Zone(NamedTuple):
 
 def zones_of(prepared: Prepared) -> list[Zone]:
     """The belt on every arc, with layers at its ends, in order along the belt."""
-    laid, path, margin = prepared.laid, prepared.installation.path, _LAYERS * prepared.layer
+    laid, path, margin = prepared.laid, prepared.installation.path, min(_LAYERS * prepared.layer, _nearest(prepared))
     found = list[Zone]()
     for arc, p in enumerate(path.on.tolist()):
         size = abs(float(path.radii[p])) * float(path.wrap_angles[p])
@@ -61,22 +67,32 @@ def zones_of(prepared: Prepared) -> list[Zone]:
     return sorted(found)
 
 
+def _nearest(prepared: Prepared) -> float:
+    """Half of the way that the carriage of an axis keeps from pulleys, m; infinite without a carriage."""
+    carriage = prepared.carriage
+    if carriage is None:
+        return np.inf
+    (first, last), room = prepared.reach_of_carriage, free_stroke(carriage, prepared.path)
+    return 0.5 * max(min(first - room[0], room[1] - last), 0.0)
+
+
 def staying_by_arcs(prepared: Prepared, system: System) -> System:
     """The same drive on a mesh that stays at every arc, with arrays of its own."""
     zones = zones_of(prepared)
-    before, after, share = _shares(prepared, zones, system.length)
-    moved = by_arcs(prepared, system, zones, before, after, share)
+    held = [Zone(0.0, 0.0, -1), *zones, Zone(prepared.belt_length, prepared.belt_length, -1)]
+    moved = by_arcs(prepared, system, zones, held)
+    if prepared.ends:
+        return moved
     holding = _holding(prepared, zones, system.length)
     return moved._replace(frame=moved.frame._replace(arcs=moved.frame.arcs._replace(holding=holding)))
 
 
-def by_arcs(
-    prepared: Prepared, system: System, zones: list[Zone], before: IntArray, after: IntArray, share: FloatArray
-) -> System:
-    """The same drive on a mesh that stays at the arcs of zones, by the arcs beside nodes, which nothing holds."""
+def by_arcs(prepared: Prepared, system: System, zones: list[Zone], held: list[Zone]) -> System:
+    """The same drive on a mesh that stays at the arcs of zones, between places held along the belt, without force."""
     frame, lengths = system.frame, system.length.copy()
     assert isinstance(frame, Staying)
     vectors = np.array(system.vectors)
+    before, after, share = _shares(held, np.append(0.0, np.cumsum(lengths))[: system.nodes])
     starts = np.cumsum(lengths) - lengths
     node = np.zeros(len(zones), dtype=np.int64)
     place, direction = np.zeros((len(zones), 2)), np.zeros((len(zones), 2))
@@ -110,6 +126,7 @@ def by_arcs(
         growth=growth,
         mass=np.ascontiguousarray(system.mass[:, vectors[:, None], vectors]),
         inertia=frame.inertia.copy(),
+        metric=system.hysteresis.metric.copy(),
     )
     own = StayingByArcs(
         frame.speed.copy(), np.zeros(len(zones)), frame.derivative.copy(), growth.copy(), frame.inertia.copy(), arcs
@@ -123,21 +140,31 @@ def with_own_mesh(system: System) -> System:
         length=system.length.copy(),
         control=system.control.copy(),
         mass=system.mass.copy(),
+        rims=with_own_starts(system.rims),
+        hysteresis=system.hysteresis.copy(),
         supports=system.supports._replace(force=system.supports.force.copy()),
     )
 
 
-def _shares(prepared: Prepared, zones: list[Zone], lengths: FloatArray) -> tuple[IntArray, IntArray, FloatArray]:
-    """Arcs on both sides of each node, -1 for node 0, and the share of the second."""
-    starts, length = np.cumsum(lengths) - lengths, prepared.belt_length
-    before, after = np.full(lengths.size, -1), np.full(lengths.size, -1)
-    share = np.zeros(lengths.size)
-    nothing = Zone(0.0, 0.0, -1)
-    for one, other in pairwise([nothing, *zones, Zone(length, length, -1)]):
-        between = (starts >= one.start) & (starts < other.start)
+def _shares(held: list[Zone], nodes: FloatArray) -> tuple[IntArray, IntArray, FloatArray]:
+    """Arcs on both sides of each node, -1 where nothing goes over, and the share of the second."""
+    before, after, share = np.full(nodes.size, -1), np.full(nodes.size, -1), np.zeros(nodes.size)
+    for one, other in pairwise(held):
+        between = (nodes >= one.start) & (nodes < other.start)
         before[between], after[between] = one.arc, other.arc
-        share[between] = np.clip((starts[between] - one.end) / (other.start - one.end), 0.0, 1.0)
+        share[between] = np.clip((nodes[between] - one.end) / (other.start - one.end), 0.0, 1.0)
     return before, after, share
+
+
+def with_shares(system: System, shares: FloatArray) -> System:
+    """The same mesh over time with other shares of arcs at its nodes, shape (nodes, P); see `node_shares`."""
+    nodes, order = np.arange(len(shares)), np.argsort(shares <= 0.0, axis=1, kind="stable")[:, :2]
+    first, second = order.T if shares.shape[1] > 1 else (order[:, 0], order[:, 0])
+    own, other = shares[nodes, first], np.where(second == first, 0.0, shares[nodes, second])
+    arcs = system.frame.arcs._replace(
+        before=np.where(own > 0.0, first, -1), after=np.where(other > 0.0, second, -1), share=1.0 - own
+    )
+    return system._replace(frame=system.frame._replace(arcs=arcs))
 
 
 def _holding(prepared: Prepared, zones: list[Zone], lengths: FloatArray) -> FloatArray:
@@ -172,15 +199,19 @@ def _growth(system: System, derivative: FloatArray, lengths: FloatArray) -> Floa
 @kernel
 def _fit(frame: Any, system: System, position: FloatArray) -> None:
     """Give the elements the lengths that they have at a position of shape (n N + D,)."""
-    arcs, changed, vectors = frame.arcs, False, system.vectors
+    arcs, changed, vectors, start = frame.arcs, False, system.vectors, 0.0
     following = node_shift(frame, position, 0)
     for element in range(system.length.size):
+        move_start(system.rims, element, start - following)
+        start += arcs.length[element]
         shift, following = following, node_shift(frame, position, (element + 1) % system.nodes)
         length = arcs.length[element] - (following - shift)
         if length == system.length[element]:
             continue
         changed, system.length[element] = True, length
         ratio, turn = length / arcs.length[element], arcs.length[element] / length
+        if system.hysteresis.size > 0:
+            system.hysteresis[element].length = length
         for a in range(len(vectors)):
             of_a = _power(ratio, a % 3)
             for b in range(len(vectors)):
@@ -191,6 +222,9 @@ def _fit(frame: Any, system: System, position: FloatArray) -> None:
                 frame.growth[element, a, b] = factor * arcs.growth[element, a, b]
                 frame.inertia[element, a, b] = turn * of_a * of_b * arcs.inertia[element, a, b]
                 mass = ratio * of_a * of_b * arcs.mass[element, a, b]
+                if system.hysteresis.size > 0:
+                    metric = turn * turn * of_a * of_b * arcs.metric[element, a, b]
+                    system.hysteresis[element].metric[a, b] = metric
                 for axis in range(2):
                     system.mass[element, vectors[a] + axis, vectors[b] + axis] = mass
     if changed:
@@ -246,6 +280,11 @@ def base_coordinates(system: System, along: FloatArray) -> FloatArray:
 def base_lengths(system: System) -> FloatArray:
     """Lengths of elements where no length of belt has gone over, m."""
     return system.frame.arcs.length if isinstance(system.frame, ByArcs) else system.length
+
+
+def recorded_lengths(system: System) -> FloatArray:
+    """Lengths of the curves between the belt coordinates of results, m; over time those of `base_lengths`."""
+    return system.frame.arcs.length if isinstance(system.frame, FlowingByArcs) else curve_lengths(system)
 
 
 MESH_LENGTHS, MESH_SHIFTS = "mesh_lengths", "mesh_shifts"

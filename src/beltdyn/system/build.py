@@ -23,13 +23,13 @@ from beltdyn.model.pulley import friction_on, surface_part
 from beltdyn.model.routing import radii as effective_radii
 from beltdyn.quadrature import Quadrature, gauss_points, lobatto_points
 from beltdyn.system.arc_mesh import arc_count, staying_by_arcs, with_own_mesh
-from beltdyn.system.arrays import BODY, Supports, System
+from beltdyn.system.arrays import BODY, NoCarriage, Supports, System
 from beltdyn.system.build_machines import body_arrays, carrying_arrays, machine_arrays, on_other_lengths, pulley_arrays
 from beltdyn.system.frame import FlowingByArcs, StayingByArcs, Travelling, flowing, staying
-from beltdyn.system.guide import with_carriage
+from beltdyn.system.guide import Guided, behind_flows, with_carriage
 from beltdyn.system.material_loss import hysteresis_rows
 from beltdyn.system.meshing import meshing, on_lengths, with_teeth
-from beltdyn.system.running_web import RunningWeb, running_web
+from beltdyn.system.running_web import running_web
 from beltdyn.system.state import Discretization, discretize
 from beltdyn.system.web import WebLine, web_ends, web_line
 
@@ -276,18 +276,30 @@ HELD = ((0, 0), (0, 1), (-1, 0), (-1, 1))
 
 
 def staying_system(prepared: Prepared, lengths: FloatArray) -> System:
-    """Arrays of a closed belt or a web line on a staying mesh of quintic elements with hysteresis, without flow."""
-    belt = _staying_belt(prepared, lengths.size)
-    contact = prepared.contact.replace(sampling="distributed", integration="zone", quadrature_points=_STAYING_CONTACT)
+    """Arrays of a drive on a staying mesh of quintic elements with hysteresis, without flow."""
+    if prepared.carriage is not None:
+        return axis_by_arcs(prepared, axis_system(prepared, lengths))
+    belt, contact = _staying_belt(prepared, lengths.size), _staying_contact(prepared)
     if prepared.ends:
         system = system_of(prepared, belt, contact, "open", lengths=lengths, fixed=HELD)
         return _as_web(prepared, system._replace(frame=staying(system.control, system.length, belt.mass_per_length)))
     system = system_of(prepared, belt, contact, "shared_node", lengths=lengths)
-    if prepared.belt.bending_loss_factor > 0.0:
-        modulus, length = bending_at_points(prepared)
-        system = _with_section(system, bending_hysteresis=modulus, passing_length=length)
+    system = _losing_at_points(prepared, system)
     frame = staying(system.control, system.length, belt.mass_per_length)
     return meshing(prepared, _carrying(prepared, system._replace(frame=frame)))
+
+
+def axis_system(prepared: Prepared, lengths: FloatArray) -> System:
+    """Arrays of an axis on the elements of a staying mesh, whose nodes are material points yet."""
+    belt, contact = _staying_belt(prepared, lengths.size), _staying_contact(prepared)
+    smooth = system_of(prepared, belt, contact, "open", lengths=lengths, **_at_ends(prepared))
+    return with_carriage(prepared, with_teeth(prepared, _losing_at_points(prepared, smooth)))
+
+
+def axis_by_arcs(prepared: Prepared, system: System) -> System:
+    """The same axis on a mesh that stays at every arc."""
+    frame = staying(system.control, system.length, prepared.belt.mass_per_length)
+    return staying_by_arcs(prepared, system._replace(frame=frame))
 
 
 def _carrying(prepared: Prepared, system: System) -> System:
@@ -325,6 +337,11 @@ def _as_web(prepared: Prepared, system: System) -> System:
     return web_line(system, web_ends(prepared), np.array([0.0, 1.0, 2.0, 0.0, 1.0, 2.0]))
 
 
+def _staying_contact(prepared: Prepared) -> Contact:
+    """The contact of a drive on a staying mesh."""
+    return prepared.contact.replace(sampling="distributed", integration="zone", quadrature_points=_STAYING_CONTACT)
+
+
 def _staying_belt(prepared: Prepared, elements: int) -> Belt:
     """The belt of a drive on a staying mesh; it has hysteresis of bending point by point, apart."""
     return prepared.belt.replace(
@@ -334,6 +351,14 @@ def _staying_belt(prepared: Prepared, elements: int) -> Belt:
         quadrature_points=_STAYING_ELASTIC,
         bending_loss_factor=0.0,
     )
+
+
+def _losing_at_points(prepared: Prepared, system: System) -> System:
+    """The same drive on a staying mesh with the hysteresis of bending of its belt, if it has any."""
+    if prepared.belt.bending_loss_factor == 0.0:
+        return system
+    modulus, length = bending_at_points(prepared)
+    return _with_section(system, bending_hysteresis=modulus, passing_length=length)
 
 
 def without_hysteresis(system: System) -> System:
@@ -368,10 +393,10 @@ def open_ended(prepared: Prepared, system: System) -> System:
 def flowing_system(system: System, direction: FloatArray) -> System:
     """The same drive for equations over time: lengths of belt that have passed are the last coordinates of the border.
 
-    `direction` is the unit vector along the belt at node 0, which is held as a whole in a web line.
+    `direction` is the unit vector along the belt at node 0, which is held as a whole in a web line and on a carriage.
     """
-    direction = np.zeros(2) if isinstance(system.carriage, RunningWeb) else direction
-    at = system.bodies.size - system.tensioners.size
+    direction = direction if isinstance(system.carriage, NoCarriage) else np.zeros(2)
+    at = flow_place(system)
     last = int(np.max(system.bodies.unknown, initial=-1)) + 1
     given, more = system.frame, arc_count(system.frame)
     own = records(BODY, inertia=np.zeros(more + 1), unknown=last + np.arange(more + 1), reach=np.ones(more + 1))
@@ -384,4 +409,9 @@ def flowing_system(system: System, direction: FloatArray) -> System:
     else:
         frame = flowing(given, system.mass, system.vectors, place, direction)
     bodies = np.concatenate([system.bodies[:at], own, system.bodies[at:]]).view(np.recarray)
-    return system._replace(bodies=bodies, frame=frame)
+    return system._replace(bodies=bodies, frame=frame, carriage=behind_flows(system.carriage, more + 1))
+
+
+def flow_place(system: System) -> int:
+    """Number of the body before which lengths of belt that have passed stand: a tensioner, or the carriage."""
+    return int(system.bodies.size - system.tensioners.size - isinstance(system.carriage, Guided))

@@ -277,10 +277,13 @@ def arcs_element(
     wanted, differentiated = factors.by_acceleration != 0.0 or differentiates_forces(factors), flow_factors(factors)
     find_rate(system, element, work)
     flow.by_speed[:], flow.by_end[:] = 0.0, 0.0
-    if wanted and factors.by_position != 0.0 and not keeps_length(frame.arcs, element, (element + 1) % system.nodes):
+    node_j = (element + 1) % system.nodes
+    if wanted and factors.by_position != 0.0 and not keeps_length(frame.arcs, element, node_j):
         by_length(system, element, factors.by_position, work)
     find_accelerations(frame, system, motion, element, work)
     _add_inertia_at_arcs(frame, system, motion, factors, element, wanted, work)
+    if loses_in_belt(system) and differentiated.flow != 0.0 and not keeps_length(frame.arcs, element, node_j):
+        _damping_by_end(system, element, differentiated, work)
     add_flow_forces(system, motion, element, differentiated, equations)
     by = CarryingFactors(factors.by_position, factors.by_velocity, factors.by_velocity, factors.by_acceleration)
     add_carried(system.carrying, system, motion, element, by, work, equations.forces)
@@ -308,6 +311,27 @@ def by_length(system: System, element: int, by_position: float, work: np.record)
                 total += order * own.tangent[row, vectors[b]] * e[vectors[b]]
                 total += order * own.tangent[row, vectors[b] + 1] * e[vectors[b] + 1]
             work.flow.by_end[row] = -by_position * total / length
+
+
+@kernel
+def _damping_by_end(system: System, element: int, factors: FlowFactors, work: np.record) -> None:
+    """Add to the column of the shift at the second node the derivative of damping by its rate, F_v G e."""
+    own, flow, vectors = work.element, work.flow, system.vectors
+    for row in range(own.gradient.size):
+        flow.gradient[row] = own.gradient[row]
+        for column in range(own.gradient.size):
+            flow.tangent[row, column], own.tangent[row, column] = own.tangent[row, column], 0.0
+    material_forces(system, element, DampingFactors(0.0, 1.0, 0.0, factors.secant), work)
+    for row in range(own.gradient.size):
+        total = 0.0
+        for b in range(len(vectors)):
+            total += own.tangent[row, vectors[b]] * flow.grown[b, 0]
+            total += own.tangent[row, vectors[b] + 1] * flow.grown[b, 1]
+        flow.by_end[row] += factors.flow * total
+        own.gradient[row] = flow.gradient[row]
+    for row in range(own.gradient.size):
+        for column in range(own.gradient.size):
+            own.tangent[row, column] = flow.tangent[row, column]
 
 
 @kernel(inline=True)

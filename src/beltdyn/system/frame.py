@@ -147,6 +147,8 @@ class ArcMesh(NamedTuple):
     """As in `Flowing`."""
     inertia: FloatArray
     """As in `Staying`."""
+    metric: FloatArray
+    """As in `hysteresis_record`, shape (elements, v, v), or (0, v, v)."""
 
 
 class StayingByArcs(NamedTuple):
@@ -221,6 +223,8 @@ def flow_record(frame: Any, vectors: int, coordinates: int) -> np.dtype[np.void]
         "moved_by_end": pair,  # of the acceleration
         "by_end": f"{coordinates}f8",  # derivative of the residual with respect to the shift at the second node
         "powers": f"({vectors},{vectors})f8",  # A A
+        "gradient": f"{coordinates}f8",  # kept meanwhile
+        "tangent": f"({coordinates},{coordinates})f8",  # likewise
     }
     return record(
         rate=pair,  # vectors D e
@@ -292,9 +296,21 @@ passed_length: Callable[[Any, FloatArray], float] = by_type(
 """Length of unstretched belt that has passed the mesh, m, at a position of shape (n N + D,)."""
 
 
-def passed_lengths(frame: Any, positions: FloatArray) -> FloatArray:
-    """Lengths of unstretched belt that have passed the mesh in k states, m, shape (k,); `positions` are theirs."""
-    return positions[:, frame.place] if isinstance(frame, OverTime) else np.zeros(len(positions))
+def passed_lengths(frame: Any, positions: FloatArray, elements: int) -> FloatArray:
+    """Lengths of unstretched belt that have passed elements in k states, m, shape (k, elements), of their positions."""
+    if not isinstance(frame, OverTime):
+        return np.zeros((len(positions), elements))
+    passed = np.repeat(positions[:, frame.place, None], elements, axis=1)
+    if isinstance(frame, FlowingByArcs):
+        shifts = positions[:, frame.place - frame.arcs.node.size : frame.place] @ node_shares(frame.arcs).T
+        passed += 0.5 * (shifts + np.roll(shifts, -1, axis=1))[:, :elements]
+    return passed
+
+
+def node_shares(arcs: ArcMesh) -> FloatArray:
+    """Shares of the shifts of arcs in those of nodes, shape (nodes, P)."""
+    one = np.vstack([np.eye(arcs.node.size), np.zeros(arcs.node.size)])  # of node 0, whose number is -1
+    return np.asarray((1.0 - arcs.share)[:, None] * one[arcs.before] + arcs.share[:, None] * one[arcs.after])
 
 
 @kernel(inline=True)

@@ -31,6 +31,7 @@ from beltdyn.system.arrays import (
     System,
     TangentFactors,
 )
+from beltdyn.system.frame import FlowingByArcs, Travelling
 from beltdyn.system.ring_matrix import hold_at_end
 from beltdyn.system.running_web import RunningWeb, carry_web, push_running, rolls_energy_of
 from beltdyn.system.web import WebLine, push_web
@@ -73,6 +74,15 @@ def with_carriage(prepared: Prepared, system: System) -> System:
         bodies=np.concatenate([system.bodies, own]).view(np.recarray),
         carriage=Guided(table, profile_rows([carriage.force], [()])),
     )
+
+
+def behind_flows(carriage: Any, flows: int) -> Any:
+    """The carriage with its body behind those of flows, if there is one."""
+    if not isinstance(carriage, Guided):
+        return carriage
+    table = carriage.table.copy()
+    table["body"] += flows
+    return carriage._replace(table=table)
 
 
 @kernel(inline=True)
@@ -124,6 +134,22 @@ def _carry_nothing(
     pass
 
 
+@kernel(inline=True)
+def _no_flow(frame: Travelling, motion: Motion, factors: TangentFactors, matrix: RingMatrix) -> None:
+    """Nodes travel with the belt."""
+
+
+@kernel(inline=True)
+def _stop_flow(frame: FlowingByArcs, motion: Motion, factors: TangentFactors, matrix: RingMatrix) -> None:
+    last = matrix.corner.shape[0] - 1
+    matrix.border_side[last] = motion.acceleration[frame.place]
+    matrix.corner[last, last] = factors.by_acceleration if factors.by_acceleration != 0.0 else factors.by_position
+
+
+_let_none_pass = by_type({Travelling: _no_flow, FlowingByArcs: _stop_flow}, "let_none_pass")
+"""Let no belt flow past the ends, which the carriage holds."""
+
+
 @kernel
 def _carry(
     carriage: Guided, system: System, motion: Motion, factors: TangentFactors, wanted: bool, matrix: RingMatrix
@@ -131,6 +157,7 @@ def _carry(
     """Give equations and increments of the ends to the carriage; ends of one that is held stay."""
     row = carriage.table[0]
     own = system.bodies[row.body].unknown
+    _let_none_pass(system.frame, motion, factors, matrix)
     for end in (0, system.nodes - 1):
         for a in range(2):
             if own >= 0:

@@ -439,9 +439,11 @@ class JumpWatch:
         reach = system.rims.radius[pulley] + row.height
         nearest = np.min(away, axis=1, keepdims=True)
         state, point = np.nonzero(away <= np.maximum(reach**2, _BESIDE**2 * nearest))
-        angle = row.phase + position[:, system.first_body + pulley] - row.rate * passed_lengths(system.frame, position)
+        angle = row.phase + position[:, system.first_body + pulley]
+        passed = passed_lengths(system.frame, position, system.length.size)
+        along = self._along[point] - passed[state, point * system.length.size // self._along.size]
         direction = np.arctan2(places[state, point, 1], places[state, point, 0])
-        ahead = (angle[state] - direction + row.rate * self._along[point]) / row.groove
+        ahead = (angle[state] - direction + row.rate * along) / row.groove
         size = len(position)
         mean = [np.bincount(state, one(_TURNS * ahead), size) for one in (np.cos, np.sin)]
         return np.asarray(np.arctan2(mean[1], mean[0]) / _TURNS)

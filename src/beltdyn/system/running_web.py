@@ -16,12 +16,11 @@ it.  As dJ/dl = m R^2, its moment of momentum balances by
 at the winder and, below, at the unwinder, with the stretch g: a roll is a mass J/R^2 at the end of the line.
 """
 
-from itertools import pairwise
 from typing import NamedTuple
 
 import numpy as np
 
-from beltdyn.arrays import FloatArray, IntArray
+from beltdyn.arrays import FloatArray
 from beltdyn.kernel import kernel
 from beltdyn.machines.profiles.functions import profile_value
 from beltdyn.model import Prepared
@@ -53,8 +52,7 @@ def running_web(prepared: Prepared, system: System) -> System:
     assert isinstance(line, WebLine)
     zones, length = zones_of(prepared), float(np.sum(system.length))
     end = Zone(length, length, len(zones))
-    before, after, share = _shares([*zones, end], np.append(0.0, np.cumsum(system.length)))
-    moved = by_arcs(prepared, system, zones, before, after, share)
+    moved = by_arcs(prepared, system, zones, [Zone(0.0, 0.0, -1), *zones, end, Zone(np.inf, np.inf, -1)])
     arcs = moved.frame.arcs
     last = prepared.path.ends[1] if prepared.path.ends is not None else np.zeros(2)
     arcs = arcs._replace(
@@ -66,17 +64,6 @@ def running_web(prepared: Prepared, system: System) -> System:
     frame = moved.frame._replace(shift=np.zeros(len(arcs.node)), arcs=arcs)
     free = moved.supports._replace(fixed=np.zeros_like(moved.supports.fixed), any_fixed=False)
     return moved._replace(frame=frame, carriage=RunningWeb(line.ends), supports=free)
-
-
-def _shares(zones: list[Zone], nodes: FloatArray) -> tuple[IntArray, IntArray, FloatArray]:
-    """Arcs on both sides of each node, -1 before the first, and the share of the second."""
-    before, after, share = np.full(nodes.size, -1), np.full(nodes.size, -1), np.zeros(nodes.size)
-    for one, other in pairwise([Zone(0.0, 0.0, -1), *zones, Zone(np.inf, np.inf, -1)]):
-        between = (nodes >= one.start) & (nodes < other.start)
-        way = other.start - one.end
-        before[between], after[between] = one.arc, other.arc
-        share[between] = np.clip((nodes[between] - one.end) / way, 0.0, 1.0) if np.isfinite(way) else 0.0
-    return before, after, share
 
 
 @kernel

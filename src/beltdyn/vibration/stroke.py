@@ -12,7 +12,7 @@ from beltdyn.parts.quantity import Numbers, numbers_in
 from beltdyn.results import Result, Variable, build_result
 from beltdyn.solvers.flutter import Vibrations
 from beltdyn.solvers.run_progress import Progress, Report
-from beltdyn.state.installation import Rest, rest_of
+from beltdyn.state.installation import Rest, on_equal_elements, rest_of
 from beltdyn.state.static import standing
 from beltdyn.system.constant_drive import constant_drive
 from beltdyn.vibration.small_motions import sticking_rate
@@ -88,7 +88,7 @@ def stroke(
         )
     if count < 1:
         raise ModelError(f"count = {count} must be 1 or more.")
-    prepared = prepare(drive)
+    prepared = prepare(on_equal_elements(drive))
     ways = _ways(prepared, places, points)
     first = rest_of(prepared, progress).prepared.drive  # with the length, or the take-up, of the installed tension
     rows = list[dict[str, Any]]()

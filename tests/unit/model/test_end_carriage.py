@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from beltdyn.errors import ModelError
-from beltdyn.model import Carriage, Drive, FixedEnd, dumps, example, loads
+from beltdyn.model import Carriage, Drive, FixedEnd, dumps, example, loads, prepare
 from beltdyn.model.end import carriage_rate, free_stroke, turned
 
 AXIS = example("printer_axis")
@@ -40,6 +40,11 @@ SPEED = TEXT[TEXT.index("speed = {") : TEXT.index("}", TEXT.index("speed = {")) 
             "[carriage]",
             '[[end]]\nname = "a"\nkind = "fixed"\npoint = [0, 0.1]\n[carriage]',
             "the carriage holds both ends",
+        ),
+        (
+            "[simulation]",
+            "[simulation]\nforce_tolerance = 0.01",
+            r"force_tolerance = 0\.01 is incompatible with \[carriage\]: the mesh of an axis is not refined",
         ),
     ],
 )
@@ -81,6 +86,24 @@ def test_ways_are_looked_at_where_a_move_turns_back() -> None:
     assert angles.max() == pytest.approx(5.0 * np.pi, rel=1e-12)
     assert angles.min() == pytest.approx(0.0, abs=1e-9)
     assert turned(speed, 1.0) is angles  # for the same move it is found once
+
+
+def test_the_mesh_stays_at_arcs_unless_single_teeth_travel() -> None:
+    assert AXIS.frame.stays
+    assert not AXIS.with_({"belt.toothing.law": "discrete"}).frame.stays
+    with pytest.raises(ModelError, match="no belt flows past its ends"):
+        example("band_brake").with_({"simulation.frame": "staying"})
+
+
+def test_the_carriage_keeps_from_pulleys_by_its_stroke_its_move_or_its_room() -> None:
+    """Without stops a driver with prescribed speed moves it by 100 mm; with a torque it may go to the pulleys."""
+    assert AXIS.carriage is not None
+    assert prepare(AXIS).reach_of_carriage == (-0.12, 0.12)
+    free = AXIS.replace(carriage=AXIS.carriage.replace(stroke=None))
+    assert prepare(free).reach_of_carriage == pytest.approx((0.0, 0.1), abs=1e-3)
+    moved = {"name": "motor", "center": [0.0, 0.0], "teeth": 20, "inertia": 1e-5, "torque": 0.1}
+    driven = free.replace(pulley=[moved, AXIS.pulleys[1]])
+    assert prepare(driven).reach_of_carriage == free_stroke(AXIS.carriage, driven.path)
 
 
 def test_it_is_written_and_read() -> None:

@@ -124,6 +124,7 @@ def test_a_tolerance_that_makes_no_sense(example: str, tolerance: float, message
 
 @pytest.mark.slow
 def test_an_axis_at_rest_is_that_in_which_its_runs_begin() -> None:
+    """Runs have other elements; both find the tension asked for to the error of a mesh."""
     axis = bd.example("printer_axis")
     begun = bd.simulate(axis.with_({"simulation.duration": 1e-3})).dataset.span_tension.values[0]
-    np.testing.assert_allclose(bd.equilibrium(axis).dataset.span_tension.values, begun, rtol=1e-9)
+    np.testing.assert_allclose(bd.equilibrium(axis).dataset.span_tension.values, begun, rtol=2e-4)

@@ -107,6 +107,34 @@ element_start: Callable[[Any, int], float] = by_type(
 
 
 @kernel(inline=True)
+def _move_none(rims: Any, element: int, start: float) -> None:
+    """No teeth ask for it."""
+
+
+@kernel(inline=True)
+def _move_start(rims: Any, element: int, start: float) -> None:
+    rims.start[element] = start
+
+
+move_start: Callable[[Any, int, float], None] = by_type(
+    {
+        RoundRims: _move_none,
+        ShapedRims: _move_none,
+        ToothedRims: _move_start,
+        PolygonRims: _move_start,
+        MeshingRims: _move_start,
+    },
+    "move_start",
+)
+"""Let an element begin at another material coordinate, m."""
+
+
+def with_own_starts(rims: Any) -> Any:
+    """The same rims with an array of their own of the coordinates at which elements begin, if they have one."""
+    return rims if isinstance(rims, RoundRims | ShapedRims) else rims._replace(start=rims.start.copy())
+
+
+@kernel(inline=True)
 def _own_unknown(rims: Any, pulley: int, unknown: int) -> int:
     return unknown
 

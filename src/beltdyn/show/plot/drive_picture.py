@@ -21,7 +21,7 @@ from beltdyn.arrays import FloatArray
 from beltdyn.model import Drive, Entry, Path, Pulley, prepare
 from beltdyn.model.carrier import Carrier
 from beltdyn.results import Result, Run, StaticResult
-from beltdyn.results.mechanics import centerline, element_lengths, recorded_kind
+from beltdyn.results.mechanics import centerline, present_lengths, recorded_kind
 from beltdyn.show.plot.figures import Choice, always, figure, save
 from beltdyn.show.plot.headline import at_instant
 from beltdyn.show.plot.style import (
@@ -116,7 +116,7 @@ class DrivePicture:
 
     def __init__(self, run: Run | StaticResult, ax: Axes, norm: Normalize) -> None:
         self._kind = recorded_kind(run.dataset, run.prepared)
-        self._lengths = element_lengths(run.dataset, run.drive.belt_length)
+        self._belt_length = run.drive.belt_length
         self._radii = [pulley.radius for pulley in run.drive.pulleys]
         self._centers = run.drive.centers
         self._bodies = [_draw_pulley(ax, pulley, number) for number, pulley in enumerate(run.prepared.pulleys)]
@@ -133,7 +133,8 @@ class DrivePicture:
 
     def show(self, instant: xr.Dataset) -> None:
         """Move everything to an instant."""
-        self._belt.set_segments(list(centerline(self._kind, instant["nodal_coordinates"].values, self._lengths)))
+        lengths = present_lengths(instant, self._belt_length)
+        self._belt.set_segments(list(centerline(self._kind, instant["nodal_coordinates"].values, lengths)))
         self._belt.set_array(instant["belt_tension"].values)
         centers = instant["pulley_center"].values if "pulley_center" in instant else self._centers
         angles = instant["pulley_angle"].values

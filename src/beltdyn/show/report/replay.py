@@ -9,7 +9,7 @@ import xarray as xr
 from beltdyn.arrays import ComplexArray, FloatArray
 from beltdyn.model import Drive
 from beltdyn.results import Result, Run
-from beltdyn.results.mechanics import centerline, element_lengths, recorded_kind
+from beltdyn.results.mechanics import centerline, element_lengths, present_lengths, recorded_kind
 from beltdyn.show.plot.drive_picture import extent_of
 from beltdyn.show.plot.vibration import mode_name, shown_modes, swing, tint_of
 
@@ -18,7 +18,7 @@ _POINTS = 480
 _FRAMES = 120
 """Pictures of all runs of a page, at most."""
 _FEWEST = 30
-_ALONG = ("nodal_coordinates", "belt_tension", "belt_coordinate", "normal_force")
+_ALONG = ("nodal_coordinates", "body_position", "belt_tension", "belt_coordinate", "normal_force")
 """What pictures are made of."""
 _SMOOTH = 8
 """Points drawn on an element."""
@@ -75,9 +75,8 @@ def along_belt(run: Run, instant: xr.Dataset) -> tuple[FloatArray, FloatArray, F
     """
     drive = run.drive
     lengths = element_lengths(run.dataset, drive.belt_length)
-    curves = centerline(
-        recorded_kind(run.dataset, run.prepared), instant["nodal_coordinates"].values, lengths, _SMOOTH + 1
-    )
+    kind, present = recorded_kind(run.dataset, run.prepared), present_lengths(instant, drive.belt_length)
+    curves = centerline(kind, instant["nodal_coordinates"].values, present, _SMOOTH + 1)
     points = curves[:, :-1].reshape(-1, 2)
     starts = np.cumsum(lengths) - lengths
     coordinate = (starts[:, None] + lengths[:, None] * np.arange(_SMOOTH) / _SMOOTH).ravel()
