@@ -19,10 +19,11 @@ from beltdyn.designs.processes import SPAWN, Ending, LocalProcesses, Work, analy
 from beltdyn.errors import ModelError
 from beltdyn.model import Drive, prepare
 from beltdyn.model.carrier import moved
-from beltdyn.model.drive import refuse_functions, refuse_kinds_of_scripts
 from beltdyn.model.parameter_study import Obstacle, Order, Points
 from beltdyn.model.path import Surroundings, distance_from_belt
+from beltdyn.model.pulley import refuse_functions
 from beltdyn.observation.compilation import usable_cores
+from beltdyn.parts.kind_fields import refuse_kinds_of_scripts
 from beltdyn.parts.quantity import RPM, numbers_in
 from beltdyn.points.changed_drive import driver_of
 from beltdyn.points.duty import at_row, durations_of, read_duty
@@ -192,8 +193,9 @@ def analyse_all(
     files = {Path(file): drive for file, drive in drives.items()}
     for file, drive in files.items():
         rule = f"{file.name} runs in another process, which a Python function cannot be passed to"
-        refuse_functions(_drive_of(drive), rule, "Call `simulate` or another analysis for this drive alone.")
-        refuse_kinds_of_scripts(_drive_of(drive))
+        given = _drive_of(drive)
+        refuse_functions(given.pulleys, rule, "Call `simulate` or another analysis for this drive alone.")
+        refuse_kinds_of_scripts(given.own_kinds)
     waiting, work = _longest_first(files), Work(analysis, options, overwrite, finish)
     going = True
 

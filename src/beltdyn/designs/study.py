@@ -19,8 +19,9 @@ from beltdyn.designs.study_plan import plan_of
 from beltdyn.designs.study_table import StudyTable
 from beltdyn.errors import ModelError, SimulationError
 from beltdyn.model import Drive, ParameterStudy, load
-from beltdyn.model.drive import refuse_functions, refuse_kinds_of_scripts
+from beltdyn.model.pulley import refuse_functions
 from beltdyn.model.toml import read_study
+from beltdyn.parts.kind_fields import refuse_kinds_of_scripts
 from beltdyn.parts.messages import suggest
 from beltdyn.results import Result
 from beltdyn.results.atomic import make_folder
@@ -219,9 +220,9 @@ def study(
     work = PointWork(drive, analysis, options, given.results, _folder(given, path))
     workers = workers_of(jobs, scheduler)
     if not isinstance(workers, ThisProcess):
-        refuse_functions(drive, "points are computed by other processes, which a Python function cannot be passed to",
-                         "Compute them in this process with jobs = 1.")  # fmt: skip
-        refuse_kinds_of_scripts(drive)
+        rule = "points are computed by other processes, which a Python function cannot be passed to"
+        refuse_functions(drive.pulleys, rule, "Compute them in this process with jobs = 1.")
+        refuse_kinds_of_scripts(drive.own_kinds)
     with StudyTable(given, drive, plan, path, overwrite, retry) as table:
         waiting = np.flatnonzero(~table.done).tolist()
         teller = _Teller(table, progress, workers)

@@ -13,7 +13,7 @@ from beltdyn.arrays import BoolArray, FloatArray
 from beltdyn.contact.friction import FrictionParameters
 from beltdyn.elements import ELEMENTS, ElementKind
 from beltdyn.errors import ModelError
-from beltdyn.machines import FunctionLoad, Goods, MovingTensioner, Tensioner
+from beltdyn.machines import Goods, MovingTensioner, Tensioner
 from beltdyn.machines.carrying import AnySupport
 from beltdyn.machines.tensioners import AnyTensioner
 from beltdyn.model.as_supplied import Rotation, as_supplied
@@ -26,7 +26,7 @@ from beltdyn.model.layout import Given, Layout, check_speeds, check_teeth, lay_o
 from beltdyn.model.nip import Nip, on_slides, rim_ratios
 from beltdyn.model.parameter_study import DutyPoint, check_duty
 from beltdyn.model.path import Path
-from beltdyn.model.pulley import Pulley, friction_on
+from beltdyn.model.pulley import Pulley, friction_on, refuse_functions
 from beltdyn.model.rating import RatedBelt
 from beltdyn.model.resolution import AXIS_FINENESS, FINENESS
 from beltdyn.model.routing import radii, span_names
@@ -34,7 +34,7 @@ from beltdyn.model.simulation import Frame, Limits, Simulation, Steady, choose_f
 from beltdyn.model.toothing import DISCRETE, RatedTeeth
 from beltdyn.model.web import Unwinder, Winder, check_rollers
 from beltdyn.parts.change import carry_tolerances, changed_arguments, tolerances_of, with_tolerances
-from beltdyn.parts.kind_fields import Chosen, chosen_kinds
+from beltdyn.parts.kind_fields import Chosen, chosen_kinds, refuse_kinds_of_scripts
 from beltdyn.parts.part import Part
 from beltdyn.parts.quantity import Acceleration, Title, Words
 from beltdyn.parts.text_file import parse_toml
@@ -121,8 +121,9 @@ class Drive(Part):
 
     def __reduce__(self) -> tuple[Callable[..., "Drive"], tuple[str, tuple[str, ...]]]:
         """Travel between processes as a drive file, with the modules that register its own kinds."""
-        refuse_functions(self, "other processes get a drive as text, without functions", "run it in this process")
-        refuse_kinds_of_scripts(self)
+        told = "other processes get a drive as text, without functions", "run it in this process"
+        refuse_functions(self.pulleys, *told)
+        refuse_kinds_of_scripts(self.own_kinds)
         return drive_of_text, (self.text, tuple(dict.fromkeys(kind.origin for kind in self.own_kinds)))
 
     @model_validator(mode="before")
@@ -434,7 +435,7 @@ class Drive(Part):
 
     @property
     def fineness(self) -> float:
-        """Fineness of its mesh, if that is graded and the number of elements is not given; zero of others."""
+        """Fineness of its mesh where no number of elements is given; zero where that is not graded."""
         if not self.frame.stays or self.simulation.mesh == "uniform":
             return 0.0
         return FINENESS if self.carriage is None else AXIS_FINENESS
@@ -590,27 +591,3 @@ def drive_of_text(text: str, modules: Iterable[str] = ()) -> Drive:
     drive = Drive.model_validate(parse_toml(text))
     drive._source = text
     return drive
-
-
-def refuse_kinds_of_scripts(drive: Drive) -> None:
-    """Make sure that other processes can import the modules that register the kinds of a drive."""
-    for kind in drive.own_kinds:
-        if kind.origin == "__main__":
-            raise ModelError(
-                f"the {kind} is registered by the script itself, which other processes do not run. Move it to a module "
-                "beside the script and import that, or run the drive in this process."
-            )
-
-
-def has_functions(drive: Drive) -> bool:
-    """Whether a load of a drive is a Python function, which no file or other process can have."""
-    return any(isinstance(load, FunctionLoad) for pulley in drive.pulleys for load in pulley.load)
-
-
-def refuse_functions(drive: Drive, rule: str, remedy: str) -> None:
-    """Make sure that all of a drive can be written as text."""
-    for pulley in drive.pulleys:
-        if any(isinstance(load, FunctionLoad) for load in pulley.load):
-            raise ModelError(
-                f'pulley "{pulley.name}" has a load of kind "function": {rule}. Give the load as a table, or {remedy}'
-            )

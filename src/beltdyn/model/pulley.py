@@ -12,8 +12,9 @@ from pydantic.fields import FieldInfo
 
 from beltdyn.arrays import FloatArray
 from beltdyn.contact.surface import KINDS, SurfaceKind
+from beltdyn.errors import ModelError
 from beltdyn.machines.links import AnyHubLink
-from beltdyn.machines.loads import AnyLoad
+from beltdyn.machines.loads import AnyLoad, FunctionLoad
 from beltdyn.machines.profiles import SpeedProfile, TorqueProfile
 from beltdyn.machines.profiles.harmonic import SpeedHarmonics
 from beltdyn.machines.profiles.profile import Profile
@@ -395,3 +396,20 @@ def flat_friction_on(pulley: Pulley, belt: Belt, contact: Contact) -> float:
         "contact.friction is missing, and the belt has no friction of its own. Give the coefficient of friction "
         "without the wedge effect: 0.3 to 0.4 for rubber on metal"
     )
+
+
+# Loads that no file and no other process can have
+
+
+def has_functions(pulleys: Sequence[Pulley]) -> bool:
+    """Whether a load of a pulley is a Python function."""
+    return any(isinstance(load, FunctionLoad) for pulley in pulleys for load in pulley.load)
+
+
+def refuse_functions(pulleys: Sequence[Pulley], rule: str, remedy: str) -> None:
+    """Make sure that all loads can be written as text."""
+    for pulley in pulleys:
+        if has_functions([pulley]):
+            raise ModelError(
+                f'pulley "{pulley.name}" has a load of kind "function": {rule}. Give the load as a table, or {remedy}'
+            )

@@ -12,7 +12,8 @@ import tomli_w
 from pydantic import ValidationError
 
 from beltdyn.errors import ModelError
-from beltdyn.model.drive import Drive, refuse_functions
+from beltdyn.model.drive import Drive
+from beltdyn.model.pulley import refuse_functions
 from beltdyn.parts.change import location_of, tolerances_of, unit_at, with_tolerances
 from beltdyn.parts.messages import explain, reason
 from beltdyn.parts.part import Part
@@ -254,7 +255,7 @@ def dumps(drive: Drive) -> str:
 
 def spelled_out(drive: Drive, tolerances: Mapping[str, float]) -> str:
     """Write a drive as `dumps` does, with given tolerances."""
-    refuse_functions(drive, "a drive file cannot hold a Python function", "keep the drive in a script")
+    refuse_functions(drive.pulleys, "a drive file cannot hold a Python function", "keep the drive in a script")
     return tomli_w.dumps(with_tolerances(drive, drive.data, tolerances), multiline_strings=False)
 
 

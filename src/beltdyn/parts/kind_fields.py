@@ -91,6 +91,16 @@ def chosen_kinds(part: Part) -> Iterator[Chosen]:
                 yield from chosen_kinds(inner)
 
 
+def refuse_kinds_of_scripts(chosen: Iterable[Chosen]) -> None:
+    """Make sure that other processes can import the modules that register kinds."""
+    for kind in chosen:
+        if kind.origin == "__main__":
+            raise ModelError(
+                f"the {kind} is registered by the script itself, which other processes do not run. Move it to a module "
+                "beside the script and import that, or run the drive in this process."
+            )
+
+
 def _registries(annotations: Iterable[Any]) -> Iterator[Registry[Any]]:
     """Registries from which annotations choose."""
     for one in annotations:

@@ -6,7 +6,7 @@ from typing import cast
 
 from beltdyn.errors import ConvergenceError, ModelError
 from beltdyn.model import Drive, Simulation, prepare
-from beltdyn.model.drive import has_functions
+from beltdyn.model.pulley import has_functions
 from beltdyn.model.simulation import INTEGRATORS
 from beltdyn.observation.compilation import compile_kernels
 from beltdyn.observation.observer import Arrays
@@ -124,7 +124,7 @@ def record_run(
         recording.start(found.prepared, found.system, found.unstable)
         recording.note(**found.attributes)
         task = drive_task(found.prepared, found.system, found.state, recording.statistics)
-        if isinstance(integrator, GeneralizedAlpha) and not has_functions(given):
+        if isinstance(integrator, GeneralizedAlpha) and not has_functions(given.pulleys):
             keeper = Keeper(Path(output) if output is not None else None, checkpoint, given, compare_steady)
             _integrate(integrator.begin(task), recording, keeper)
         else:
@@ -157,10 +157,10 @@ def _resume(drive: Drive, output: Path | str | None, progress: Report | None, ch
     if output is None:
         raise ModelError("resume continues a run in its result file, but none is given. Give it as output.")
     path = Path(output)
-    if drive.simulation.integrator != GeneralizedAlpha.name or has_functions(drive):
+    if drive.simulation.integrator != GeneralizedAlpha.name or has_functions(drive.pulleys):
         why = (
             'has a load of kind "function", which cannot be stored in a file'
-            if has_functions(drive)
+            if has_functions(drive.pulleys)
             else f'has simulation.integrator = "{drive.simulation.integrator}", whose state is not stored'
         )
         raise ModelError(
