@@ -1,6 +1,6 @@
 """Ends of an open belt: fixed at a point, pulled by a force or a weight, or clamped to the carriage of an axis."""
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from functools import lru_cache
 from typing import TYPE_CHECKING, Annotated, Literal, NamedTuple, Self
 
@@ -276,10 +276,7 @@ def _check_way(
 ) -> None:
     """Refuse speeds of a driver that move the carriage beyond its stroke."""
     lower, upper = carriage.stroke or room
-    for number, pulley in enumerate(pulleys):
-        if pulley.speed is None:
-            continue
-        ways = carriage_rate(carriage, path, number) * turned(pulley.speed, duration)
+    for pulley, ways in _prescribed_ways(carriage, path, pulleys, duration):
         if ways.min() < lower or ways.max() > upper:
             way = float(ways.min() if ways.min() < lower else ways.max())
             what = "its stroke" if carriage.stroke else "where a clamp reaches a pulley"
@@ -289,14 +286,21 @@ def _check_way(
             )
 
 
-def reach_of(carriage: Carriage, path: Path, pulleys: Sequence[Pulley], duration: float) -> tuple[float, float]:
+def _prescribed_ways(
+    carriage: Carriage, path: Path, pulleys: Sequence[Pulley], duration: float
+) -> Iterator[tuple[Pulley, FloatArray]]:
+    """Pulleys with prescribed speed, and ways on which they move a carriage, m."""
+    for number, pulley in enumerate(pulleys):
+        if pulley.speed is not None:
+            yield pulley, carriage_rate(carriage, path, number) * turned(pulley.speed, duration)
+
+
+def range_of(carriage: Carriage, path: Path, pulleys: Sequence[Pulley], duration: float) -> tuple[float, float]:
     """Ways between which a carriage moves, m: its stroke, those of a driver with prescribed speed, or its room."""
     if carriage.stroke is not None:
         return carriage.stroke
-    for number, pulley in enumerate(pulleys):
-        if pulley.speed is not None:
-            ways = carriage_rate(carriage, path, number) * turned(pulley.speed, duration)
-            return float(ways.min()), float(ways.max())
+    for _, ways in _prescribed_ways(carriage, path, pulleys, duration):
+        return float(ways.min()), float(ways.max())
     return free_stroke(carriage, path)
 
 

@@ -20,7 +20,7 @@ from beltdyn.model.completion import take_up
 from beltdyn.model.contact import Contact
 from beltdyn.model.defaults import Choice, critical_damping
 from beltdyn.model.drive import Drive
-from beltdyn.model.end import Carriage, End, PathEnd, reach_of
+from beltdyn.model.end import Carriage, End, PathEnd, range_of
 from beltdyn.model.installation import Installation, span_frequencies
 from beltdyn.model.layout import loaded
 from beltdyn.model.path import Path
@@ -94,10 +94,10 @@ class Prepared:
         return self.drive.carriage
 
     @cached_property
-    def reach_of_carriage(self) -> tuple[float, float]:
+    def carriage_range(self) -> tuple[float, float]:
         """Ways between which the carriage moves, m, by its stroke, a prescribed driver, or the pulleys."""
         assert self.carriage is not None
-        return reach_of(self.carriage, self.path, self.pulleys, self.simulation.end)
+        return range_of(self.carriage, self.path, self.pulleys, self.simulation.end)
 
     @property
     def path_ends(self) -> tuple[PathEnd, ...]:

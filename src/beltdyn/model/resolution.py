@@ -19,11 +19,12 @@ from dataclasses import dataclass
 from itertools import pairwise
 from math import ceil, pi, sqrt
 from types import MappingProxyType
-from typing import NamedTuple, Protocol
+from typing import Any, NamedTuple, Protocol
 
 import numpy as np
+from numpy.typing import NDArray
 
-from beltdyn.arrays import FloatArray
+from beltdyn.arrays import FloatArray, IntArray
 from beltdyn.model.belt import Belt
 from beltdyn.model.path import Path
 from beltdyn.parts.messages import Finding, listing
@@ -186,6 +187,15 @@ def _divide(
         np.linspace(start, end, max(ceil(min(end - start, _MOST)), 1), endpoint=False) for start, end in pairwise(marks)
     ]
     return np.diff(np.interp(np.append(np.concatenate(nodes), passed[-1]), passed, place))
+
+
+def shifts_at_nodes(before: IntArray, after: IntArray, share: FloatArray, shifts: NDArray[Any]) -> NDArray[Any]:
+    """Shifts at the N nodes of a mesh that stays at P arcs, from those of arcs, shape (..., P).
+
+    Those of the arcs before and after a node, -1 for none, with the share of the second, shape (N,).
+    """
+    every = np.concatenate([shifts, np.zeros_like(shifts[..., :1])], axis=-1)
+    return np.asarray((1.0 - share) * every[..., before] + share * every[..., after])
 
 
 ERROR_LIMITS: Mapping[str, float] = MappingProxyType(

@@ -15,6 +15,7 @@ from beltdyn.contact.contact_zone import BINOMIALS
 from beltdyn.elements import ELEMENTS, ElementKind
 from beltdyn.model import Prepared
 from beltdyn.model.path import span_directions, span_points, wrap_angles
+from beltdyn.model.resolution import shifts_at_nodes
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -109,18 +110,18 @@ def element_lengths(dataset: "xr.Dataset", belt_length: float) -> FloatArray:
 
 PASSED = "belt at "
 """Before the name of a pulley: what of the belt has passed there, among the bodies."""
-MESH_SHARES = "mesh_shares"
-"""Attribute of runs on a mesh that stays at every arc: shares of arcs in what goes over at nodes, by nodes."""
+MESH_BESIDE = ("mesh_before", "mesh_after", "mesh_share")
+"""Attributes of runs on a mesh that stays at every arc: arguments of `shifts_at_nodes`."""
 
 
 def present_lengths(instants: "xr.Dataset", belt_length: float) -> FloatArray:
     """Reference lengths of the elements at instants of a run, m, shape (..., elements): spans may become longer."""
     lengths = element_lengths(instants, belt_length)
-    if MESH_SHARES not in instants.attrs:
+    if not set(MESH_BESIDE) <= instants.attrs.keys():
         return lengths
-    passed = instants["body"].str.startswith(PASSED).values
-    shares = np.reshape(instants.attrs[MESH_SHARES], (-1, int(passed.sum())))
-    shifts = instants["body_position"].values[..., passed] @ shares.T
+    passed = instants["body_position"].values[..., instants["body"].str.startswith(PASSED).values]
+    before, after, share = (np.asarray(instants.attrs[name]) for name in MESH_BESIDE)
+    shifts = shifts_at_nodes(before, after, share, passed)
     return np.asarray(lengths - (np.roll(shifts, -1, axis=-1) - shifts)[..., : lengths.size])
 
 

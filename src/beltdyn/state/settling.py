@@ -14,11 +14,10 @@ from beltdyn.kernel import interpreted
 from beltdyn.machines.profiles.functions import go_on, profile_integral
 from beltdyn.model import Drive, Prepared, Pulley
 from beltdyn.model.defaults import MOST
-from beltdyn.model.resolution import FINENESS
 from beltdyn.model.simulation import Instants
 from beltdyn.results import mesh_error_attribute
 from beltdyn.results.checks.ending import LEAST_WINDOWS, SETTLED, least_window
-from beltdyn.results.mechanics import MESH_SHARES
+from beltdyn.results.mechanics import MESH_BESIDE
 from beltdyn.results.tension_balance import WEB_LINE
 from beltdyn.solvers.run_progress import Progress, Report
 from beltdyn.solvers.trajectory import Chunk, Integrator, Statistics, Task, drive_task
@@ -26,15 +25,15 @@ from beltdyn.state.installation import Rest, bring_to_rest
 from beltdyn.state.refinement import MeshRule, errors_at_rest, errors_between, refine_at_rest, steady_from_rest
 from beltdyn.state.search import SteadySearch
 from beltdyn.state.static import find_equilibrium
-from beltdyn.state.staying import FINER, Standing, bring_to_stand, stand
+from beltdyn.state.staying import FINER, Standing, bring_to_stand, on_nodes, stand
 from beltdyn.system.arc_mesh import base_lengths, mesh_attributes, shifts_of
 from beltdyn.system.arrays import System
 from beltdyn.system.build import axis_by_arcs, axis_system, flow_place, flowing_system, on_other_mesh, open_ended
 from beltdyn.system.build_machines import profile_arrays
-from beltdyn.system.frame import FlowingByArcs, centreline_points, node_shares
+from beltdyn.system.frame import FlowingByArcs
 from beltdyn.system.meshing import at_phases, has_teeth, tooth_phases, turned_as, turning
 from beltdyn.system.observe import observe_motion
-from beltdyn.system.state import State, at_rest, nodal_coordinates, point_coordinates
+from beltdyn.system.state import State
 from beltdyn.system.steady_assembly import anchor_at
 
 _WINDOWS = 20
@@ -219,9 +218,11 @@ def begin_flowing(prepared: Prepared, progress: Report | None) -> Beginning:
     toothed = turning(system, meshed.state)
     flowing = with_angles(meshed.rest.prepared, flowing_system(toothed, direction))
     errors = meshed.errors or {"peak pressure": float("nan")}  # not known
-    said = {mesh_error_attribute(name): error for name, error in errors.items()} | {DIRECTION: direction}
+    said: dict[str, Any] = {mesh_error_attribute(name): error for name, error in errors.items()}
+    said[DIRECTION] = direction
     if isinstance(flowing.frame, FlowingByArcs):
-        said |= {MESH_SHARES: node_shares(flowing.frame.arcs).ravel()}
+        arcs = flowing.frame.arcs
+        said |= dict(zip(MESH_BESIDE, (arcs.before, arcs.after, arcs.share), strict=True))
     said |= tooth_phases(toothed) | mesh_attributes(system) | ({WEB_LINE: 1} if prepared.drive.is_web else {})
     return Beginning(meshed.rest.prepared, flowing, with_passage(system, meshed.state, meshed.speed), attributes=said)
 
@@ -250,7 +251,7 @@ def _meshed(prepared: Prepared) -> _Meshed:
     else:
         rest = bring_to_stand(prepared)
         fineness = rest.fineness * (given or MOST) / rest.system.nodes
-        rest = stand(rest.prepared, fineness=fineness if given else min(FINENESS, fineness))
+        rest = stand(rest.prepared, fineness=fineness if given else min(prepared.drive.fineness, fineness))
         errors = errors_at_rest(rest)
     return _Meshed(rest, rest.system, rest.state, 0.0, errors)
 
@@ -277,9 +278,7 @@ def _axis_on(found: Rest, lengths: FloatArray, fineness: float) -> Standing:
     """The same axis at rest on elements of other lengths (m), on a mesh that stays at its arcs."""
     own = found.prepared
     system = axis_system(own, lengths)
-    nodes = centreline_points(found.system, found.state.position, point_coordinates(system))
-    state = at_rest(system, nodal_coordinates(system, *nodes))
-    state.position[system.first_body :] = found.state.position[found.system.first_body :]
+    state = on_nodes(found.system, found.state, system)
     balance = find_equilibrium(turned_as(system, found.system), state)
     system = axis_by_arcs(own, at_phases(system, balance.phases) if has_teeth(system) else system)
     return Standing(own, system, balance.state, balance.state.position.copy(), found.tension, own.layer, fineness)

@@ -292,14 +292,20 @@ def _beyond(along: FloatArray, depth: FloatArray, inner: int, outer: int) -> flo
     return float((along[inner] - along[outer]) * depth[inner] / (depth[inner] - depth[outer]))
 
 
+def on_nodes(system: System, state: State, other: System) -> State:
+    """The same curve at rest on the nodes of another mesh, with bodies where they are."""
+    place, slope, bend = centreline_points(system, state.position, point_coordinates(other))
+    moved = at_rest(other, nodal_coordinates(other, place, slope, bend))
+    moved.position[other.first_body :] = state.position[system.first_body :]
+    return moved
+
+
 def transfer(system: System, state: State, other: System) -> State:
     """The same curve and motion on another mesh."""
     shifts_of(other.frame)[:] = shifts_of(system.frame)
     for one in (system, other):
         fitted(one, state.position)
-    place, slope, bend = centreline_points(system, state.position, point_coordinates(other))
-    moved = at_rest(other, nodal_coordinates(other, place, slope, bend))
-    for mine, given in zip((moved.position, moved.velocity), (state.position, state.velocity), strict=True):
-        mine[other.first_body :] = given[system.first_body :]
+    moved = on_nodes(system, state, other)
+    moved.velocity[other.first_body :] = state.velocity[system.first_body :]
     other.frame.speed[:] = system.frame.speed
     return moved

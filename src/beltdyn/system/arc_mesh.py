@@ -21,6 +21,7 @@ from beltdyn.kernel import by_type, kernel
 from beltdyn.machines.tensioners import tensioner_center
 from beltdyn.model import Prepared
 from beltdyn.model.end import free_stroke
+from beltdyn.model.resolution import shifts_at_nodes
 from beltdyn.system.arrays import Motion, RingMatrix, System, TangentFactors
 from beltdyn.system.frame import (
     ArcMesh,
@@ -72,7 +73,7 @@ def _nearest(prepared: Prepared) -> float:
     carriage = prepared.carriage
     if carriage is None:
         return np.inf
-    (first, last), room = prepared.reach_of_carriage, free_stroke(carriage, prepared.path)
+    (first, last), room = prepared.carriage_range, free_stroke(carriage, prepared.path)
     return 0.5 * max(min(first - room[0], room[1] - last), 0.0)
 
 
@@ -156,14 +157,9 @@ def _shares(held: list[Zone], nodes: FloatArray) -> tuple[IntArray, IntArray, Fl
     return before, after, share
 
 
-def with_shares(system: System, shares: FloatArray) -> System:
-    """The same mesh over time with other shares of arcs at its nodes, shape (nodes, P); see `node_shares`."""
-    nodes, order = np.arange(len(shares)), np.argsort(shares <= 0.0, axis=1, kind="stable")[:, :2]
-    first, second = order.T if shares.shape[1] > 1 else (order[:, 0], order[:, 0])
-    own, other = shares[nodes, first], np.where(second == first, 0.0, shares[nodes, second])
-    arcs = system.frame.arcs._replace(
-        before=np.where(own > 0.0, first, -1), after=np.where(other > 0.0, second, -1), share=1.0 - own
-    )
+def with_shares(system: System, before: IntArray, after: IntArray, share: FloatArray) -> System:
+    """The same mesh over time with other arcs beside its nodes."""
+    arcs = system.frame.arcs._replace(before=before, after=after, share=share)
     return system._replace(frame=system.frame._replace(arcs=arcs))
 
 
@@ -317,8 +313,7 @@ def passed_at(system: System, ways: ComplexArray, along: FloatArray) -> ComplexA
     passed = np.full(along.size, ways[-1])
     if isinstance(system.frame, FlowingByArcs):
         arcs = system.frame.arcs
-        shifts = np.append(ways[-1 - arcs.node.size : -1], 0.0)  # the last is that of node 0, whose number is -1
-        nodes = (1.0 - arcs.share) * shifts[arcs.before] + arcs.share * shifts[arcs.after]
+        nodes = shifts_at_nodes(arcs.before, arcs.after, arcs.share, ways[-1 - arcs.node.size : -1])
         ends = np.append(0.0, np.cumsum(system.length))
         nodes = nodes if nodes.size == ends.size else np.append(nodes, nodes[0])
         passed += np.interp(along, ends, nodes.real) + 1j * np.interp(along, ends, nodes.imag)

@@ -18,6 +18,7 @@ import numpy as np
 
 from beltdyn.arrays import FloatArray, IntArray, record
 from beltdyn.kernel import by_type, kernel
+from beltdyn.model.resolution import shifts_at_nodes
 from beltdyn.quadrature import gauss_points
 from beltdyn.system.arrays import System
 from beltdyn.system.state import curve_lengths
@@ -302,15 +303,11 @@ def passed_lengths(frame: Any, positions: FloatArray, elements: int) -> FloatArr
         return np.zeros((len(positions), elements))
     passed = np.repeat(positions[:, frame.place, None], elements, axis=1)
     if isinstance(frame, FlowingByArcs):
-        shifts = positions[:, frame.place - frame.arcs.node.size : frame.place] @ node_shares(frame.arcs).T
+        arcs = frame.arcs
+        own = positions[:, frame.place - arcs.node.size : frame.place]
+        shifts = shifts_at_nodes(arcs.before, arcs.after, arcs.share, own)
         passed += 0.5 * (shifts + np.roll(shifts, -1, axis=1))[:, :elements]
     return passed
-
-
-def node_shares(arcs: ArcMesh) -> FloatArray:
-    """Shares of the shifts of arcs in those of nodes, shape (nodes, P)."""
-    one = np.vstack([np.eye(arcs.node.size), np.zeros(arcs.node.size)])  # of node 0, whose number is -1
-    return np.asarray((1.0 - arcs.share)[:, None] * one[arcs.before] + arcs.share[:, None] * one[arcs.after])
 
 
 @kernel(inline=True)

@@ -429,10 +429,11 @@ class JumpWatch:
 
     def take(self, time: FloatArray, position: FloatArray, centers: FloatArray, places: FloatArray) -> None:
         """Look at k further states: centers of pulleys (k, P, 2) and places of contact points (k, points, 2), m."""
+        passed = passed_lengths(self._system.frame, position, self._system.length.size)
         for row, pulley in enumerate(self._pulleys.tolist()):
-            self._follow(row, time, self._off(pulley, position, places - centers[:, None, pulley]))
+            self._follow(row, time, self._off(pulley, position, passed, places - centers[:, None, pulley]))
 
-    def _off(self, pulley: int, position: FloatArray, places: FloatArray) -> FloatArray:
+    def _off(self, pulley: int, position: FloatArray, passed: FloatArray, places: FloatArray) -> FloatArray:
         """Mean misfit of the teeth in grooves, or of the nearest ones, in pitches, -1/2 to 1/2; shape (k,)."""
         system, row = self._system, self._table[pulley]
         away = places[:, :, 0] ** 2 + places[:, :, 1] ** 2
@@ -440,7 +441,6 @@ class JumpWatch:
         nearest = np.min(away, axis=1, keepdims=True)
         state, point = np.nonzero(away <= np.maximum(reach**2, _BESIDE**2 * nearest))
         angle = row.phase + position[:, system.first_body + pulley]
-        passed = passed_lengths(system.frame, position, system.length.size)
         along = self._along[point] - passed[state, point * system.length.size // self._along.size]
         direction = np.arctan2(places[state, point, 1], places[state, point, 0])
         ahead = (angle[state] - direction + row.rate * along) / row.groove

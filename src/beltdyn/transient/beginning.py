@@ -18,7 +18,7 @@ from beltdyn.observation.compilation import ahead, compile_kernels, compile_run,
 from beltdyn.parts.quantity import number_in
 from beltdyn.parts.text_file import entry_name, shorten
 from beltdyn.results import Run, open_run
-from beltdyn.results.mechanics import MESH_SHARES
+from beltdyn.results.mechanics import MESH_BESIDE
 from beltdyn.results.schema import runs_steadily
 from beltdyn.solvers.generalized_alpha import GeneralizedAlpha
 from beltdyn.solvers.run_progress import Report
@@ -101,14 +101,14 @@ def begin_from(drive: Drive) -> Beginning:
         prepared = prepare(_as_installed(drive, run))
         attributes: dict[str, Any] = {
             name: run.dataset.attrs[name]
-            for name in (DIRECTION, TOOTH_PHASES, MESH_LENGTHS, MESH_SHARES)
+            for name in (DIRECTION, TOOTH_PHASES, MESH_LENGTHS, *MESH_BESIDE)
             if name in run.dataset.attrs
         }
         if prepared.frame.stays:
             direction = np.array(run.dataset.attrs[DIRECTION], dtype=float)
             system = flowing_system(open_ended(prepared, staying_mesh(prepared, run)), direction)
-            if MESH_SHARES in attributes:
-                system = with_shares(system, np.reshape(attributes[MESH_SHARES], (system.nodes, -1)))
+            if set(MESH_BESIDE) <= attributes.keys():
+                system = with_shares(system, *(np.asarray(attributes[name]) for name in MESH_BESIDE))
         else:
             system = turned_by(prepared, drive_system(prepared), attributes.get(TOOTH_PHASES))
         _require_same_mesh(system, run)

@@ -98,12 +98,12 @@ def test_the_mesh_stays_at_arcs_unless_single_teeth_travel() -> None:
 def test_the_carriage_keeps_from_pulleys_by_its_stroke_its_move_or_its_room() -> None:
     """Without stops a driver with prescribed speed moves it by 100 mm; with a torque it may go to the pulleys."""
     assert AXIS.carriage is not None
-    assert prepare(AXIS).reach_of_carriage == (-0.12, 0.12)
+    assert prepare(AXIS).carriage_range == (-0.12, 0.12)
     free = AXIS.replace(carriage=AXIS.carriage.replace(stroke=None))
-    assert prepare(free).reach_of_carriage == pytest.approx((0.0, 0.1), abs=1e-3)
+    assert prepare(free).carriage_range == pytest.approx((0.0, 0.1), abs=1e-3)
     moved = {"name": "motor", "center": [0.0, 0.0], "teeth": 20, "inertia": 1e-5, "torque": 0.1}
     driven = free.replace(pulley=[moved, AXIS.pulleys[1]])
-    assert prepare(driven).reach_of_carriage == free_stroke(AXIS.carriage, driven.path)
+    assert prepare(driven).carriage_range == free_stroke(AXIS.carriage, driven.path)
 
 
 def test_it_is_written_and_read() -> None:

@@ -1,9 +1,10 @@
 """Errors of the mesh: limits of their formulas, and meshes that keep to their limits."""
 
+import numpy as np
 import pytest
 
 from beltdyn.model import ERROR_LIMITS, Drive, Running, elements_needed, install, mesh_errors, unresolved
-from beltdyn.model.resolution import element_angles
+from beltdyn.model.resolution import element_angles, shifts_at_nodes
 
 
 @pytest.fixture(scope="module")
@@ -62,3 +63,10 @@ def test_said_are_errors_and_meshes_from_the_most_demanding_on(drive: Drive) -> 
     (of_tension,) = unresolved(errors, needed, pressures=False)
     assert of_tension.fault == "the belt has too few elements for tension (12%)."
     assert unresolved(dict.fromkeys(ERROR_LIMITS, 0.0), needed, pressures=True) == []
+
+
+def test_shifts_at_nodes_are_those_of_the_arcs_beside_them() -> None:
+    """At an arc its own, between two arcs by the share of the second, and none where nothing goes over."""
+    before, after, share = np.array([-1, 0, 0, 1, 1]), np.array([0, 1, 1, -1, -1]), np.array([0.5, 0.0, 0.25, 0.0, 1.0])
+    found = shifts_at_nodes(before, after, share, np.array([[2.0, 4.0], [0.0, 1.0j]]))
+    np.testing.assert_array_equal(found, [[1.0, 2.0, 2.5, 4.0, 0.0], [0.0, 0.0, 0.25j, 1.0j, 0.0]])
