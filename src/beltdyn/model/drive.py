@@ -349,7 +349,7 @@ class Drive(Part):
             raise ModelError(f"pulley = {pulley!r} is not in this drive. Choose one of {', '.join(names)}.")
         return names.index(str(pulley))
 
-    @property
+    @cached_property
     def driver(self) -> int | None:
         """Number of the driver: the first pulley with prescribed speed, or else with a motor, or else that is held."""
         kinds: tuple[Callable[[Pulley], bool], ...] = (

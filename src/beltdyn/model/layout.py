@@ -27,6 +27,10 @@ from beltdyn.parts.quantity import RPM
 LARGEST_STRAIN = 0.5
 """Of a belt that is laid on its path."""
 _MOST_STEPS = 90
+_FIRST, _LATER, _SHORTEST = 1.0, 0.3, 1e-9
+"""Longest first step of a take-up, and the shortest, over the smallest radius; later ones over the way so far."""
+_BEYOND = 1.01
+"""First step over that of Newton's method, so that the take-up lies within."""
 _LOOKED_AT = 10.0
 """Time over which prescribed speeds must agree at least, s; rounded ones do."""
 _INSTANTS = 101
@@ -249,8 +253,9 @@ def _tightened(given: Given, path: Path) -> Given:
     if abs(lengthens) < LEAST_LEVERAGE:
         raise _no_take_up(given, fixed, "moving it along its direction hardly changes the length of the path")
     here, first, blocked = 0.0, excess(0.0), False
-    step = -float(np.sign(lengthens * first)) * 1e-3 * min(pulley.radius for pulley in given.pulleys)
-    least = 1e-6 * abs(step)
+    radius = min(pulley.radius for pulley in given.pulleys)
+    step = _BEYOND * float(np.clip(-first / lengthens, -_FIRST * radius, _FIRST * radius))
+    least = _SHORTEST * radius
     for _ in range(_MOST_STEPS):
         try:
             if excess(here + step) * first <= 0:
@@ -260,7 +265,8 @@ def _tightened(given: Given, path: Path) -> Given:
             if abs(step) < least:
                 raise _no_take_up(given, fixed, str(error)) from error
             continue
-        here, step = here + step, step if blocked else 1.3 * step
+        here += step
+        step = step if blocked else _LATER * here
     raise _no_take_up(given, fixed, f"none was found within {abs(here):.3g} m")
 
 

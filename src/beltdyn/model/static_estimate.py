@@ -172,6 +172,8 @@ def balance_tensioners(
     none is stable. Weight and dry friction of a tensioner are left out, and so is the effect of wrap angles on
     penetration, which is of the order of penetration over radius. ValueError if there is no balance.
     """
+    if not carriers:
+        return static_estimate(path, belt, contact), np.zeros(0)
     return _balanced(_Layout(path, belt, contact, tuple(carriers)))
 
 

@@ -403,10 +403,10 @@ class Recording:
 
     def _carriage(self, position: FloatArray, velocity: FloatArray) -> Arrays:
         """Way and speed of a carriage, and how far it is ahead of the driver with a belt that does not stretch."""
-        prepared, driver = self._prepared, self._prepared.reference
+        prepared = self._prepared
         if prepared.carriage is None:
             return {}
-        place, speed = position[:, -1:], velocity[:, -1:]
+        place, speed, driver = position[:, -1:], velocity[:, -1:], prepared.reference
         rate = carriage_rate(prepared.carriage, prepared.path, driver)
         ahead = place - rate * position[:, self._system.first_body + driver, None]
         return {"carriage_position": place, "carriage_speed": speed, "carriage_error": ahead}

@@ -5,6 +5,7 @@ A kind that is registered after parts were used changes their fields, and they a
 
 from collections.abc import Callable, Iterable, Iterator
 from dataclasses import dataclass
+from functools import cache
 from typing import Annotated, Any, Literal, NamedTuple, Union, get_args
 
 from pydantic import Field
@@ -80,10 +81,10 @@ class Chosen(NamedTuple):
 
 def chosen_kinds(part: Part) -> Iterator[Chosen]:
     """Kinds that a part and its inner parts have."""
-    for name, field in type(part).model_fields.items():
+    for name, registries in _choices(type(part)).items():
         value = getattr(part, name)
         values = value if isinstance(value, tuple) else (value,)
-        for kinds in _registries((field.annotation, *field.metadata)):
+        for kinds in registries:
             names = (getattr(one, "kind", one) for one in values)
             yield from (Chosen(kinds, str(one)) for one in names if one is not None)
         for inner in values:
@@ -99,6 +100,13 @@ def refuse_kinds_of_scripts(chosen: Iterable[Chosen]) -> None:
                 f"the {kind} is registered by the script itself, which other processes do not run. Move it to a module "
                 "beside the script and import that, or run the drive in this process."
             )
+
+
+@cache
+def _choices(part: type[Part]) -> dict[str, tuple[Registry[Any], ...]]:
+    """Registries from which each field of a part chooses, until a kind is registered."""
+    fields = part.model_fields.items()
+    return {name: tuple(_registries((field.annotation, *field.metadata))) for name, field in fields}
 
 
 def _registries(annotations: Iterable[Any]) -> Iterator[Registry[Any]]:
@@ -122,6 +130,7 @@ def _build_anew() -> None:
     """Build all parts that are in use anew."""
     done = set[Any]()
     forget_schemas()
+    _choices.cache_clear()
     for part in [part for part in _parts(Part) if part.__pydantic_complete__]:
         _build(part, done)
 

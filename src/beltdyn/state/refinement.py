@@ -17,10 +17,12 @@ from beltdyn.state.search import SteadySearch
 from beltdyn.state.staying import (
     FINER,
     MOST_ELEMENTS,
+    Sampled,
     Standing,
     depths,
     found_arcs,
     require_one_pulley_at_a_time,
+    sampled,
     stand,
 )
 from beltdyn.system.arc_mesh import base_coordinates
@@ -56,9 +58,14 @@ class Solution:
     """Of the rims behind the first one, relative."""
 
     @cached_property
+    def places(self) -> Sampled:
+        """Where the belt lies."""
+        return sampled(self.system, self.state.position, self.seen.pulley_center[0])
+
+    @cached_property
     def arcs(self) -> list[Arc]:
         """Where the belt touches pulleys."""
-        return found_arcs(self.system, self.state)
+        return found_arcs(self.system, self.places)
 
 
 class MeshRule(NamedTuple):
@@ -193,9 +200,10 @@ def _kinks(now: Solution) -> list[float]:
 def _solution(search: SteadySearch) -> Solution:
     """Steady running where the search is."""
     system, state = search.constant, search.state
-    require_one_pulley_at_a_time(search.prepared, system, state)
     speeds = np.abs(state.velocity[system.first_body :][: system.pulleys.size] * system.rims.radius)
-    return Solution(system, state, _seen(system, state), 1.0 - speeds / speeds[0])
+    found = Solution(system, state, _seen(system, state), 1.0 - speeds / speeds[0])
+    require_one_pulley_at_a_time(search.prepared, system, found.places)
+    return found
 
 
 def _seen(system: System, state: State) -> Observations:
@@ -254,4 +262,4 @@ def _differences(before: Solution, after: Solution) -> dict[str, float]:
 def _depth(solution: Solution, along: FloatArray) -> FloatArray:
     """Depth of points of the belt in whatever pulley is deepest, m; negative outside."""
     places = centreline_places(solution.system, solution.state.position, along)
-    return np.asarray(depths(solution.system, solution.state, places).max(axis=0))
+    return np.asarray(depths(solution.system, solution.seen.pulley_center[0], places).max(axis=0))

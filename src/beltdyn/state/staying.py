@@ -21,7 +21,6 @@ from beltdyn.system.build_machines import with_resistance
 from beltdyn.system.constant_drive import without_motion
 from beltdyn.system.frame import centreline_places, centreline_points
 from beltdyn.system.meshing import fit_phases, has_teeth, unloaded, with_softer_teeth
-from beltdyn.system.moving_center import pulley_center
 from beltdyn.system.observations import Observations
 from beltdyn.system.state import State, at_rest, nodal_coordinates, point_coordinates
 from beltdyn.system.steady_assembly import Anchor, anchor_at
@@ -241,9 +240,26 @@ def _lying(prepared: Prepared, system: System, factor: float) -> State:
     return laid_state(laid, system, prepared.installation.tensioner_positions)
 
 
-def found_arcs(system: System, state: State) -> list[Arc]:
+class Sampled(NamedTuple):
+    """Places along the belt, closer than its nodes."""
+
+    along: FloatArray
+    """Along the belt, m, shape (k,)."""
+    depth: FloatArray
+    """How deep they lie within each pulley, m, shape (P, k)."""
+
+
+def sampled(system: System, position: FloatArray, centers: FloatArray) -> Sampled:
+    """Where a belt lies at a position, with centers (P, 2) of pulleys, m."""
+    ends = np.cumsum(system.length)
+    parts = np.arange(_SAMPLES) / _SAMPLES
+    along = ((ends - system.length)[:, None] + system.length[:, None] * parts).ravel()
+    return Sampled(along, depths(system, centers, centreline_places(system, position, along)))
+
+
+def found_arcs(system: System, places: Sampled) -> list[Arc]:
     """Where the belt touches pulleys, in the order in which they follow each other along the belt."""
-    along, away = _sampled(system, state)
+    along, away = places
     found, nips = list[Arc](), list[tuple[float, float]]()
     for depth, radius, beside in zip(away, system.rims.radius, system.pulleys.beside, strict=True):
         touching = np.flatnonzero(depth >= 0.0)
@@ -258,9 +274,9 @@ def found_arcs(system: System, state: State) -> list[Arc]:
     return sorted(arc._replace(nips=tuple(one for one in nips if arc.start < one[0] < arc.end)) for arc in found)
 
 
-def require_one_pulley_at_a_time(prepared: Prepared, system: System, state: State) -> None:
+def require_one_pulley_at_a_time(prepared: Prepared, system: System, places: Sampled) -> None:
     """Refuse a state in which the belt around one pulley touches another one."""
-    touched = ((_sampled(system, state)[1] >= 0.0) & (system.pulleys.beside == 0)[:, None]).astype(int)
+    touched = ((places.depth >= 0.0) & (system.pulleys.beside == 0)[:, None]).astype(int)
     pairs = np.argwhere(np.triu(touched @ touched.T, 1))
     if pairs.size:
         first, second = (prepared.pulleys[number].name for number in pairs[0].tolist())
@@ -270,19 +286,8 @@ def require_one_pulley_at_a_time(prepared: Prepared, system: System, state: Stat
         )
 
 
-def _sampled(system: System, state: State) -> tuple[FloatArray, FloatArray]:
-    """Places along the belt, m, shape (k,), and how deep they lie within each pulley, m, shape (P, k)."""
-    ends = np.cumsum(system.length)
-    parts = np.arange(_SAMPLES) / _SAMPLES
-    along = ((ends - system.length)[:, None] + system.length[:, None] * parts).ravel()
-    return along, depths(system, state, centreline_places(system, state.position, along))
-
-
-def depths(system: System, state: State, places: FloatArray) -> FloatArray:
-    """How deep places (k, 2) lie within each pulley, m, negative outside, shape (P, k)."""
-    centers = np.array(system.pulleys.center)
-    for carried in np.flatnonzero(system.pulleys.carrier >= 0).tolist():
-        centers[carried] = pulley_center(system, carried, state.position)
+def depths(system: System, centers: FloatArray, places: FloatArray) -> FloatArray:
+    """How deep places (k, 2) lie within each pulley, of centers (P, 2), m, negative outside, shape (P, k)."""
     away = np.hypot(*(places[:, axis] - centers[:, axis, None] for axis in range(2)))
     return np.asarray(system.rims.radius[:, None] - away)
 

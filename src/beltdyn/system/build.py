@@ -13,7 +13,7 @@ from beltdyn.contact.friction import ForceSlope, as_common
 from beltdyn.contact.law import ContactLaw
 from beltdyn.contact.normal import NoPull
 from beltdyn.contact.surface import KINDS, SHAPES, RoundRims, ShapedRims
-from beltdyn.elements.quintic import QUINTIC, Quintic
+from beltdyn.elements.quintic import Quintic
 from beltdyn.errors import ModelError
 from beltdyn.machines import Goods, Tensioner
 from beltdyn.model import Belt, Contact, Path, Prepared, Pulley
@@ -269,10 +269,6 @@ def nodal_supports(
     return Supports(held.ravel(), bool(held.any()), force.ravel(), moment)
 
 
-_STAYING_ELASTIC, _STAYING_CONTACT = 8, 12
-"""Gauss points of an element that stays, for elastic forces and for contact."""
-_AXIS_ELASTIC, _AXIS_CONTACT = 5, 8
-"""The same of an axis, a quarter quicker; the way of a carriage changes by a micrometer."""
 HELD = ((0, 0), (0, 1), (-1, 0), (-1, 1))
 """Nodes and coordinates that the ends of a web line hold."""
 
@@ -281,7 +277,7 @@ def staying_system(prepared: Prepared, lengths: FloatArray) -> System:
     """Arrays of a drive on a staying mesh of quintic elements with hysteresis, without flow."""
     if prepared.carriage is not None:
         return axis_by_arcs(prepared, axis_system(prepared, lengths))
-    belt, contact = _staying_belt(prepared, lengths.size), _staying_contact(prepared)
+    belt, contact = prepared.on_staying_mesh
     if prepared.ends:
         system = system_of(prepared, belt, contact, "open", lengths=lengths, fixed=HELD)
         return _as_web(prepared, system._replace(frame=staying(system.control, system.length, belt.mass_per_length)))
@@ -293,7 +289,7 @@ def staying_system(prepared: Prepared, lengths: FloatArray) -> System:
 
 def axis_system(prepared: Prepared, lengths: FloatArray) -> System:
     """Arrays of an axis on the elements of a staying mesh, whose nodes are material points yet."""
-    belt, contact = _staying_belt(prepared, lengths.size, _AXIS_ELASTIC), _staying_contact(prepared, _AXIS_CONTACT)
+    belt, contact = prepared.on_staying_mesh
     smooth = system_of(prepared, belt, contact, "open", lengths=lengths, **_at_ends(prepared))
     return with_carriage(prepared, with_teeth(prepared, _losing_at_points(prepared, smooth)))
 
@@ -317,7 +313,7 @@ def on_other_mesh(prepared: Prepared, system: System, lengths: FloatArray) -> Sy
         given = ("law", "profiles", "shaft_loads", "bodies", "tensioners")
         other = staying_system(prepared, lengths)._replace(**{name: getattr(system, name) for name in given})
         return other._replace(carriage=other.carriage._replace(ends=system.carriage.ends))
-    belt = _staying_belt(prepared, lengths.size)
+    belt, _ = prepared.on_staying_mesh
     mesh = discretize(belt, lengths)
     passing = passing_strains(prepared) if belt.has_hysteresis else None
     supports = nodal_supports(lengths.size, len(mesh.scale), (), (), ())
@@ -337,22 +333,6 @@ def on_other_mesh(prepared: Prepared, system: System, lengths: FloatArray) -> Sy
 def _as_web(prepared: Prepared, system: System) -> System:
     """The arrays of an open belt as those of a web line."""
     return web_line(system, web_ends(prepared), np.array([0.0, 1.0, 2.0, 0.0, 1.0, 2.0]))
-
-
-def _staying_contact(prepared: Prepared, points: int = _STAYING_CONTACT) -> Contact:
-    """The contact of a drive on a staying mesh, with Gauss points of an element."""
-    return prepared.contact.replace(sampling="distributed", integration="zone", quadrature_points=points)
-
-
-def _staying_belt(prepared: Prepared, elements: int, points: int = _STAYING_ELASTIC) -> Belt:
-    """The belt of a drive on a staying mesh; it has hysteresis of bending point by point, apart."""
-    return prepared.belt.replace(
-        discretization=QUINTIC.name,
-        elements=elements,
-        integration="full",
-        quadrature_points=points,
-        bending_loss_factor=0.0,
-    )
 
 
 def _losing_at_points(prepared: Prepared, system: System) -> System:

@@ -73,6 +73,14 @@ def pulley_center(system: System, pulley: int, position: FloatArray) -> tuple[fl
     return float(center.x), float(center.y)
 
 
+def pulley_centers(system: System, position: FloatArray) -> FloatArray:
+    """Where the shafts of all pulleys are at a position of shape (n N + D,), m, shape (P, 2)."""
+    centers = np.array(system.pulleys.center)
+    for carried in np.flatnonzero(system.pulleys.carrier >= 0).tolist():
+        centers[carried] = pulley_center(system, carried, position)
+    return centers
+
+
 def pulley_speeds(system: System, velocity: FloatArray) -> FloatArray:
     """Speeds of all rims, rad/s, shape (..., pulleys), from the rates of states, shape (..., n N + D)."""
     return velocity[..., system.first_body : system.first_body + len(system.pulleys)]

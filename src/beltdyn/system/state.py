@@ -38,10 +38,14 @@ def discretize(belt: Belt, lengths: FloatArray | None = None) -> Discretization:
     length = (
         np.full(belt.given_elements, whole / belt.given_elements) if lengths is None else np.asarray(lengths, float)
     )
-    if length.size != belt.given_elements or length.min() <= 0.0 or not np.isclose(length.sum(), whole, rtol=1e-9):
+    if (
+        belt.elements not in (None, length.size)
+        or length.min() <= 0.0
+        or not np.isclose(length.sum(), whole, rtol=1e-9)
+    ):
         raise ModelError(
             f"{length.size} elements, the shortest {length.min():g} m long and {length.sum():.10g} m in "
-            f"total, do not match belt.elements = {belt.given_elements} and belt.length = {whole:.10g} "
+            f"total, do not match belt.elements = {belt.elements} and belt.length = {whole:.10g} "
             "m. Give each element a positive length, with the belt length as their sum."
         )
     return Discretization(

@@ -17,6 +17,7 @@ from beltdyn.system.arc_mesh import passed_at
 from beltdyn.system.arrays import Carrying
 from beltdyn.system.constant_drive import rim_of_bodies
 from beltdyn.system.frame import centreline_points
+from beltdyn.system.moving_center import pulley_centers
 
 _POINTS = 6
 """Gauss points of an element."""
@@ -111,7 +112,7 @@ def belt_points(motions: SmallMotions) -> Points:
     along = (starts[:, None] + np.outer(system.length, quadrature.points)).ravel()
     place, slope, _ = centreline_points(system, motions.state.position, along)
     path = motions.prepared.path
-    deep = depths(system, motions.state, place)[path.on]
+    deep = depths(system, pulley_centers(system, motions.state.position), place)[path.on]
     touched = np.where(deep.max(axis=0) >= 0.0, deep.argmax(axis=0), -1)  # the span that leaves has the same number
     last = np.maximum.accumulate(np.where(touched >= 0, np.arange(touched.size), -1))
     before = touched[touched >= 0][-1] if path.ends is None else path.spans - 1
