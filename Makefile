@@ -8,6 +8,11 @@ SHIPPED := src/beltdyn/kernel/shipped
 PARALLEL := --numprocesses auto --dist worksteal
 BY_FILE := --numprocesses auto --dist loadfile
 
+# processes that tests start would read all sources anew
+unexport PYTHONDONTWRITEBYTECODE
+# a process for each core leaves none to threads
+quick validate: export OPENBLAS_NUM_THREADS := 1
+
 help: ## list the targets
 	@grep -hE '^[a-z]+:.*##' $(MAKEFILE_LIST) | sed -E 's/:.*## /\t/' | expand -t 12
 

@@ -4,6 +4,7 @@ The numbers are listed by ``pytest -v`` at the end.  In the result the belt of a
 creep, without vibration.
 """
 
+import gc
 import json
 from collections.abc import Callable, Iterator, Sequence
 from pathlib import Path
@@ -37,6 +38,14 @@ STATISTICS = {
     "wall_time": 0.5,
     "compile_time": 2.5,
 }
+
+gc.disable()  # what collection makes stays to the end: to look through it again and again takes a tenth of all the time
+
+
+def pytest_collection_finish() -> None:
+    gc.freeze()
+    gc.set_threshold(20_000, 10, 10)
+    gc.enable()
 
 
 def pytest_addoption(parser: pytest.Parser) -> None:
@@ -158,6 +167,12 @@ def run(make_run: Callable[..., Run]) -> Iterator[Run]:
     attributes = dict(made.dataset.attrs)
     yield made
     assert made.dataset.attrs == attributes, "a test has changed the attributes of the shared run"
+
+
+@pytest.fixture(scope="session")
+def saved_run(run: Run, tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """The file of that run, to be copied: to write it takes longer than what most tests do with it."""
+    return run.save(tmp_path_factory.mktemp("saved") / "run.nc")
 
 
 def _outputs(drive: Drive, layout: Layout, time: FloatArray) -> Arrays:

@@ -27,7 +27,9 @@ def path(*circles: tuple[float, float, float]) -> Path:
     return Path(table[:, :2], table[:, 2])
 
 
-@LAYOUTS
+@pytest.mark.parametrize(
+    "circles", [IDLER, *(pytest.param(one, marks=pytest.mark.slow) for one in (THREE, CROSSED, SERPENTINE))]
+)
 def test_a_taut_string_finds_the_path(circles: tuple[tuple[float, float, float], ...]) -> None:
     """A closed polygon that shortens while its corners stay out of the circles ends on the path.
 

@@ -173,7 +173,9 @@ def test_a_drive_is_laid_out_from_an_empty_canvas_and_saved(workspace: Workspace
     go(workspace, journey)
 
 
-@pytest.mark.parametrize("kind", ["rotary", "sliding", "fixed"])
+@pytest.mark.parametrize(
+    "kind", ["rotary", *(pytest.param(kind, marks=pytest.mark.slow) for kind in ("sliding", "fixed"))]
+)
 def test_tensioners_are_set_up_in_the_form(workspace: Workspace, kind: str) -> None:
     async def journey(user: User) -> None:
         user.find(marker="tab:tensioner").click()

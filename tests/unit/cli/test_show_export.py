@@ -1,5 +1,6 @@
 """`beltdyn export`, and what it refuses."""
 
+import shutil
 from collections.abc import Callable
 from pathlib import Path
 
@@ -11,9 +12,14 @@ RunMain = Callable[[list[str]], tuple[int, str, str]]
 Refuse = Callable[[list[str]], str]
 
 
+@pytest.fixture(scope="module")
+def short(make_run: Callable[..., Run], tmp_path_factory: pytest.TempPathFactory) -> Path:
+    return make_run(11).save(tmp_path_factory.mktemp("short") / "drive.nc")
+
+
 @pytest.fixture
-def result_file(make_run: Callable[..., Run], tmp_path: Path) -> Path:
-    return make_run(11).save(tmp_path / "drive.nc")
+def result_file(short: Path, tmp_path: Path) -> Path:
+    return Path(shutil.copy(short, tmp_path))
 
 
 @pytest.mark.slow

@@ -1,6 +1,7 @@
 """`beltdyn report` and `--report`, and what they refuse."""
 
 import importlib
+import shutil
 from collections.abc import Callable
 from pathlib import Path
 
@@ -15,8 +16,8 @@ Refuse = Callable[[list[str]], str]
 
 
 @pytest.fixture
-def result_file(run: Run, tmp_path: Path) -> Path:
-    return run.save(tmp_path / "drive.nc")
+def result_file(saved_run: Path, tmp_path: Path) -> Path:
+    return Path(shutil.copy(saved_run, tmp_path / "drive.nc"))
 
 
 @pytest.fixture

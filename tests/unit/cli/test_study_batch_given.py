@@ -1,5 +1,6 @@
 """Files of commands: drives, and runs that stand for them."""
 
+import shutil
 from collections.abc import Callable, Mapping
 from pathlib import Path
 from typing import Any
@@ -14,9 +15,9 @@ from beltdyn.results import Run
 
 
 @pytest.fixture
-def files(run: Run, drive_text: str, tmp_path: Path) -> list[Path]:
+def files(saved_run: Path, drive_text: str, tmp_path: Path) -> list[Path]:
     """Two runs, and a drive file."""
-    found = [run.save(tmp_path / name) for name in ("one.nc", "two.nc")]
+    found = [Path(shutil.copy(saved_run, tmp_path / name)) for name in ("one.nc", "two.nc")]
     drive = tmp_path / "three.toml"
     drive.write_text(drive_text, encoding="utf-8")
     return [*found, drive]

@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 from beltdyn.model import Drive
-from beltdyn.results import FileRecorder, Layout, Run
+from beltdyn.results import Run
 
 RunMain = Callable[[list[str]], tuple[int, str, str]]
 Refuse = Callable[[list[str]], str]
@@ -60,13 +60,8 @@ def test_bad_sweeps(refuse: Refuse, drive_file: Path, changes: dict[str, str], m
 
 
 @pytest.fixture
-def result_file(
-    tmp_path: Path, layout: Layout, attributes: Any, make_chunk: Callable[..., Any], statistics: Any
-) -> Path:
-    recorder = FileRecorder(tmp_path / "result.nc", layout, attributes)
-    recorder.append(make_chunk(np.linspace(0.0, 1.0, 101)))
-    recorder.close("completed", statistics)
-    return recorder.path
+def result_file(saved_run: Path, tmp_path: Path) -> Path:
+    return Path(shutil.copy(saved_run, tmp_path / "result.nc"))
 
 
 def test_chosen_figures_of_one_pulley(run_main: RunMain, result_file: Path) -> None:

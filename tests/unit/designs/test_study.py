@@ -106,7 +106,7 @@ def test_nothing_is_computed_twice(study_file: Path, tmp_path: Path, monkeypatch
     assert len(computed) == 3 + 4
 
 
-@pytest.mark.parametrize("row", [1, 4, 9])
+@pytest.mark.parametrize("row", [4, *(pytest.param(one, marks=pytest.mark.slow) for one in (1, 9))])
 def test_a_damaged_row_is_computed_again(
     row: int, study_file: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:

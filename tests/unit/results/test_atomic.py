@@ -33,7 +33,7 @@ REGULAR = (make_text, make_foreign_hdf5, make_empty)
 
 @pytest.mark.parametrize("make", REGULAR)
 def test_only_results_are_replaced(
-    tmp_path: Path, layout: Layout, attributes: Any, make_chunk: Callable[..., Any], make: Callable[[Path], None]
+    tmp_path: Path, layout: Layout, attributes: Any, make: Callable[[Path], None]
 ) -> None:
     path = tmp_path / "mine"
     make(path)
@@ -41,6 +41,13 @@ def test_only_results_are_replaced(
     with pytest.raises(ModelError, match=r"mine already exists and was not written by beltdyn.*--force"):
         FileRecorder(path, layout, attributes)
     assert path.read_bytes() == before
+
+
+def test_results_are_replaced_and_other_files_with_force(
+    tmp_path: Path, layout: Layout, attributes: Any, make_chunk: Callable[..., Any]
+) -> None:
+    path = tmp_path / "mine"
+    make_text(path)
     for overwrite in (True, False):  # a result now
         recorder = FileRecorder(path, layout, attributes, overwrite)
         recorder.append(make_chunk(np.arange(3.0)))

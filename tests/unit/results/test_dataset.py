@@ -3,6 +3,7 @@
 import gzip
 from collections.abc import Callable
 from pathlib import Path
+from typing import Any
 
 import h5py
 import matplotlib.pyplot as plt
@@ -18,6 +19,11 @@ KEPT = Path(__file__).parent / "kept" / "format_1_0.nc.gz"
 """The paper's drive with 16 elements, 81 outputs in 0.12 s, written by the first version with a format."""
 
 EXTRA = [name for name, variable in (VARIABLES | COORDINATES).items() if not variable.core]
+
+
+def slow(*names: str) -> list[Any]:
+    """Further names, of which the same is told; with these files alone readers look for lengths in all variables."""
+    return [pytest.param(name, marks=pytest.mark.slow) for name in names]
 
 
 @pytest.fixture
@@ -89,7 +95,7 @@ def test_a_file_with_the_core_alone_is_summed_up_drawn_and_tabled(kept: Path, ch
     plt.close("all")
 
 
-@pytest.mark.parametrize("figure", ["wear_by_arc", "wear_by_belt", "mid_spans", "tension_spectrum"])
+@pytest.mark.parametrize("figure", ["wear_by_arc", *slow("wear_by_belt", "mid_spans", "tension_spectrum")])
 def test_what_a_file_does_not_hold_is_named(change: Callable[..., Path], tmp_path: Path, figure: str) -> None:
     run = open_run(change(take_extras))
     with pytest.raises(ModelError, match=r"has no `\w+`: .* Run the drive again"):
@@ -107,7 +113,7 @@ def test_more_than_is_known_is_kept(change: Callable[..., Path]) -> None:
     assert summarize(run).outputs == 81
 
 
-@pytest.mark.parametrize("name", ["span_tension", "node_coordinate", "kinetic_energy"])
+@pytest.mark.parametrize("name", ["span_tension", *slow("node_coordinate", "kinetic_energy")])
 def test_a_file_without_a_part_of_the_core_is_refused(change: Callable[..., Path], name: str) -> None:
     with pytest.raises(ModelError, match=rf"is incomplete: it has no `{name}`\. Run the drive again"):
         open_run(change(lambda file: take(file, name)))
@@ -131,7 +137,7 @@ def test_a_format_that_is_no_version_is_damage(change: Callable[..., Path]) -> N
         open_run(change(lambda file: file.attrs.update(format="new")))
 
 
-@pytest.mark.parametrize("name", ["time", "field_time", "filtered_time"])
+@pytest.mark.parametrize("name", ["field_time", *slow("time", "filtered_time")])
 def test_instants_that_do_not_grow_are_damage(change: Callable[..., Path], name: str) -> None:
     def repeat(file: h5py.File) -> None:
         file[name][3] = file[name][2]

@@ -92,7 +92,7 @@ def test_files_of_any_limited_size(tmp_path: Path, layout: Layout, largest_file:
             fill(tmp_path / "result.nc", layout)
 
 
-@pytest.mark.parametrize("size", [64, 1000, 3000])
+@pytest.mark.parametrize("size", [64, 1000, pytest.param(3000, marks=pytest.mark.slow)])
 def test_small_disks(tmp_path: Path, layout: Layout, size: int) -> None:
     with small_disk(tmp_path / "disk", size) as disk:
         fill(disk / "result.nc", layout)

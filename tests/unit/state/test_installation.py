@@ -94,7 +94,7 @@ BENDING: dict[str, Callable[[int], Drive]] = {
 }
 
 
-@pytest.mark.parametrize("elements", [24, FINE])
+@pytest.mark.parametrize("elements", [24, pytest.param(FINE, marks=pytest.mark.slow)])
 @pytest.mark.parametrize("case", BENDING)
 def test_the_tension_that_is_asked_for_is_there(case: str, elements: int, measured: Callable[..., None]) -> None:
     """Without the statics it was missed by up to 16 %: the closed form leaves out bending."""
@@ -233,8 +233,10 @@ def test_a_belt_as_long_as_its_path_has_a_tension(bending: float, mass: float, c
     assert bring_to_rest(reached).tension == pytest.approx(1.01 * least, rel=ASKED)
 
 
-@pytest.mark.parametrize("stiffness", [1e8, 1e11])
-@pytest.mark.parametrize("elements", [9, 20])
+@pytest.mark.parametrize(
+    ("elements", "stiffness"),
+    [(9, 1e11), *(pytest.param(*one, marks=pytest.mark.slow) for one in ((9, 1e8), (20, 1e8), (20, 1e11)))],
+)
 def test_spans_of_coarse_meshes_have_a_tension(elements: int, stiffness: float) -> None:
     """Hard pulleys are touched between the points of contact alone, which left spans without a tension (nan)."""
     belt = LAYOUT_BELT | {"thickness": 0.01, "width": 0.01, "bending_factor": 0.01, "elements": elements}

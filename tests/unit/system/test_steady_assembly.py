@@ -37,14 +37,13 @@ def residual(system: System, state: State, anchor: Anchor, work: SteadyWork, wan
     return np.concatenate([matrix.node_side.ravel(), matrix.border_side])
 
 
-@pytest.mark.parametrize("tensioner", ["rotary", "sliding"])
 @pytest.mark.parametrize(
-    ("law", "losses"),
+    ("tensioner", "law", "losses"),
     [
-        ("force_slope", {}),
-        ("relative_creep", {}),
-        ("coefficient_slope", {"stretch_damping_time": 1e-5, "bending_damping_time": 1e-2}),
-        ("force_slope", {"stretch_loss_factor": 0.1, "bending_loss_factor": 0.3}),
+        ("rotary", "force_slope", {}),
+        ("sliding", "relative_creep", {}),
+        ("rotary", "coefficient_slope", {"stretch_damping_time": 1e-5, "bending_damping_time": 1e-2}),
+        ("sliding", "force_slope", {"stretch_loss_factor": 0.1, "bending_loss_factor": 0.3}),
     ],
 )
 def test_tangent(with_machines: Callable[[str], Drive], tensioner: str, law: str, losses: dict[str, float]) -> None:

@@ -115,7 +115,12 @@ def test_the_drive_of_a_run_begins_in_it_too(whole: Run) -> None:
 
 
 @pytest.mark.parametrize(
-    "changes", [{"belt.mass_per_length": 0.2}, {"contact.stiffness": 1e8}, {"gravity": (0.0, -9.81)}]
+    "changes",
+    [
+        {"belt.mass_per_length": 0.2},
+        pytest.param({"contact.stiffness": 1e8}, marks=pytest.mark.slow),
+        pytest.param({"gravity": (0.0, -9.81)}, marks=pytest.mark.slow),
+    ],
 )
 def test_what_must_agree(whole: Run, given: Drive, changes: dict[str, object]) -> None:
     other = given.with_({**changes, "simulation.start": {"file": str(whole.path)}})

@@ -1,6 +1,7 @@
 """Verified: steady running on a mesh that stays, against an independent code and against long runs over time."""
 
 from collections.abc import Callable
+from functools import cache
 from importlib.resources import files
 
 import numpy as np
@@ -36,6 +37,7 @@ INDEPENDENT = {
 passes (m/s), torque of the driver (N m), largest normal forces on driver and driven pulley (N/m), tensions (N)."""
 
 
+@cache
 def example(name: str) -> Drive:
     return bd.load(str(files("beltdyn") / "examples" / f"{name}.toml"))
 
@@ -137,8 +139,11 @@ def peaks(run: bd.Run, pulleys: int) -> list[float]:
 
 SHOWN = [pytest.param(name, marks=[pytest.mark.slow] * example(name).carries) for name in EXAMPLES]
 """All of them; belts that carry have kernels of their own."""
+QUICK = ("crossed_belt", "tensioner_stop", "timing_drive", "two_pulley", "washing_machine")
 STEADY = [
-    one for one in SHOWN if one.values[0] not in ("servo_axis", "slip_through") and not example(str(one.values[0])).ends
+    pytest.param(one.values[0], marks=[pytest.mark.slow] * (one.values[0] not in QUICK))
+    for one in SHOWN
+    if one.values[0] not in ("servo_axis", "slip_through") and not example(str(one.values[0])).ends
 ]
 
 

@@ -345,10 +345,7 @@ def reported(tmp_path_factory: pytest.TempPathFactory) -> Reported:
 
 @pytest.mark.parametrize(
     "kind",
-    [
-        pytest.param(kind, marks=() if kind in ("steady", "map", "sheet", "modes") else pytest.mark.slow)
-        for kind in MAKERS
-    ],
+    [pytest.param(kind, marks=() if kind in ("steady", "sheet", "modes") else pytest.mark.slow) for kind in MAKERS],
 )
 def test_a_report_has_what_matters(kind: str, reported: Reported) -> None:
     _, words, charts = MAKERS[kind]
