@@ -23,8 +23,11 @@ EXAMPLES = [
     for example in _FINDER.find(importlib.import_module(name), module=None)
     if example.examples and example.name.startswith(name)
 ]
-COSTLY = ("transmission_error", "stroke", "carriage_error")
-"""Examples of toothed belts, for which kernels are compiled."""
+COSTLY = (
+    *("transmission_error", "stroke", "carriage_error"),
+    *("calibrate.calibrate", "write_report", "line_tensions", "sheet_tensions", "sheet_slip_safety"),
+)
+"""Examples of toothed belts, for which kernels are compiled, and of analyses that have quick tests of their own."""
 
 
 @pytest.fixture(scope="module")

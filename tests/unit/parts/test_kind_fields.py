@@ -77,13 +77,10 @@ def own(drive: Drive) -> Drive:
     )
 
 
-def test_own_laws_take_their_keys(own: Drive) -> None:
+def test_own_laws_take_their_keys_and_a_drive_file_holds_them(own: Drive) -> None:
     friction, stretch = cast(Slope, own.contact.friction_parameters), cast(Cubic, own.belt.stretch_parameters)
     assert friction == Slope(3e4, 0.5)
     assert stretch == Cubic(own.belt.youngs_modulus * own.belt.area, 30.0, 2000.0)
-
-
-def test_a_drive_file_holds_own_kinds(own: Drive) -> None:
     text = bd.dumps(own)
     assert 'stretch_law = "cubic"' in text
     assert bd.loads(text) == own
@@ -121,7 +118,7 @@ def test_parts_from_before_lack_the_keys(drive: Drive, own: Drive) -> None:
     assert drive.contact.replace(friction=0.2).friction == 0.2
 
 
-def test_the_kinds_of_a_drive_are_found(drive: Drive, own: Drive) -> None:
+def test_the_kinds_of_a_drive_are_found_and_go_to_other_processes(drive: Drive, own: Drive) -> None:
     assert {str(kind) for kind in own.own_kinds} == {
         'friction law "sloped"',
         'stretch law "cubic"',
@@ -129,9 +126,6 @@ def test_the_kinds_of_a_drive_are_found(drive: Drive, own: Drive) -> None:
     }
     assert 'integrator "generalized_alpha"' in map(str, chosen_kinds(drive))
     assert drive.own_kinds == []
-
-
-def test_a_drive_takes_the_modules_of_its_kinds_to_other_processes(own: Drive) -> None:
     function, arguments = own.__reduce__()
     assert arguments == (own.text, (__name__,))
     assert pickle.loads(pickle.dumps(own)) == own

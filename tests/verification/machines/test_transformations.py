@@ -9,6 +9,7 @@ steps rounding has no choices to turn, and what is left is how contact, friction
 
 import re
 from collections.abc import Callable
+from functools import cache
 from typing import Any
 
 import numpy as np
@@ -24,6 +25,7 @@ from beltdyn.model import Drive, Path, install, loads
 Data = dict[str, Any]
 Make = Callable[..., Drive]
 Measured = Callable[..., None]
+Reference = Callable[[float], xr.Dataset]
 
 ELEMENTS, ARC, OFFSET = 60, 12, 19
 """Elements of the belt, on the crank, and from there to where the belt leaves the compressor."""
@@ -126,8 +128,9 @@ SCALARS = (
 
 
 @pytest.fixture(scope="module")
-def references(build: Callable[[Data], Drive], places: tuple[float, float]) -> dict[float, xr.Dataset]:
-    return {sense: simulate(build(data(*places, sense))).dataset for sense in (1.0, -1.0)}
+def reference(build: Callable[[Data], Drive], places: tuple[float, float]) -> Reference:
+    """The run in a sense."""
+    return cache(lambda sense: simulate(build(data(*places, sense))).dataset)
 
 
 def difference(values: NDArray[Any], expected: NDArray[Any]) -> float:
@@ -138,17 +141,17 @@ def difference(values: NDArray[Any], expected: NDArray[Any]) -> float:
 def test_results_follow(
     build: Callable[[Data], Drive],
     places: tuple[float, float],
-    references: dict[float, xr.Dataset],
+    reference: Reference,
     measured: Measured,
     case: str,
 ) -> None:
     sense, change, order, spans, frame, sign = CASES[case]
-    reference, run = references[sense], simulate(build(change(*places))).dataset
-    found = {name: difference(run[name].values, reference[name].values) for name in SCALARS}
+    other, run = reference(sense), simulate(build(change(*places))).dataset
+    found = {name: difference(run[name].values, other[name].values) for name in SCALARS}
     for names, factor in ((SIGNED, sign), (PLAIN, 1.0)):
-        found |= {name: difference(run[name].values, factor * reference[name].values[:, order]) for name in names}
-    found["hub_force"] = difference(run.hub_force.values, reference.hub_force.values[:, order] @ frame.T)
-    found["span_tension"] = difference(run.span_tension.values, reference.span_tension.values[:, spans])
+        found |= {name: difference(run[name].values, factor * other[name].values[:, order]) for name in names}
+    found["hub_force"] = difference(run.hub_force.values, other.hub_force.values[:, order] @ frame.T)
+    found["span_tension"] = difference(run.span_tension.values, other.span_tension.values[:, spans])
     worst = max(found, key=lambda name: found[name])
     measured(worst=found[worst], speeds=found["shaft_speed"], tensions=found["span_tension"], hubs=found["hub_force"])
     assert found[worst] < ROUNDING, found
@@ -156,7 +159,7 @@ def test_results_follow(
 
 @pytest.mark.slow
 def test_nodes_elsewhere(
-    build: Callable[..., Drive], places: tuple[float, float], references: dict[float, xr.Dataset], measured: Measured
+    build: Callable[..., Drive], places: tuple[float, float], reference: Reference, measured: Measured
 ) -> None:
     """Named from the alternator on, the drive has its nodes elsewhere, and differs less than from one of half the mesh.
 
@@ -170,7 +173,7 @@ def test_nodes_elsewhere(
     apart = np.linalg.norm(fine.node_position.values[0] - run.node_position.values[0, :1], axis=1).min()
     names = ("shaft_speed", "span_tension", "wrap_angle", "hub_force")
     found = {name: difference(run[name].values, fine[name].values[:, order]) for name in names}
-    mesh = {name: difference(references[1.0][name].values, fine[name].values) for name in names}
+    mesh = {name: difference(reference(1.0)[name].values, fine[name].values) for name in names}
     measured(apart=apart, **found)
     measured(**{f"mesh_{name}": value for name, value in mesh.items()})
     assert apart > 1e-3
@@ -179,16 +182,18 @@ def test_nodes_elsewhere(
         assert found[name] < 5e-3
 
 
-def test_the_run_has_all_that_it_should(references: dict[float, xr.Dataset]) -> None:
+@pytest.mark.slow
+def test_the_run_has_all_that_it_should(reference: Reference) -> None:
     """Equal steps, a clutch that overruns and drives, a tensioner that moves, and two runs that differ."""
-    for sense, run in references.items():
+    runs = {sense: reference(sense) for sense in (1.0, -1.0)}
+    for sense, run in runs.items():
         np.testing.assert_allclose(run.step_size[2:], 2.5e-5, rtol=1e-6)
         ahead = sense * (run.shaft_speed - run.pulley_speed).values[:, 2]
         assert ahead.max() > 1.0
         assert ahead.min() < 0.0
         assert float(run.coupling_loss[-1]) > 0.0
         assert np.ptp(run.tensioner_position.values) > 0.01
-    speeds = [run.shaft_speed.values[:, 2] for run in references.values()]
+    speeds = [run.shaft_speed.values[:, 2] for run in runs.values()]
     assert difference(-speeds[1], speeds[0]) > 0.01
 
 
@@ -219,14 +224,15 @@ def in_other_units(text: str) -> str:
     return "\n".join(lines)
 
 
+@pytest.mark.slow
 def test_units(
-    build: Callable[[Data], Drive], places: tuple[float, float], references: dict[float, xr.Dataset], measured: Measured
+    build: Callable[[Data], Drive], places: tuple[float, float], reference: Reference, measured: Measured
 ) -> None:
     """A drive file with other units, which are turned into SI by factors that round."""
     text = in_other_units(build(data(*places)).text)
     assert text.count('"') > 80
-    run, reference = simulate(loads(text)).dataset, references[1.0]
+    run, other = simulate(loads(text)).dataset, reference(1.0)
     names = (*SCALARS, *SIGNED, *PLAIN, "hub_force", "span_tension")
-    found = {name: difference(run[name].values, reference[name].values) for name in names}
+    found = {name: difference(run[name].values, other[name].values) for name in names}
     measured(worst=max(found.values()))
     assert max(found.values()) < ROUNDING, found
