@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 import psutil
 import pytest
+import xarray as xr
 
 from beltdyn import simulate
 from beltdyn.errors import ModelError
@@ -57,15 +58,22 @@ def test_no_room_is_said_before(change: Change, tmp_path: Path, monkeypatch: pyt
         simulate(change())
 
 
+OFTEN = {"duration": 2.5e-3, "output_interval": 1e-5, "rtol": 1e-3}
+
+
+@pytest.fixture(scope="module")
+def always(change: Change) -> xr.Dataset:
+    """A run that records its fields at each output."""
+    return simulate(change(simulation=OFTEN | {"field_interval": 1e-5})).dataset
+
+
 @pytest.mark.parametrize("interval", [None, 3e-4, 1e-3])
 def test_fields_are_recorded_as_often_as_asked_for_and_at_the_end(
-    change: Change, tmp_path: Path, interval: float | None
+    change: Change, always: xr.Dataset, tmp_path: Path, interval: float | None
 ) -> None:
     """And are those of the outputs at the same instants of a run that records them always."""
-    settings = {"duration": 2.5e-3, "output_interval": 1e-5, "rtol": 1e-3}
     seldom = {} if interval is None else {"field_interval": interval}
-    run = simulate(change(simulation=settings | seldom), tmp_path / "run.nc")
-    always = simulate(change(simulation=settings | {"field_interval": 1e-5})).dataset
+    run = simulate(change(simulation=OFTEN | seldom), tmp_path / "run.nc")
     expected = np.append(np.arange(0.0, 2.5e-3 - 1e-9, interval or 2e-5), 2.5e-3)
     np.testing.assert_allclose(run.dataset["field_time"], expected, rtol=1e-9)
     same = always.sel(field_time=run.dataset["field_time"].values)

@@ -80,10 +80,9 @@ def test_a_drive_without_a_prescribed_speed_cannot_be_swept(drive: Drive) -> Non
         run_up(free, "driver", 1.0, 2.0, 1.0)
 
 
-@pytest.mark.parametrize(("start", "end"), [("600 rpm", "1200 rpm"), (20.0 * np.pi, 40.0 * np.pi)])
-def test_a_sweep_is_a_run_that_names_its_pulley(drive: Drive, start: float | str, end: float | str) -> None:
+def test_a_sweep_is_a_run_that_names_its_pulley(drive: Drive) -> None:
     """Numbers are in SI units, texts have theirs."""
-    run = sweep(drive, pulley="driver", from_=start, to=end, duration="10 ms", settling="20 ms")
+    run = sweep(drive, pulley="driver", from_="600 rpm", to=40.0 * np.pi, duration="10 ms", settling=0.02)
     assert run.kind == "run"
     assert run.dataset.attrs["swept_pulley"] == "driver"
     assert run.drive_as_given == drive.text
