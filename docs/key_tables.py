@@ -4,7 +4,9 @@ import json
 import re
 import typing
 from collections.abc import Iterable, Mapping
+from functools import cache
 from math import inf, pi, tau
+from pathlib import Path
 from typing import Any, Literal
 
 from annotated_types import Ge, Gt, Le, Lt
@@ -85,6 +87,29 @@ def family(kinds: Mapping[str, type[Part]], shared: type[Part] | None = None) ->
     common = tuple(shared.model_fields) if shared else ()
     tables = {name: table(part, without=("kind", *common)) for name, part in kinds.items()}
     return {**tables, "shared": table(shared)} if shared else tables
+
+
+def untold(name: str, kinds: Mapping[str, type[Part]]) -> dict[str, type[Part]]:
+    """Kinds of a family that have keys, but no section on a page."""
+    return {
+        kind: part
+        for kind, part in kinds.items()
+        if f"{{{{ keys.{name}.{kind} }}}}" not in _told() and set(part.model_fields) != {"kind"}
+    }
+
+
+@cache
+def _told() -> str:
+    """All pages."""
+    return "".join(page.read_text(encoding="utf-8") for page in Path(__file__).parent.rglob("*.md"))
+
+
+def others(kinds: Mapping[str, type[Part]]) -> str:
+    """Kinds one below the other, each with its meaning and its keys."""
+    return "\n\n".join(
+        f'**`kind = "{name}"`**: {(part.__doc__ or "").partition(chr(10))[0]}\n\n{table(part)}'
+        for name, part in kinds.items()
+    )
 
 
 def spelled(description: str) -> str:
@@ -214,3 +239,15 @@ KEYS: dict[str, Any] = {
     "measurement": table(Measurement),
 }
 """All tables, by the names that the pages give them."""
+
+FAMILIES: dict[str, Mapping[str, type[Part]]] = {
+    "surface": {name: surface_part(kind) for name, kind in SURFACES.items()},
+    "load": LOADS,
+    "hub": LINKS,
+    "support": SUPPORTS,
+    "tensioner": TENSIONERS,
+}
+"""Kinds with sections of their own; `{{ keys.load.others }}` has those that were added without one."""
+
+for _family, _kinds in FAMILIES.items():
+    KEYS[_family]["others"] = others(untold(_family, _kinds))

@@ -31,7 +31,7 @@ class LazyNames(Mapping[str, Any]):
 
 def _imported(tree: ast.Module, package: str) -> Iterator[tuple[str, tuple[str, str]]]:
     """Names that a file imports, with the module and the attribute that each of them is."""
-    for node in tree.body:
+    for node in ast.walk(tree):
         if not isinstance(node, ast.ImportFrom):
             continue
         module = f"{package}.{node.module}" if node.level and node.module else node.module or package

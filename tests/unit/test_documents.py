@@ -14,6 +14,7 @@ import matplotlib.pyplot as plt
 import pytest
 import run_tasks
 import tomli_w
+from key_tables import untold
 
 from beltdyn.analyses import ANALYSES, EQUILIBRIUM, RUN
 from beltdyn.cli import main
@@ -118,21 +119,21 @@ def names_of(tables: dict[str, Any], above: str = "keys") -> list[str]:
 
 
 def test_every_table_of_keys_stands_on_a_page() -> None:
-    """But those of profiles, which have one together, and of the smooth circle, which has no keys."""
+    """But those of profiles and of kinds without a section, which have one together, and of the circle without keys."""
     text = "".join(page.read_text(encoding="utf-8") for page in (ROOT / "docs").rglob("*.md"))
     shown = set(re.findall(r"^{{ (keys[\w.]+) }}$", text, re.MULTILINE))
     assert shown == {
         name
         for name in names_of(key_tables.KEYS)
         if not name.startswith("keys.profile.") and name != "keys.surface.circle"
-    }
+    } - {f"keys.{family}.{kind}" for family, kinds in key_tables.FAMILIES.items() for kind in untold(family, kinds)}
 
 
 @pytest.mark.parametrize("family", ["load", "hub", "tensioner"])
 def test_every_kind_of_machine_has_a_section(family: str) -> None:
     text = MACHINES.read_text(encoding="utf-8")
     for kind in key_tables.KEYS[family]:
-        if kind != "shared":
+        if kind not in ("shared", "others", *untold(family, key_tables.FAMILIES[family])):
             section = text.split(f'\n### `kind = "{kind}"`\n')
             assert len(section) == 2, kind
             assert f"{{{{ keys.{family}.{kind} }}}}" in section[1].split("\n#")[0]

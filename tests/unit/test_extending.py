@@ -31,6 +31,24 @@ COSTLY = {
 }
 """Checks of examples that compile kernels of their own, half a minute each; those of the others are the same."""
 
+OF_ALL_KINDS = [
+    f"tests/unit/{name}"
+    for name in (
+        "cli/test_commands.py",
+        "parts",
+        "test_doctests.py",
+        "test_documents.py",
+        "test_examples.py",
+        "test_kinds.py",
+        "test_lazy.py",
+        "test_mirror.py",
+        "test_public_names.py",
+        "test_signatures.py",
+        "transient/test_earlier_results.py",
+    )
+]
+"""Tests that ask something of every kind, analysis or figure."""
+
 BLOCK = re.compile(
     r"^```\{(?:code-block\} diff|literalinclude\} (?P<file>[\w/.]+))\n"
     r":caption: (?P<caption>[^\n]+)\n(?P<text>.*?)^```$",
@@ -171,6 +189,17 @@ def test_the_example_works(name: str, extended: Path, tmp_path: Path) -> None:
         MPLBACKEND="Agg",
         OMP_NUM_THREADS="1",
     )
+
+
+@pytest.mark.slow
+def test_the_house_asks_no_more_of_a_kind_than_its_page_says(extended: Path, tmp_path: Path) -> None:
+    """Types, and the tests that run over all kinds, pass with the examples: a line elsewhere would not be counted."""
+    house = tmp_path / "house"
+    shutil.copytree(ROOT, house, ignore=shutil.ignore_patterns(".*", "__pycache__", "src", "_build", "beltdyn-*"))
+    shutil.copytree(extended / "src", house / "src")
+    surroundings = {"PYTHONPATH": f"{house / 'src'}{os.pathsep}{house}", "BELTDYN_CACHE_DIR": str(extended / "kernels")}
+    run(["-m", "mypy"], house, **surroundings)
+    run(["-m", "pytest", "--quiet", "-m", "not slow", *OF_ALL_KINDS], house, **surroundings)
 
 
 def run(arguments: list[str], folder: Path, **surroundings: str) -> None:

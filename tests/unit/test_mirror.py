@@ -5,11 +5,14 @@ from pathlib import Path
 
 import pytest
 
+from beltdyn.analyses import ANALYSES
+
 UNIT = Path(__file__).parent
 SOURCE = UNIT.parents[1] / "src" / "beltdyn"
 
 FAMILIES = {
     "elements/*.py": "unit/elements/test_kind.py",
+    "stretch/*.py": "unit/stretch/test_laws_common.py",
     "show/plot/*.py": "unit/show/plot/test_figures_all.py",
 }
 """Where a kind is tested with all of its family, if it has no test of its own."""
@@ -74,6 +77,10 @@ def _only_declares(function: ast.FunctionDef | ast.AsyncFunctionDef) -> bool:
     return all(isinstance(one, ast.Expr) and isinstance(one.value, ast.Constant) for one in function.body)
 
 
+ANALYZED = {SOURCE.parent / f"{one.place.partition(':')[0].replace('.', '/')}.py" for one in ANALYSES.values()}
+"""Modules of analyses, which `unit/transient/test_earlier_results.py` runs, interrupts and writes one like another."""
+
+
 @pytest.fixture(scope="module")
 def without() -> list[Path]:
     """Modules that no test is named after."""
@@ -81,7 +88,7 @@ def without() -> list[Path]:
 
 
 def test_every_module_has_its_test_or_says_where_it_is_tested(without: list[Path]) -> None:
-    listed = {path for pattern in ELSEWHERE | FAMILIES for path in SOURCE.glob(pattern)}
+    listed = {path for pattern in ELSEWHERE | FAMILIES for path in SOURCE.glob(pattern)} | ANALYZED
     assert [path.relative_to(SOURCE).as_posix() for path in without if path not in listed] == []
 
 

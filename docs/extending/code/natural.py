@@ -1,6 +1,7 @@
 """Natural frequencies of a drive about its equilibrium at rest: (K + s C + s^2 M) x = 0."""
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 from beltdyn.errors import ConvergenceError
 from beltdyn.model import Drive
@@ -43,6 +44,12 @@ def natural_frequencies(drive: Drive, *, count: int = 10) -> Result:
     ------
     ConvergenceError
         If no equilibrium is found, or it has no mode that swings.
+
+    Examples
+    --------
+    >>> found = bd.natural_frequencies(drive, count=2)
+    >>> found.kind
+    'natural_frequencies'
     """
     from scipy.linalg import eig
 
@@ -66,7 +73,11 @@ def natural_frequencies(drive: Drive, *, count: int = 10) -> Result:
         "damping_ratio": -found.real / abs(found),
         "shape": np.stack([shapes.real, shapes.imag], axis=1),
     }
-    labels = {"mode": np.arange(1, len(chosen) + 1), "part": ["real", "imaginary"], "axis": ["x", "y"]}
+    labels: dict[str, ArrayLike] = {
+        "mode": np.arange(1, len(chosen) + 1),
+        "part": ["real", "imaginary"],
+        "axis": ["x", "y"],
+    }
     return build_result(
         "natural_frequencies",
         rest.drive,

@@ -21,6 +21,10 @@ def tension_ratio(run: Run, ax: Axes | None = None) -> Axes:
     -------
     Axes
         The axes.
+
+    Examples
+    --------
+    >>> axes = bd.plot.tension_ratio(run)
     """
     ax = axes_or_new(ax)
     time, tension = run.dataset["time"], run.dataset["span_tension"].values

@@ -27,6 +27,7 @@ from beltdyn.results import Result, Run, Variable, summarize
 from beltdyn.results.checks.creep import gross_slip, near_gross_slip
 from beltdyn.results.checks.machines import lifted_teeth, overloaded_teeth
 from beltdyn.solvers.run_progress import Report
+from beltdyn.state.staying import require_passing
 from beltdyn.state.steady import steady_state
 from beltdyn.system.meshing import TOOTH_PHASES
 
@@ -151,6 +152,7 @@ def traction(
     ('slip',)
     """
     require_belt(drive, "a traction curve", "`beltdyn operating-map` over load, which has the slip safety of rollers")
+    require_passing(drive)
     held = _driven_by_speed(held_at(drive, at), force_tolerance)
     driver = driver_of(held)
     number = _loaded(held, driver) if pulley is None else held.number_of(pulley)

@@ -6,6 +6,7 @@ from typing import NamedTuple
 import numpy as np
 
 from beltdyn.arrays import FloatArray
+from beltdyn.elements import QUINTIC
 from beltdyn.errors import ConvergenceError, ModelError
 from beltdyn.model import Drive, Prepared
 from beltdyn.model.resolution import Arc, Laid
@@ -81,10 +82,22 @@ def laid_state(laid: Laid, system: System, tensioners: FloatArray) -> State:
 
 
 def require_passing(drive: Drive) -> None:
-    """Make sure that the belt may pass a mesh that stays: it is closed, or a web."""
+    """Make sure that the belt may pass a mesh that stays: it is closed, or a web, and asks for no other elements."""
     if drive.ends and not drive.is_web:
         modes = "; `beltdyn stroke` has stiffness and modes of the axis at rest" if drive.carriage else ""
         raise ModelError(f"an open belt has no steady running. Simulate it with `beltdyn simulate`{modes}.")
+    if drive.belt.discretization not in (None, QUINTIC.name):
+        raise ModelError(
+            f'belt.discretization = "{drive.belt.discretization}" would have no effect: this analysis is on a staying '
+            "mesh, whose elements are quintic. Omit it, or simulate the drive with `beltdyn simulate`."
+        )
+
+
+def on_quintics(drive: Drive) -> Drive:
+    """The drive without elements that a staying mesh does not have."""
+    if drive.belt.discretization in (None, QUINTIC.name):
+        return drive
+    return drive.replace(belt=drive.belt.replace(discretization=None))
 
 
 def bring_to_stand(prepared: Prepared, elements: int | None = None) -> Standing:

@@ -24,7 +24,7 @@ from beltdyn.state.linearized import growing, in_motion
 from beltdyn.state.newton import SteadyWork
 from beltdyn.state.refinement import MeshRule, against_coarser, is_fine, refine, steady_from_rest
 from beltdyn.state.search import SteadySearch
-from beltdyn.state.staying import FINER, Standing, bring_to_stand, carried, require_passing
+from beltdyn.state.staying import FINER, Standing, bring_to_stand, carried, on_quintics, require_passing
 from beltdyn.system.arc_mesh import MESH_SHIFTS, lengths_of, mesh_attributes, shifts_of
 from beltdyn.system.arrays import System
 from beltdyn.system.body_forces import body_forces_at
@@ -402,7 +402,7 @@ def _require_toothed_driver(drive: Drive) -> None:
 def require_steady_start(drive: Drive) -> None:
     """Make sure that a drive whose run is to begin in steady running may do so."""
     try:
-        require_steady(drive)
+        require_steady(on_quintics(drive))
     except ModelError as error:
         raise ModelError(
             f'simulation.start = "steady" needs steady running, and {error} Or set simulation.start = "equilibrium".'

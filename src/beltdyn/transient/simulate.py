@@ -20,6 +20,7 @@ from beltdyn.solvers.generalized_alpha import AlphaIntegration, GeneralizedAlpha
 from beltdyn.solvers.run_progress import Report
 from beltdyn.solvers.standard import Name, StandardIntegrator
 from beltdyn.solvers.trajectory import Integrator, drive_task
+from beltdyn.state.staying import on_quintics
 from beltdyn.state.steady import require_steady, steady_state
 from beltdyn.transient.beginning import Begin, begin_on, mesh_of, settled, with_instant
 from beltdyn.transient.checkpoint import Keeper, checkpoint_file, read_checkpoint
@@ -109,7 +110,7 @@ def record_run(
     """Simulate a drive over time, for an analysis that says something of its own about the run."""
     given = drive
     if compare_steady:
-        require_steady(drive)
+        require_steady(on_quintics(drive))
     integrator = integrator or choose_integrator(drive)
     drive, frame = settled(drive, integrator)
     prepared = prepare(drive)
@@ -184,7 +185,7 @@ def _resume(drive: Drive, output: Path | str | None, progress: Report | None, ch
 def _steady_running(drive: Drive) -> dict[str, object]:
     """Attributes with the steady running at the speeds and loads of the end, or why there is none."""
     try:
-        return {VALUES: steady_values(steady_state(with_instant(drive)))}
+        return {VALUES: steady_values(steady_state(with_instant(on_quintics(drive))))}
     except (ConvergenceError, ModelError) as error:
         return {FAILURE: str(error)}
 
@@ -192,7 +193,7 @@ def _steady_running(drive: Drive) -> dict[str, object]:
 def _steady_losses(drive: Drive) -> dict[str, object]:
     """Attributes with losses and slip in steady running at the end; empty if there is no steady running."""
     try:
-        return dict(steady_losses(steady_state(with_instant(drive))))
+        return dict(steady_losses(steady_state(with_instant(on_quintics(drive)))))
     except (ConvergenceError, ModelError):
         return {}
 

@@ -80,14 +80,13 @@ def test_a_belt_with_ends_has_a_mesh_that_travels() -> None:
 
 def test_a_mesh_that_stays_tells_what_it_does_not_use() -> None:
     asked = drive(
-        belt={"discretization": "truss", "quadrature_points": 3},
+        belt={"quadrature_points": 3},
         contact={"integration": "fixed"},
         simulation={"frame": "staying"},
     )
     assert asked.frame.words == "staying, as given"
     assert asked.element_kind.name == "quintic"
     assert unused_settings(asked.belt, asked.contact) == [
-        'belt.discretization = "truss"',
         "belt.quadrature_points = 3",
         'contact.integration = "fixed"',
     ]

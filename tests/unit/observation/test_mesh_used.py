@@ -5,11 +5,14 @@ from typing import Any
 
 import pytest
 
-from beltdyn import equilibrium, modes, simulate, steady_state
+from beltdyn import campbell, equilibrium, modes, operating_map, sensitivity, simulate, steady_state, traction
+from beltdyn import sheet as drive_sheet
 from beltdyn.elements import ELEMENTS
+from beltdyn.errors import ModelError
 from beltdyn.model import Drive, example, prepare
 from beltdyn.results import Result
 from beltdyn.results.provenance import mesh_used
+from beltdyn.results.summary import VALUES
 from beltdyn.show.sheet import Facts, sheet
 
 Change = Callable[..., Drive]
@@ -17,6 +20,14 @@ ASKED = (None, *ELEMENTS)
 FLOWING: Mapping[str, Callable[[Drive], Result]] = {
     "steady": lambda drive: steady_state(drive, at=1.0),
     "modes": lambda drive: modes(drive, about="rest", count=2),
+}
+ON_QUINTICS: Mapping[str, Callable[[Drive], object]] = {
+    **FLOWING,
+    "map": lambda drive: operating_map(drive, speed="60 rpm"),
+    "traction": traction,
+    "sensitivity": lambda drive: sensitivity(drive, of="largest_tension", numbers="belt.length"),
+    "sheet": drive_sheet,
+    "campbell": lambda drive: campbell(drive, speed="60, 90 rpm"),
 }
 """Analyses about rest or steady running, on a mesh that stays."""
 SLOW = [pytest.param(one, marks=() if one is None else pytest.mark.slow) for one in ASKED]
@@ -46,14 +57,24 @@ def mesh_of(result: Result) -> tuple[str, str, str]:
     return said["mesh_frame"], said["mesh_element"], said["mesh_unused"]
 
 
-@pytest.mark.parametrize("kind", ASKED)
+@pytest.mark.parametrize("kind", [None, "quintic"])
 @pytest.mark.parametrize("analysis", FLOWING)
 def test_analyses_about_rest_and_steady_running_have_a_mesh_that_stays(
     asked: Callable[[str | None], Drive], analysis: str, kind: str | None
 ) -> None:
-    """What elements the drive asks for in runs, they say that these are not used."""
-    unused = "" if kind in (None, "quintic") else f'belt.discretization = "{kind}"'
-    assert mesh_of(FLOWING[analysis](asked(kind))) == ("staying", "quintic", unused)
+    """What quadrature the drive asks for in runs, they say that it is not used."""
+    assert mesh_of(FLOWING[analysis](asked(kind))) == ("staying", "quintic", "")
+    other = asked(kind).with_({"belt.quadrature_points": 3})
+    assert mesh_of(FLOWING[analysis](other)) == ("staying", "quintic", "belt.quadrature_points = 3")
+
+
+@pytest.mark.parametrize("kind", sorted(set(ELEMENTS) - {"quintic"}))
+@pytest.mark.parametrize("analysis", ON_QUINTICS)
+def test_elements_that_an_analysis_would_ignore_are_refused_there(
+    asked: Callable[[str | None], Drive], analysis: str, kind: str
+) -> None:
+    with pytest.raises(ModelError, match=f'belt.discretization = "{kind}" would have no effect: .* Omit it, or'):
+        ON_QUINTICS[analysis](asked(kind))
 
 
 @pytest.mark.parametrize("kind", SLOW)
@@ -71,10 +92,15 @@ def test_a_run_has_the_mesh_that_its_elements_need(asked: Callable[[str | None],
     assert run.dataset.attrs["mesh_frame_reason"] == ("" if stays else f'since belt.discretization = "{kind}"')
 
 
-def test_a_mesh_that_is_to_stay_tells_of_elements_that_it_does_not_have(change: Change) -> None:
-    run = simulate(change(belt={"discretization": "truss"}, simulation={"frame": "staying"}))
-    assert mesh_of(run) == ("staying", "quintic", 'belt.discretization = "truss"')
-    assert run.dataset.attrs["mesh_frame_reason"] == "as given"
+def test_a_mesh_that_is_to_stay_refuses_elements_that_it_does_not_have(change: Change) -> None:
+    with pytest.raises(ModelError, match=r'belt\.discretization = "truss" is incompatible .* Remove one'):
+        change(belt={"discretization": "truss"}, simulation={"frame": "staying"})
+
+
+def test_a_run_on_other_elements_is_compared_with_steady_running_on_those_that_it_has(change: Change) -> None:
+    drive = change(belt={"discretization": "truss"}, simulation={"frame": "travelling"})
+    turning = drive.with_({"pulley[driver].speed": "5 rpm"})
+    assert VALUES in simulate(turning, compare_steady=True).dataset.attrs
 
 
 def test_the_elements_that_are_named_are_those_of_the_drive() -> None:

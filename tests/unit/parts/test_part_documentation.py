@@ -6,11 +6,12 @@ import re
 import pytest
 
 import beltdyn.model as model
+from beltdyn.contact.normal import LAWS
 from beltdyn.model import Belt, Contact, Drive, Harmonic, Pulley
 from beltdyn.parts.part import Part
+from beltdyn.parts.quantity import unit_of
 
 PARTS = [one for one in vars(model).values() if isinstance(one, type) and issubclass(one, Part)]
-_UNIT = re.compile(r"\bin (m|s|N|W|Hz|K|°C|kg|rad|Pa|N\*m|m/s|N/m|1/m|1/N)")
 
 
 def entries(part: type[Part]) -> dict[str, tuple[str, str]]:
@@ -28,9 +29,12 @@ def test_help_and_signature_name_every_argument(part: type[Part]) -> None:
 
 @pytest.mark.parametrize("part", PARTS, ids=lambda part: part.__name__)
 def test_what_has_a_dimension_names_its_unit(part: type[Part]) -> None:
+    fields = {field.alias or name: field for name, field in part.model_fields.items()} | dict(part.alternatives())
     for name, (kind, told) in entries(part).items():
         if kind.startswith("float or text with a unit"):
-            assert _UNIT.search(told), name
+            unit = next(found for one in (fields[name].annotation, *fields[name].metadata) if (found := unit_of(one)))
+            words = told.replace("*", " ").replace("°C", "degC")
+            assert re.search(rf"\bin {re.escape(unit.replace('*', ' '))}", words), name
 
 
 def test_defaults_and_limits_are_those_of_the_fields() -> None:
@@ -42,7 +46,8 @@ def test_defaults_and_limits_are_those_of_the_fields() -> None:
         "float or text with a unit",
         "Young's modulus of the belt, in Pa. Above 0.",
     )
-    assert entries(Contact)["normal_law"][0] == '{"no_pull", "published"}, default "no_pull"'
+    others = ", ".join(f'"{name}"' for name in LAWS if name != "no_pull")
+    assert entries(Contact)["normal_law"][0] == f'{{"no_pull", {others}}}, default "no_pull"'
     assert entries(Harmonic)["order"][0] == "float"
     assert entries(Drive)["pulley"][0] == "list of Pulley"
     assert entries(Pulley)["center"][0] == "(float or text with a unit, float or text with a unit)"
