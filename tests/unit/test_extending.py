@@ -32,19 +32,20 @@ COSTLY = {
 """Checks of examples that compile kernels of their own, half a minute each; those of the others are the same."""
 
 OF_ALL_KINDS = [
-    f"tests/unit/{name}"
+    f"tests/{name}"
     for name in (
-        "cli/test_commands.py",
-        "parts",
-        "test_doctests.py",
-        "test_documents.py",
-        "test_examples.py",
-        "test_kinds.py",
-        "test_lazy.py",
-        "test_mirror.py",
-        "test_public_names.py",
-        "test_signatures.py",
-        "transient/test_earlier_results.py",
+        "fuzz",
+        *(f"unit/{family}" for family in ("contact", "elements", "machines", "parts", "stretch")),
+        "unit/cli/test_commands.py",
+        "unit/test_doctests.py",
+        "unit/test_documents.py",
+        "unit/test_examples.py",
+        "unit/test_kinds.py",
+        "unit/test_lazy.py",
+        "unit/test_mirror.py",
+        "unit/test_public_names.py",
+        "unit/test_signatures.py",
+        "unit/transient/test_earlier_results.py",
     )
 ]
 """Tests that ask something of every kind, analysis or figure."""

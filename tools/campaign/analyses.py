@@ -4,6 +4,7 @@ from collections.abc import Callable
 from pathlib import Path
 
 import beltdyn as bd
+from beltdyn.analyses import ANALYSES, Analysis
 from beltdyn.model import Drive, ParameterStudy, advise, install
 from beltdyn.model.parameter_study import CalibrationStudy, OptimizationStudy
 
@@ -53,6 +54,10 @@ def _lives(drive: Drive, folder: Path) -> object:
     return bd.life(drive, table=_table(folder))
 
 
+def _as_it_is(analysis: Analysis) -> Work:
+    return lambda drive, _: analysis.function(drive)
+
+
 WORKS: dict[str, Work] = {
     "check": lambda drive, _: advise(drive, install(drive)),
     "simulate": lambda drive, folder: bd.simulate(drive, output=folder / "run.nc"),
@@ -82,4 +87,5 @@ WORKS: dict[str, Work] = {
     "stroke": lambda drive, _: bd.stroke(drive, points=2),
     "study": _studied,
 }
+WORKS = {one.command: _as_it_is(one) for one in ANALYSES.values()} | WORKS
 """Name -> what is done with a drive, in a folder of its own."""

@@ -19,6 +19,7 @@ from beltdyn.contact.friction import (
 MU = 0.5
 RIM = 0.8
 """Speed of the rim, m/s."""
+IN_COMMON = {type(one) for one in CommonFriction(0)[1:]}
 SLIPS = st.floats(-5.0, 5.0)
 NORMALS = st.floats(0.0, 1e4)
 
@@ -134,6 +135,9 @@ def test_air_film_carries_what_does_not_press() -> None:
 @pytest.mark.parametrize("slip", [-3.0, -0.01, 0.0, 2e-3, 0.7])
 def test_a_law_under_the_common_type_is_itself(friction: FrictionParameters, slip: float) -> None:
     common = as_common(friction)
+    if type(friction) not in IN_COMMON:
+        assert common is friction  # a law that was added with a file and a line; kernels are compiled for it
+        return
     assert isinstance(common, CommonFriction)
     assert common.own == friction
     assert common.smoothed(2.0).own == friction.smoothed(2.0)

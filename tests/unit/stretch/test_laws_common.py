@@ -4,13 +4,16 @@ from typing import Any
 
 import numpy as np
 
-from beltdyn.stretch import CommonStretch, StretchParameters, as_common, stretching
+from beltdyn.stretch import CommonStretch, Green, Linear, Measured, StretchParameters, as_common, stretching
 
 STRETCHES = np.array([0.8, 1.003, 1.033, 1.5])
 
 
 def test_a_law_under_the_common_type_is_itself(stretch_law: StretchParameters) -> None:
     common = as_common(stretch_law)
+    if not isinstance(stretch_law, Linear | Green | Measured):
+        assert common is stretch_law  # a law that was added with a file and a line; kernels are compiled for it
+        return
     assert isinstance(common, CommonStretch)
     assert common.own == stretch_law
     assert common.stiffness == stretch_law.stiffness
