@@ -89,11 +89,11 @@ def family(kinds: Mapping[str, type[Part]], shared: type[Part] | None = None) ->
     return {**tables, "shared": table(shared)} if shared else tables
 
 
-def untold(name: str, kinds: Mapping[str, type[Part]]) -> dict[str, type[Part]]:
-    """Kinds of a family that have keys, but no section on a page."""
+def untold(name: str) -> dict[str, type[Part]]:
+    """Kinds of one of the families that have keys, but no section on a page."""
     return {
         kind: part
-        for kind, part in kinds.items()
+        for kind, part in FAMILIES[name].items()
         if f"{{{{ keys.{name}.{kind} }}}}" not in _told() and set(part.model_fields) != {"kind"}
     }
 
@@ -199,6 +199,15 @@ KINDS |= {"support": names(SUPPORTS)}
 KINDS |= {"analysis": analyses(), "figure": figures()}
 """The classes of the machines: `{{ kinds.load }}`."""
 
+FAMILIES: dict[str, Mapping[str, type[Part]]] = {
+    "surface": {name: surface_part(kind) for name, kind in SURFACES.items()},
+    "load": LOADS,
+    "hub": LINKS,
+    "support": SUPPORTS,
+    "tensioner": TENSIONERS,
+}
+"""Kinds with sections of their own; `{{ keys.load.others }}` has those that were added without one."""
+
 KEYS: dict[str, Any] = {
     "belt": table(Belt, Nominal),
     "sold": table(Stiffnesses, Sold, without=("width", "thickness")),
@@ -206,7 +215,7 @@ KEYS: dict[str, Any] = {
     "cord_fatigue": table(CordFatigue),
     "rib_fatigue": table(RibFatigue),
     "pulley": table(Pulley, Diameter),
-    "surface": family({name: surface_part(kind) for name, kind in SURFACES.items()}),
+    "surface": family(FAMILIES["surface"]),
     "contact": table(Contact),
     "duty": table(DutyPoint),
     "simulation": table(Simulation),
@@ -240,14 +249,5 @@ KEYS: dict[str, Any] = {
 }
 """All tables, by the names that the pages give them."""
 
-FAMILIES: dict[str, Mapping[str, type[Part]]] = {
-    "surface": {name: surface_part(kind) for name, kind in SURFACES.items()},
-    "load": LOADS,
-    "hub": LINKS,
-    "support": SUPPORTS,
-    "tensioner": TENSIONERS,
-}
-"""Kinds with sections of their own; `{{ keys.load.others }}` has those that were added without one."""
-
-for _family, _kinds in FAMILIES.items():
-    KEYS[_family]["others"] = others(untold(_family, _kinds))
+for _name in FAMILIES:
+    KEYS[_name]["others"] = others(untold(_name))

@@ -58,23 +58,19 @@ def _as_it_is(analysis: Analysis) -> Work:
     return lambda drive, _: analysis.function(drive)
 
 
-WORKS: dict[str, Work] = {
+WORKS: dict[str, Work] = {one.command: _as_it_is(one) for one in ANALYSES.values()} | {
     "check": lambda drive, _: advise(drive, install(drive)),
     "simulate": lambda drive, folder: bd.simulate(drive, output=folder / "run.nc"),
     "sweep": lambda drive, _: bd.sweep(
         drive, pulley=_driver(drive), from_="50 rad/s", to="100 rad/s", duration=0.02, settling=0.01
     ),
-    "equilibrium": lambda drive, _: bd.equilibrium(drive),
-    "steady-state": lambda drive, _: bd.steady_state(drive),
     "operating-map": lambda drive, folder: bd.operating_map(
         drive, speed="0, 500, 1e5 rpm", load="0, 1", output=folder / "map.nc"
     ),
     "traction": lambda drive, _: bd.traction(drive, pulley=drive.pulleys[-1].name, slip="0, 0.2, 5 %"),
     "duty": _duty,
     "life": _lives,
-    "rating": lambda drive, _: bd.rating(drive),
     "sheet": lambda drive, folder: bd.sheet(drive, table=_table(folder), points=3),
-    "tensioner-sheet": lambda drive, _: bd.tensioner_sheet(drive),
     "sensitivity": lambda drive, _: bd.sensitivity(
         drive, numbers=f"belt.width, pulley[{drive.pulleys[0].name}].radius"
     ),
@@ -87,5 +83,4 @@ WORKS: dict[str, Work] = {
     "stroke": lambda drive, _: bd.stroke(drive, points=2),
     "study": _studied,
 }
-WORKS = {one.command: _as_it_is(one) for one in ANALYSES.values()} | WORKS
 """Name -> what is done with a drive, in a folder of its own."""

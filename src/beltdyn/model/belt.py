@@ -21,7 +21,7 @@ from pydantic import (
 from pydantic.fields import FieldInfo
 
 from beltdyn.arrays import FloatArray
-from beltdyn.elements import ANCF, ELEMENTS, ElementKind
+from beltdyn.elements import ANCF, ELEMENTS, QUINTIC, ElementKind
 from beltdyn.errors import ModelError
 from beltdyn.model.belt_form import (
     DAMPING_TIMES,
@@ -414,6 +414,11 @@ class Belt(Part):
         if self.elements is None:
             raise ModelError("belt.elements is open; the drive chooses it. Use drive.elements, or give elements.")
         return self.elements
+
+    @property
+    def other_elements(self) -> str | None:
+        """The kind of elements that is asked for and that a staying mesh does not have; None without one."""
+        return None if self.discretization == QUINTIC.name else self.discretization
 
     @property
     def nominal_length(self) -> float | None:

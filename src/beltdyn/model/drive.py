@@ -11,7 +11,7 @@ from pydantic import Field, PrivateAttr, ValidationInfo, model_validator
 
 from beltdyn.arrays import BoolArray, FloatArray
 from beltdyn.contact.friction import FrictionParameters
-from beltdyn.elements import ELEMENTS, QUINTIC, ElementKind
+from beltdyn.elements import ELEMENTS, ElementKind
 from beltdyn.errors import ModelError
 from beltdyn.machines import Goods, MovingTensioner, Tensioner
 from beltdyn.machines.carrying import AnySupport
@@ -194,9 +194,9 @@ class Drive(Part):
                 f'belt.toothing.law = "{DISCRETE}" is incompatible with simulation.frame = "staying": single teeth '
                 'travel with their mesh. Omit frame, or set law = "spread"'
             )
-        if frame.stays and self.belt.discretization not in (None, QUINTIC.name):
+        if frame.stays and self.belt.other_elements is not None:
             raise ValueError(
-                f'belt.discretization = "{self.belt.discretization}" is incompatible with simulation.frame = '
+                f'belt.discretization = "{self.belt.other_elements}" is incompatible with simulation.frame = '
                 '"staying", whose elements are quintic. Remove one of the two'
             )
         if self.given_ends and frame.stays:

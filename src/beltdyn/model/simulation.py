@@ -431,8 +431,8 @@ def choose_frame(simulation: Simulation, belt: Belt, contact: Contact, has_ends:
 
 def element_settings(belt: Belt, contact: Contact) -> Iterator[tuple[str, str, Any]]:
     """Settings of elements and quadrature without effect on a staying mesh: group, key and value."""
-    if belt.discretization not in (None, QUINTIC.name):
-        yield "belt", "discretization", belt.discretization
+    if belt.other_elements is not None:
+        yield "belt", "discretization", belt.other_elements
     for group, part, keys in (
         ("belt", belt, ("integration", "quadrature_points")),
         ("contact", contact, ("sampling", "integration", "quadrature_points")),

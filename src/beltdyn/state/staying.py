@@ -6,7 +6,6 @@ from typing import NamedTuple
 import numpy as np
 
 from beltdyn.arrays import FloatArray
-from beltdyn.elements import QUINTIC
 from beltdyn.errors import ConvergenceError, ModelError
 from beltdyn.model import Drive, Prepared
 from beltdyn.model.resolution import Arc, Laid
@@ -86,16 +85,16 @@ def require_passing(drive: Drive) -> None:
     if drive.ends and not drive.is_web:
         modes = "; `beltdyn stroke` has stiffness and modes of the axis at rest" if drive.carriage else ""
         raise ModelError(f"an open belt has no steady running. Simulate it with `beltdyn simulate`{modes}.")
-    if drive.belt.discretization not in (None, QUINTIC.name):
+    if drive.belt.other_elements is not None:
         raise ModelError(
-            f'belt.discretization = "{drive.belt.discretization}" would have no effect: this analysis is on a staying '
+            f'belt.discretization = "{drive.belt.other_elements}" would have no effect: this analysis is on a staying '
             "mesh, whose elements are quintic. Omit it, or simulate the drive with `beltdyn simulate`."
         )
 
 
 def on_quintics(drive: Drive) -> Drive:
     """The drive without elements that a staying mesh does not have."""
-    if drive.belt.discretization in (None, QUINTIC.name):
+    if drive.belt.other_elements is None:
         return drive
     return drive.replace(belt=drive.belt.replace(discretization=None))
 

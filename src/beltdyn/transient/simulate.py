@@ -182,10 +182,15 @@ def _resume(drive: Drive, output: Path | str | None, progress: Report | None, ch
     return recording.run()
 
 
+def _steadily(drive: Drive) -> Run:
+    """Steady running at the end of the run of a drive, whatever its elements."""
+    return steady_state(with_instant(on_quintics(drive)))
+
+
 def _steady_running(drive: Drive) -> dict[str, object]:
     """Attributes with the steady running at the speeds and loads of the end, or why there is none."""
     try:
-        return {VALUES: steady_values(steady_state(with_instant(on_quintics(drive))))}
+        return {VALUES: steady_values(_steadily(drive))}
     except (ConvergenceError, ModelError) as error:
         return {FAILURE: str(error)}
 
@@ -193,7 +198,7 @@ def _steady_running(drive: Drive) -> dict[str, object]:
 def _steady_losses(drive: Drive) -> dict[str, object]:
     """Attributes with losses and slip in steady running at the end; empty if there is no steady running."""
     try:
-        return dict(steady_losses(steady_state(with_instant(on_quintics(drive)))))
+        return dict(steady_losses(_steadily(drive)))
     except (ConvergenceError, ModelError):
         return {}
 

@@ -48,6 +48,15 @@ def ring(drive: Drive) -> System:
         ("rotary", "relative_creep", {"stretch_damping_time": 1e-5, "bending_damping_time": 1e-2}),
         ("sliding", "force_slope", {"stretch_loss_factor": 0.1, "bending_loss_factor": 0.3}),
         pytest.param("rotary", "force_slope", {}, marks=pytest.mark.slow),
+        pytest.param(
+            "sliding",
+            "relative_creep",
+            {"stretch_damping_time": 1e-5, "bending_damping_time": 1e-2},
+            marks=pytest.mark.slow,
+        ),
+        pytest.param(
+            "rotary", "force_slope", {"stretch_loss_factor": 0.1, "bending_loss_factor": 0.3}, marks=pytest.mark.slow
+        ),
     ],
 )
 def test_tangent(with_machines: Callable[[str], Drive], tensioner: str, law: str, losses: dict[str, float]) -> None:

@@ -44,6 +44,17 @@ def residual(system: System, state: State, anchor: Anchor, work: SteadyWork, wan
         ("sliding", "relative_creep", {}),
         ("rotary", "coefficient_slope", {"stretch_damping_time": 1e-5, "bending_damping_time": 1e-2}),
         ("sliding", "force_slope", {"stretch_loss_factor": 0.1, "bending_loss_factor": 0.3}),
+        pytest.param("sliding", "force_slope", {}, marks=pytest.mark.slow),
+        pytest.param("rotary", "relative_creep", {}, marks=pytest.mark.slow),
+        pytest.param(
+            "sliding",
+            "coefficient_slope",
+            {"stretch_damping_time": 1e-5, "bending_damping_time": 1e-2},
+            marks=pytest.mark.slow,
+        ),
+        pytest.param(
+            "rotary", "force_slope", {"stretch_loss_factor": 0.1, "bending_loss_factor": 0.3}, marks=pytest.mark.slow
+        ),
     ],
 )
 def test_tangent(with_machines: Callable[[str], Drive], tensioner: str, law: str, losses: dict[str, float]) -> None:

@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 import beltdyn as bd
-from beltdyn.analyses import ANALYSES, EQUILIBRIUM
+from beltdyn.analyses import ANALYSES
 from beltdyn.cosimulation import fmu
 from beltdyn.errors import BeltdynError, ConvergenceError
 from beltdyn.model import CalibrationStudy, Drive, OptimizationStudy, ParameterStudy
@@ -25,11 +25,8 @@ FULL = 1000
 OLD = 7
 """Outputs of the earlier result."""
 LENGTH: dict[str, Any] = {"path": "belt.length", "least": "1.27 m", "largest": "1.275 m"}
-OPTIONS: dict[str, dict[str, Any]] = {
-    "simulate": {},
+OPTIONS: dict[str, dict[str, Any]] = {name: {} for name in ANALYSES} | {
     "sweep": {"pulley": "driver", "from_": "10 rpm", "to": "20 rpm", "duration": "5 ms"},
-    EQUILIBRIUM: {},
-    "steady_state": {},
     "operating_map": {"speed": "60, 120 rpm"},
     "traction": {"slip": "0.01 %"},
     "duty": {"table": "duty.csv"},
@@ -45,7 +42,6 @@ OPTIONS: dict[str, dict[str, Any]] = {
     "response": {"speed": "80, 120 rpm"},
     "stroke": {"places": "0, 50 mm"},
 }
-OPTIONS = {name: {} for name in ANALYSES} | OPTIONS
 """Analysis -> options that make it short."""
 
 
