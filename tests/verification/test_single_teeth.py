@@ -14,6 +14,7 @@ from beltdyn.arrays import FloatArray
 from beltdyn.model import Prepared, prepare
 from beltdyn.results import Run, derived, tooth_loads
 from beltdyn.show.report.report import verdict
+from beltdyn.solvers import generalized_alpha
 from beltdyn.state.static import find_equilibrium
 from beltdyn.system.build import drive_system
 from beltdyn.system.frame import centreline_places
@@ -105,6 +106,14 @@ def test_single_teeth_are_as_stiff_as_spread_ones(single: Run, spread: Run) -> N
 
 def test_the_energy_account_closes(single: Run) -> None:
     assert float(np.abs(single.dataset.energy_closure).max()) < 1e-3  # the tolerance of time steps
+
+
+def test_loads_of_teeth_do_not_feel_what_newtons_method_leaves(single: Run, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(generalized_alpha, "_HELD", 0.01)
+    exact = bd.simulate(drive(-5.0))
+    loads, others = (run.dataset["tooth_force"].values for run in (exact, single))
+    np.testing.assert_allclose(others, loads, atol=1e-3 * np.abs(loads).max())  # the tolerance of time steps
+    assert single.dataset.attrs["newton_iterations"] < exact.dataset.attrs["newton_iterations"]
 
 
 def test_the_ratio_is_that_of_the_teeth(single: Run) -> None:

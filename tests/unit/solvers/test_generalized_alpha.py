@@ -5,9 +5,11 @@ from collections.abc import Callable
 import numpy as np
 import pytest
 
-from beltdyn.arrays import FloatArray
+from beltdyn.arrays import FloatArray, records
+from beltdyn.contact.surface.toothed import TEETH, ToothedRims
 from beltdyn.solvers.generalized_alpha import GeneralizedAlpha
 from beltdyn.solvers.trajectory import Chunk, Task
+from beltdyn.system.arrays import System
 
 Spin = Callable[..., Task]
 INTERVAL = 2.5e-3
@@ -30,6 +32,20 @@ def test_steps_end_on_outputs_and_breakpoints(spin: Spin) -> None:
     reached = [chunk.reached for chunk in chunks]
     assert reached == sorted(reached)
     assert reached[-1] == TIMES[-1]
+
+
+def test_newtons_method_leaves_more_where_teeth_hold_the_belt(spin: Spin, spinning: System) -> None:
+    """What it leaves adds up where the belt can slide."""
+
+    def left(stiffness: float) -> float:
+        teeth = records(TEETH, stiffness=np.array([stiffness]))
+        rims = ToothedRims(spinning.rims.radius, teeth, np.zeros(spinning.length.size))
+        task = spin(INTERVAL, system=spinning._replace(rims=rims))
+        return GeneralizedAlpha(0.8, 1e-3).begin(task).settings.newton_fraction
+
+    smooth = GeneralizedAlpha(0.8, 1e-3).begin(spin(INTERVAL)).settings.newton_fraction
+    assert left(0.0) == smooth == 0.01
+    assert left(1e8) == 0.1
 
 
 def test_statistics_and_longest_step(spin: Spin) -> None:
