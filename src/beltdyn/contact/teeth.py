@@ -160,10 +160,9 @@ def _left_of_height(lift: float, height: float) -> tuple[float, float, float]:
 @kernel
 def _tooth(surface: Toothed, here: Approach, speed: float, along: float) -> Tooth:
     """Force of spread teeth; single ones leave none to the points between them."""
-    tooth = tooth_of(surface, here, speed, along)
     if surface.spacing > 0.0:
-        return Tooth(0.0, 0.0, 0.0, tooth.pitch_radius, tooth.rate, tooth.by_flow, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
-    return tooth
+        return Tooth(0.0, 0.0, 0.0, surface.pitch_radius, surface.rate, surface.by_flow, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
+    return tooth_of(surface, here, speed, along)
 
 
 tooth_at: Callable[[Any, Approach, float, float], Any] = by_type(

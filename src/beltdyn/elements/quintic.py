@@ -63,7 +63,8 @@ class Quintic(NamedTuple):
 @kernel(inline=True)
 def slopes(xi: float, length: float) -> Six:
     """Factors of the six vectors in q, at xi = x / L."""
-    chord = 30.0 * xi * xi * (1.0 - xi) * (1.0 - xi) / length
+    inverse = 1.0 / length
+    chord = 30.0 * xi * xi * (1.0 - xi) * (1.0 - xi) * inverse
     return (
         -chord,
         1.0 - xi * xi * (18.0 - xi * (32.0 - 15.0 * xi)),
@@ -77,13 +78,14 @@ def slopes(xi: float, length: float) -> Six:
 @kernel(inline=True)
 def bends(xi: float, length: float) -> Six:
     """Factors of the six vectors in w, at xi = x / L."""
-    chord = 60.0 * xi * (1.0 - xi) * (1.0 - 2.0 * xi) / (length * length)
+    inverse = 1.0 / length
+    chord = 60.0 * xi * (1.0 - xi) * (1.0 - 2.0 * xi) * inverse * inverse
     return (
         -chord,
-        -xi * (36.0 - xi * (96.0 - 60.0 * xi)) / length,
+        -xi * (36.0 - xi * (96.0 - 60.0 * xi)) * inverse,
         1.0 - xi * (9.0 - xi * (18.0 - 10.0 * xi)),
         chord,
-        -xi * (24.0 - xi * (84.0 - 60.0 * xi)) / length,
+        -xi * (24.0 - xi * (84.0 - 60.0 * xi)) * inverse,
         xi * (3.0 - xi * (12.0 - 10.0 * xi)),
     )
 
@@ -91,14 +93,16 @@ def bends(xi: float, length: float) -> Six:
 @kernel(inline=True)
 def thirds(xi: float, length: float) -> Six:
     """Factors of the six vectors in u = d3r/dx3, at xi = x / L."""
-    chord, square = 60.0 * (1.0 - xi * (6.0 - 6.0 * xi)) / length**3, length * length
+    inverse = 1.0 / length
+    square = inverse * inverse
+    chord = 60.0 * (1.0 - xi * (6.0 - 6.0 * xi)) * inverse * square
     return (
         -chord,
-        -(36.0 - xi * (192.0 - 180.0 * xi)) / square,
-        -(9.0 - xi * (36.0 - 30.0 * xi)) / length,
+        -(36.0 - xi * (192.0 - 180.0 * xi)) * square,
+        -(9.0 - xi * (36.0 - 30.0 * xi)) * inverse,
         chord,
-        -(24.0 - xi * (168.0 - 180.0 * xi)) / square,
-        (3.0 - xi * (24.0 - 30.0 * xi)) / length,
+        -(24.0 - xi * (168.0 - 180.0 * xi)) * square,
+        (3.0 - xi * (24.0 - 30.0 * xi)) * inverse,
     )
 
 
@@ -116,15 +120,17 @@ class Bending(NamedTuple):
 @kernel(inline=True)
 def bending_of(section: Section, metric: float, cross: float) -> Bending:
     """Give (EI alpha2 / 2) (3 G - 1) / 2 theta'^2 + (E I4 alpha2 / 8) theta'^4 with theta' = c / G."""
-    first, second, turning = section.bending, section.quartic, cross / metric
+    inverse = 1.0 / metric
+    first, second, turning = section.bending, section.quartic, cross * inverse
     square, stiffer = turning * turning, 1.5 * metric - 0.5
+    twice = inverse * inverse
     return Bending(
         square * (0.5 * first * stiffer + 0.125 * second * square),
-        square / metric * (first * (0.5 - 0.75 * metric) - 0.5 * second * square),
-        turning / metric * (first * stiffer + 0.5 * second * square),
-        square / (metric * metric) * (first * 1.5 * (metric - 1.0) + 2.5 * second * square),
-        turning / (metric * metric) * (first * (1.0 - 1.5 * metric) - 2.0 * second * square),
-        (first * stiffer + 1.5 * second * square) / (metric * metric),
+        square * inverse * (first * (0.5 - 0.75 * metric) - 0.5 * second * square),
+        turning * inverse * (first * stiffer + 0.5 * second * square),
+        square * twice * (first * 1.5 * (metric - 1.0) + 2.5 * second * square),
+        turning * twice * (first * (1.0 - 1.5 * metric) - 2.0 * second * square),
+        twice * (first * stiffer + 1.5 * second * square),
     )
 
 

@@ -40,11 +40,11 @@ class Linear(NamedTuple):
 def linear(law: Linear, metric: float) -> Stretching:
     """Kernel of `StretchLaw.stretching`: EA / 2 (g - 1)^2 with g = sqrt(G)."""
     g = metric**0.5
-    strain = (metric - 1.0) / (g + 1.0)
+    strain, inverse = (metric - 1.0) / (g + 1.0), 1.0 / g
     return Stretching(
         0.5 * law.stiffness * strain * strain,
-        0.5 * law.stiffness * strain / g,
-        0.25 * law.stiffness / (metric * g),
+        0.5 * law.stiffness * strain * inverse,
+        0.25 * law.stiffness * inverse * inverse * inverse,
     )
 
 

@@ -31,7 +31,13 @@ from beltdyn.system.arrays import (
     TangentFactors,
 )
 from beltdyn.system.carrying import NO_CARRYING_TANGENT, add_carrying
-from beltdyn.system.element_state import add_material_damping, centreline, element_workspace, gather_motion
+from beltdyn.system.element_state import (
+    add_material_damping,
+    centreline,
+    element_workspace,
+    gather_motion,
+    move_centreline,
+)
 from beltdyn.system.guide import push_carriage
 from beltdyn.system.moving_center import pulley_state, tensioner_coordinate
 
@@ -315,6 +321,7 @@ def find_body_forces(system: System, motion: Motion, work: np.record, corner: Fl
             for p in range(system.pulleys.size):
                 pulley = pulley_state(system, p, motion.position, motion.velocity)
                 if not out_of_reach(piece.control, pulley):
+                    move_centreline(system, element, curve, work)
                     totals = contact_force(piece, pulley, system.law, system.contact, NO_CONTACT_TANGENT, work.contact)
                     add_contact(forces, p, totals)
     add_machines(system, motion, NO_TANGENT, corner, forces)

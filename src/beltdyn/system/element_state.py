@@ -122,14 +122,19 @@ def centreline(system: System, element: int, curve: int, work: np.record) -> Cur
     """A curve of the centerline of an element.
 
     `element`, `curve`: which curve of which element; `work`: from `element_workspace`, with the coordinates of the
-    element and their rates; the control points are written into them. Returns valid until `work` is used for the next
-    curve.
+    element; the control points are written into it, and their velocities by `move_centreline`. Returns valid until
+    `work` is used for the next curve.
     """
     fill_control(system, element, curve, work.coordinates[0], work.control)
-    fill_control(system, element, curve, work.coordinates[1], work.control_velocity)
     length = system.length[element] / system.control.shape[1]
     start = element_start(system.rims, element) + curve * length
     return Curve(work.control, work.control_velocity, system.control[element, curve], length, start)
+
+
+@kernel(inline=True)
+def move_centreline(system: System, element: int, curve: int, work: np.record) -> None:
+    """Velocities of the control points of a curve from `centreline`, whose element has its rates in `work`."""
+    fill_control(system, element, curve, work.coordinates[1], work.control_velocity)
 
 
 @kernel
@@ -141,11 +146,11 @@ def fill_control(system: System, element: int, curve: int, coordinates: FloatArr
     """
     control, vectors = system.control[element, curve], system.vectors
     for a in range(points.shape[0]):
-        for axis in range(2):
-            total = 0.0
-            for b in range(len(vectors)):
-                total += control[a, b] * coordinates[vectors[b] + axis]
-            points[a, axis] = total
+        x = y = 0.0
+        for b in range(len(vectors)):
+            x += control[a, b] * coordinates[vectors[b]]
+            y += control[a, b] * coordinates[vectors[b] + 1]
+        points[a, 0], points[a, 1] = x, y
 
 
 # What an element adds to the equations of its nodes, and of the pulleys that it touches

@@ -28,7 +28,14 @@ from beltdyn.system.arc_mesh import first_arc
 from beltdyn.system.arrays import BENDING_LOSS, STRETCH_LOSS, Equations, Motion, RingMatrix, System, TangentFactors
 from beltdyn.system.body_forces import add_contact, differentiates_forces
 from beltdyn.system.carrying import CarryingFactors, add_carried, find_accelerations
-from beltdyn.system.element_state import centreline, couple_rim, loses_in_belt, material_forces, take_contact
+from beltdyn.system.element_state import (
+    centreline,
+    couple_rim,
+    loses_in_belt,
+    material_forces,
+    move_centreline,
+    take_contact,
+)
 from beltdyn.system.frame import (
     ArcMesh,
     Flowing,
@@ -117,6 +124,7 @@ def _add_contact(system: System, motion: Motion, element: int, factors: FlowFact
         pulley = pulley_state(system, p, motion.position, motion.velocity)
         if out_of_reach(piece.control, pulley):
             continue
+        move_centreline(system, element, 0, work)
         center = moving_center(system, p, motion.position, motion.velocity)
         drifting = factors.rate != 0.0 and center.unknown >= 0 and center.turning
         if drifting:

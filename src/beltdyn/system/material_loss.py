@@ -152,6 +152,8 @@ def add_hysteresis_flow(
 def hysteresis_tension(own: np.record, vectors: tuple[int, ...], work: np.record) -> float:
     """What hysteresis adds to the tension of an element over |q|, N; as for `add_hysteresis`."""
     scratch = work.hysteresis
+    if own.axial == 0.0:
+        return 0.0
     _find_strains(own, vectors, work.coordinates, scratch)
     return hysteretic(own.axial, scratch.strain, scratch.strain_rate, scratch.square, own.stretch_length).stress
 
@@ -159,12 +161,32 @@ def hysteresis_tension(own: np.record, vectors: tuple[int, ...], work: np.record
 @kernel
 def _find_strains(own: np.record, vectors: tuple[int, ...], coordinates: FloatArray, scratch: np.record) -> None:
     """Overwrite both strains, their rates, the square of the speed, and all their derivatives."""
+    velocity = coordinates[1]
+    speed_x = speed_y = 0.0
+    for a in range(len(vectors)):
+        speed_x += own.middle[a] * velocity[vectors[a]]
+        speed_y += own.middle[a] * velocity[vectors[a] + 1]
+    for a in range(len(vectors)):
+        scratch.by_speed[2 * a] = 2.0 * own.middle[a] * speed_x
+        scratch.by_speed[2 * a + 1] = 2.0 * own.middle[a] * speed_y
+    scratch.square = speed_x * speed_x + speed_y * speed_y
+    _find_curvature(own, vectors, coordinates, scratch)
+    if own.axial != 0.0:
+        _find_elongation(own, vectors, coordinates, scratch)
+    else:  # nothing asks for it
+        scratch.strain = scratch.strain_rate = 0.0
+        scratch.by_strain[:] = 0.0
+        scratch.strain_drift[:] = 0.0
+
+
+@kernel(inline=True)
+def _find_elongation(own: np.record, vectors: tuple[int, ...], coordinates: FloatArray, scratch: np.record) -> None:
+    """Overwrite the elongation, its rate, and their derivatives; the curvature is known."""
     e, velocity = coordinates[0], coordinates[1]
-    count = len(vectors)
-    metric = strain_rate = speed_x = speed_y = 0.0
-    for a in range(count):
+    metric = strain_rate = 0.0
+    for a in range(len(vectors)):
         x = y = vx = vy = 0.0
-        for b in range(count):
+        for b in range(len(vectors)):
             part, i = own.metric[a, b], vectors[b]
             x, y = x + part * e[i], y + part * e[i + 1]
             vx, vy = vx + part * velocity[i], vy + part * velocity[i + 1]
@@ -173,16 +195,10 @@ def _find_strains(own: np.record, vectors: tuple[int, ...], coordinates: FloatAr
         scratch.strain_drift[2 * a], scratch.strain_drift[2 * a + 1] = vx, vy
         metric += x * e[i] + y * e[i + 1]
         strain_rate += x * velocity[i] + y * velocity[i + 1]
-        speed_x, speed_y = speed_x + own.middle[a] * velocity[i], speed_y + own.middle[a] * velocity[i + 1]
-    for a in range(count):
-        scratch.by_speed[2 * a] = 2.0 * own.middle[a] * speed_x
-        scratch.by_speed[2 * a + 1] = 2.0 * own.middle[a] * speed_y
-    scratch.square = speed_x * speed_x + speed_y * speed_y
-    _find_curvature(own, vectors, coordinates, scratch)
     bend, unbend = 2.0 * own.shortening * scratch.curvature, 2.0 * own.shortening * scratch.curvature_rate
     scratch.strain = 0.5 * (metric - 1.0) - own.strain + 0.5 * bend * scratch.curvature
     scratch.strain_rate = strain_rate + bend * scratch.curvature_rate
-    for c in range(2 * count):
+    for c in range(scratch.by_strain.size):
         scratch.by_strain[c] += bend * scratch.by_curvature[c]
         scratch.strain_drift[c] += unbend * scratch.by_curvature[c] + bend * scratch.curvature_drift[c]
 
@@ -206,11 +222,12 @@ def _find_curvature(own: np.record, vectors: tuple[int, ...], coordinates: Float
             y += factor * e[vectors[a] + 1]
             vx += factor * velocity[vectors[a]]
             vy += factor * velocity[vectors[a] + 1]
-        square = x * x + y * y
-        across, along = side * 2.0 * x * y / (square * square), side * (y * y - x * x) / (square * square)
+        inverse = 1.0 / (x * x + y * y)
+        by_square = side * inverse * inverse
+        across, along = by_square * 2.0 * x * y, by_square * (y * y - x * x)
         scratch.turning[end, 0, 0], scratch.turning[end, 0, 1] = across, along
         scratch.turning[end, 1, 0], scratch.turning[end, 1, 1] = along, -across
-        slope_x, slope_y = -side * y / square, side * x / square
+        slope_x, slope_y = -side * inverse * y, side * inverse * x
         for a in range(len(vectors)):
             factor = own.ends[end, a]
             if factor == 0.0:
@@ -268,8 +285,11 @@ def _add_tangent(
             tangent[row + 1, column + 1] += y * pull_y + bend_y * moment_y + along
     for end in range(2):
         for a in range(count):
+            part = turned * own.ends[end, a]
+            if part == 0.0:
+                continue
             for b in range(count):
-                factor = turned * own.ends[end, a] * own.ends[end, b]
+                factor = part * own.ends[end, b]
                 if factor == 0.0:
                     continue
                 for side in range(2):

@@ -20,7 +20,7 @@ from beltdyn.model.toothing import DISCRETE
 from beltdyn.system.arrays import BodyForces, Motion, NoCarriage, RingMatrix, System, TangentFactors
 from beltdyn.system.body_forces import add_machines
 from beltdyn.system.constant_drive import constant_drive, without_actions
-from beltdyn.system.element_state import centreline, element_workspace, gather_motion
+from beltdyn.system.element_state import centreline, element_workspace, gather_motion, move_centreline
 from beltdyn.system.frame import Travelling, centreline_places, passed_lengths
 from beltdyn.system.moving_center import pulley_center, pulley_state
 from beltdyn.system.state import State
@@ -406,6 +406,7 @@ def fill_tooth_forces(
                     pulley = pulley_state(system, p, position[k], velocity[k])
                     if out_of_reach(piece.control, pulley):
                         continue
+                    move_centreline(system, element, curve, work)
                     first, last = tooth_numbers(pulley.surface, piece)
                     for number in range(first, last):
                         if number < found.shape[1]:

@@ -14,7 +14,7 @@ from beltdyn.model import Prepared
 from beltdyn.model.nip import Pair
 from beltdyn.system.arc_mesh import fit_mesh
 from beltdyn.system.arrays import System
-from beltdyn.system.element_state import centreline, element_workspace, gather_motion
+from beltdyn.system.element_state import centreline, element_workspace, gather_motion, move_centreline
 from beltdyn.system.material_loss import hysteresis_tension
 from beltdyn.system.moving_center import pulley_state
 from beltdyn.system.observe import stretch_at
@@ -86,6 +86,7 @@ def fill_nips(
                 for r in range(rollers.size):
                     pulley = pulley_state(system, rollers[r], position[k], velocity[k])
                     if not out_of_reach(piece.control, pulley):
+                        move_centreline(system, element, curve, work)
                         part = Part(k, r, first, pull)
                         _press(system, piece, pulley, part, work, found)
                         _enter(system, piece, pulley, part, work, found)

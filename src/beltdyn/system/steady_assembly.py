@@ -56,6 +56,7 @@ from beltdyn.system.element_state import (
     gather,
     gather_motion,
     hold_fixed,
+    move_centreline,
     scatter,
     take_contact,
 )
@@ -138,7 +139,7 @@ def _travelling_element(
     add_material_damping(system, element, factors, equations.work, equations.forces)
     for curve in range(system.control.shape[1]):
         piece = centreline(system, element, curve, equations.work)
-        _contact(system, motion, factors, element, piece, equations)
+        _contact(system, motion, factors, element, curve, piece, equations)
 
 
 @kernel(inline=True)
@@ -160,7 +161,13 @@ def _add_inertia(system: System, element: int, factors: TangentFactors, wanted: 
 
 @kernel(inline=True)
 def _contact(
-    system: System, motion: Motion, factors: TangentFactors, element: int, piece: Curve, equations: Equations
+    system: System,
+    motion: Motion,
+    factors: TangentFactors,
+    element: int,
+    curve: int,
+    piece: Curve,
+    equations: Equations,
 ) -> None:
     """Take the contact forces of a curve off the residual of its element, and couple it to the pulleys it touches."""
     work, matrix = equations.work, equations.matrix
@@ -169,6 +176,7 @@ def _contact(
         pulley = pulley_state(system, p, motion.position, motion.velocity)
         if out_of_reach(piece.control, pulley):
             continue
+        move_centreline(system, element, curve, work)
         center = moving_center(system, p, motion.position, motion.velocity)
         drifting = center.unknown >= 0 and factors.by_position != 0.0 and center.turning
         rounds = 2 if drifting else 1

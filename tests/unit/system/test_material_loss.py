@@ -74,6 +74,25 @@ def test_power_is_that_of_the_force_and_never_negative(
     np.testing.assert_allclose(back[1], -force, rtol=1e-12)
 
 
+@pytest.mark.parametrize("by", [(1.0, 0.0), (0.0, 30.0)])
+def test_stretch_and_bending_add_up(
+    system: System, state: tuple[FloatArray, FloatArray, FloatArray], by: tuple[float, float]
+) -> None:
+    """Also of belts that lose in one of them alone, whose other strain nothing asks for."""
+
+    def without(*moduli: str) -> tuple[tuple[float, float], FloatArray, FloatArray]:
+        rows: Records = system.hysteresis.copy().view(np.recarray)
+        for modulus in moduli:
+            rows[modulus] = 0.0
+        return evaluate(system._replace(hysteresis=rows), *state[:2], by)
+
+    both, stretch, bending = without(), without("bending"), without("axial")
+    assert stretch[0][1] == bending[0][0] == 0.0
+    for k in range(3):
+        whole = np.asarray(both[k])
+        np.testing.assert_allclose(np.add(stretch[k], bending[k]), whole, atol=1e-12 * np.abs(whole).max())
+
+
 def test_rigid_motion_meets_no_resistance(system: System, state: tuple[FloatArray, FloatArray, FloatArray]) -> None:
     e, _, _ = state
     turning = np.stack([-e[1::2], e[::2]], axis=1)
