@@ -17,7 +17,7 @@ import beltdyn as bd
 from beltdyn.arrays import FloatArray
 
 TEETH, SPEED = 22, 100.0 * np.pi
-SECONDS = 0.1
+SECONDS = 0.2
 """Simulated time of a run with single teeth, s."""
 MESHES: tuple[dict[str, Any], ...] = (
     {"rtol": 1e-3, "elements": 120},

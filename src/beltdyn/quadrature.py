@@ -39,4 +39,6 @@ def lobatto_points(count: int) -> Quadrature:
 
 def running_integral(values: FloatArray, places: FloatArray) -> FloatArray:
     """Integral of samples from the first place up to each, by the trapezoidal rule, zero at first."""
-    return np.append(0.0, np.cumsum(0.5 * (values[1:] + values[:-1]) * np.diff(places)))
+    integral = np.zeros(len(values))
+    np.cumsum(0.5 * (values[1:] + values[:-1]) * (places[1:] - places[:-1]), out=integral[1:])
+    return integral

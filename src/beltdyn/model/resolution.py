@@ -54,6 +54,7 @@ _KINK = 0.1
 _OF_NIP = 0.1
 """Length of the elements in a nip, over its width."""
 _SAMPLES = 400
+_EVENLY = np.linspace(0.0, 1.0, _SAMPLES + 1)
 _MOST = 10_000
 """Limit of elements on a piece of belt: a center in wrong units would need more memory than there is."""
 
@@ -144,7 +145,7 @@ def graded_mesh(
 
 def _sampled(length: float, first: float, *, closer: bool) -> FloatArray:
     """Places on a piece of belt at which its grading is looked at: evenly, and closer at its ends if it is long."""
-    place = np.linspace(0.0, length, _SAMPLES + 1)
+    place = length * _EVENLY
     if not closer or length < _SAMPLES * first:
         return place
     near = np.geomspace(0.1 * first, 0.5 * length, _SAMPLES)
@@ -183,10 +184,9 @@ def _divide(
     passed = running_integral(1.0 / size, place)
     inner = [kink for kink in kinks if first < kink < length - first]
     marks = [0.0, *np.interp(inner, place, passed), passed[-1]]
-    nodes = [
-        np.linspace(start, end, max(ceil(min(end - start, _MOST)), 1), endpoint=False) for start, end in pairwise(marks)
-    ]
-    return np.diff(np.interp(np.append(np.concatenate(nodes), passed[-1]), passed, place))
+    counts = [max(ceil(min(end - start, _MOST)), 1) for start, end in pairwise(marks)]
+    nodes = np.interp(np.arange(sum(counts) + 1), np.cumsum([0, *counts]), marks)
+    return np.diff(np.interp(nodes, passed, place))
 
 
 def shifts_at_nodes(before: IntArray, after: IntArray, share: FloatArray, shifts: NDArray[Any]) -> NDArray[Any]:

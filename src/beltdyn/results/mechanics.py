@@ -139,11 +139,14 @@ def sliding_velocity(
     It is sign(v_t) max(abs(v_t) - v_c, 0), with v_c the slip velocity at which friction reaches mu f_n; zero where
     teeth hold the belt. `touched` has pulley numbers, -1 where free.
     """
-    smooth = ~prepared.toothed[touched]
-    rim = np.take_along_axis(pulley_speed * prepared.radii, touched, axis=-1)
-    creep = prepared.friction_parameters.saturation(normal, prepared.frictions[touched], rim)
-    beyond = slip_velocity - np.clip(slip_velocity, -creep, creep)
-    return np.where((touched >= 0) & (normal > 0.0) & smooth, beyond, 0.0)
+    beyond = np.zeros(slip_velocity.shape)
+    rims = np.broadcast_to(pulley_speed * prepared.radii, (*touched.shape[:-1], len(prepared.radii)))
+    pressed = np.nonzero((touched >= 0) & (normal > 0.0) & ~prepared.toothed[touched])
+    pulley, slip = touched[pressed], slip_velocity[pressed]
+    rim = rims[(*pressed[:-1], pulley)]
+    creep = prepared.friction_parameters.saturation(normal[pressed], prepared.frictions[pulley], rim)
+    beyond[pressed] = slip - np.clip(slip, -creep, creep)
+    return beyond
 
 
 def sliding_shares(sliding: FloatArray, pressed: BoolArray, cell: FloatArray) -> FloatArray:

@@ -205,10 +205,13 @@ class FlutterWatch:
         """Time in which the belt moves by the length of its longest piece that slides, s; zero where none does."""
         system = self._system
         normal, touched = seen["normal_force"], seen["contact_pulley"]
-        friction = system.pulleys.friction[touched]
-        rim = np.take_along_axis(pulley_speeds(system, velocity) * system.rims.radius, touched, axis=-1)
-        saturation = system.law.friction.saturation(normal, friction, rim)
-        points = (normal > 0.0) & (friction > 0.0) & (np.abs(seen["slip_velocity"]) >= saturation)
+        points, friction = normal > 0.0, system.pulleys.friction
+        state, point = np.nonzero(points & (friction[touched] > 0.0))
+        pulley = touched[state, point]
+        rim = pulley_speeds(system, velocity)[state, pulley] * system.rims.radius[pulley]
+        saturation = system.law.friction.saturation(normal[state, point], friction[pulley], rim)
+        points[:] = False
+        points[state, point] = np.abs(seen["slip_velocity"][state, point]) >= saturation
         result = np.zeros(len(points))
         needed = _ELEMENTS * system.control.shape[1] * system.contact.points.size
         some = np.flatnonzero(np.count_nonzero(points, axis=1) > needed)

@@ -29,7 +29,7 @@ from beltdyn.system.arc_mesh import base_coordinates
 from beltdyn.system.arrays import System
 from beltdyn.system.frame import centreline_places
 from beltdyn.system.observations import Observations
-from beltdyn.system.observe import observe
+from beltdyn.system.observe import observe_contact
 from beltdyn.system.state import State
 
 _FINER = FINER, 0.9 * FINER, 1.15 * FINER
@@ -53,7 +53,7 @@ class Solution:
     system: System
     state: State
     seen: Observations
-    """What is seen there, one instant."""
+    """Contact and tensions there, one instant."""
     slips: FloatArray
     """Of the rims behind the first one, relative."""
 
@@ -207,7 +207,7 @@ def _solution(search: SteadySearch) -> Solution:
 
 
 def _seen(system: System, state: State) -> Observations:
-    return observe(system, np.zeros(1), state.position[None], state.velocity[None])
+    return observe_contact(system, state.position[None], state.velocity[None])
 
 
 def errors_at_rest(rest: Standing, elements: int | None = None) -> dict[str, float]:

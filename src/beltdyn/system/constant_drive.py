@@ -111,10 +111,11 @@ def _with_tensions(carriage: Any, time: float) -> Any:
 def without_motion(tensioners: Records) -> Records:
     """Tensioners without damping and dry friction."""
     still = tensioners.copy()
+    fields = still.view(np.ndarray)
     for name in still.dtype.names or ():
         if "spring" in (still.dtype[name].names or ()):
             for constant in _OF_MOTION:
-                still[name]["spring"][constant] = 0.0
+                fields[name]["spring"][constant] = 0.0
     return still
 
 

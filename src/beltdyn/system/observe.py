@@ -22,8 +22,8 @@ from beltdyn.kernel import kernel
 from beltdyn.machines.tensioners import tensioner_center
 from beltdyn.system.arc_mesh import fit_mesh
 from beltdyn.system.arrays import BodyForces, System
-from beltdyn.system.body_forces import body_forces_at
-from beltdyn.system.element_state import centreline, gather_motion
+from beltdyn.system.body_forces import body_forces_at, body_forces_history
+from beltdyn.system.element_state import centreline, gather_motion, move_centreline
 from beltdyn.system.guide import rolls_energy
 from beltdyn.system.material_loss import hysteresis_tension
 from beltdyn.system.moving_center import pulley_state, tensioner_coordinate
@@ -44,6 +44,13 @@ def observe(system: System, time: FloatArray, position: FloatArray, velocity: Fl
     time, position, velocity = (np.ascontiguousarray(array) for array in (time, position, velocity))
     forces = body_forces_at(system, time, position, velocity)
     return observe_motion(system, position, velocity, forces, np.ones(time.size, dtype=np.bool_))
+
+
+def observe_contact(system: System, position: FloatArray, velocity: FloatArray) -> Observations:
+    """Observe contact, tensions and speeds of spans in k contiguous states; what body forces tell is zero."""
+    count = len(position)
+    forces = body_forces_history(system, count)
+    return observe_motion(system, position, velocity, forces, np.zeros(count, dtype=np.bool_))
 
 
 def observe_motion(
@@ -75,6 +82,7 @@ def fill_observations(
                 _observe_energy(system, element, samples, result, show)
             for curve in range(curves):
                 piece, number = centreline(system, element, curve, work), element * curves + curve
+                move_centreline(system, element, curve, work)
                 if shown[k]:
                     _observe_tension(system, piece, number, pull, work, result, show)
                 _observe_points(system, piece, number, pull, samples, result, k)
