@@ -97,6 +97,7 @@ def test_a_mesh_that_is_to_stay_refuses_elements_that_it_does_not_have(change: C
         change(belt={"discretization": "truss"}, simulation={"frame": "staying"})
 
 
+@pytest.mark.slow  # kernels of trusses over time
 def test_a_run_on_other_elements_is_compared_with_steady_running_on_those_that_it_has(change: Change) -> None:
     drive = change(belt={"discretization": "truss"}, simulation={"frame": "travelling"})
     turning = drive.with_({"pulley[driver].speed": "5 rpm"})

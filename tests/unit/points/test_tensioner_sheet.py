@@ -107,6 +107,7 @@ def test_an_arm_balances_the_belt_by_virtual_work() -> None:
         )
 
 
+@pytest.mark.slow  # kernels of teeth at rest
 def test_a_toothed_belt_stretches_and_does_not_wear_long() -> None:
     """Its tensioner stays between its stops by default, and the warnings speak of what is there."""
     drive = load(Path(str(files("beltdyn"))) / "examples" / "timing_drive.toml")
