@@ -94,14 +94,14 @@ def bends(xi: float, length: float) -> Six:
 def thirds(xi: float, length: float) -> Six:
     """Factors of the six vectors in u = d3r/dx3, at xi = x / L."""
     inverse = 1.0 / length
-    square = inverse * inverse
-    chord = 60.0 * (1.0 - xi * (6.0 - 6.0 * xi)) * inverse * square
+    squared = inverse * inverse
+    chord = 60.0 * (1.0 - xi * (6.0 - 6.0 * xi)) * inverse * squared
     return (
         -chord,
-        -(36.0 - xi * (192.0 - 180.0 * xi)) * square,
+        -(36.0 - xi * (192.0 - 180.0 * xi)) * squared,
         -(9.0 - xi * (36.0 - 30.0 * xi)) * inverse,
         chord,
-        -(24.0 - xi * (168.0 - 180.0 * xi)) * square,
+        -(24.0 - xi * (168.0 - 180.0 * xi)) * squared,
         (3.0 - xi * (24.0 - 30.0 * xi)) * inverse,
     )
 
@@ -123,14 +123,14 @@ def bending_of(section: Section, metric: float, cross: float) -> Bending:
     inverse = 1.0 / metric
     first, second, turning = section.bending, section.quartic, cross * inverse
     square, stiffer = turning * turning, 1.5 * metric - 0.5
-    twice = inverse * inverse
+    squared = inverse * inverse
     return Bending(
         square * (0.5 * first * stiffer + 0.125 * second * square),
         square * inverse * (first * (0.5 - 0.75 * metric) - 0.5 * second * square),
         turning * inverse * (first * stiffer + 0.5 * second * square),
-        square * twice * (first * 1.5 * (metric - 1.0) + 2.5 * second * square),
-        turning * twice * (first * (1.0 - 1.5 * metric) - 2.0 * second * square),
-        twice * (first * stiffer + 1.5 * second * square),
+        square * squared * (first * 1.5 * (metric - 1.0) + 2.5 * second * square),
+        turning * squared * (first * (1.0 - 1.5 * metric) - 2.0 * second * square),
+        squared * (first * stiffer + 1.5 * second * square),
     )
 
 

@@ -12,6 +12,7 @@ from numpy.typing import ArrayLike
 
 from beltdyn.arrays import BoolArray, FloatArray, IntArray
 from beltdyn.contact.contact_zone import BINOMIALS
+from beltdyn.contact.friction import saturation_at
 from beltdyn.elements import ELEMENTS, ElementKind
 from beltdyn.model import Prepared
 from beltdyn.model.path import span_directions, span_points, wrap_angles
@@ -139,12 +140,10 @@ def sliding_velocity(
     It is sign(v_t) max(abs(v_t) - v_c, 0), with v_c the slip velocity at which friction reaches mu f_n; zero where
     teeth hold the belt. `touched` has pulley numbers, -1 where free.
     """
-    beyond = np.zeros(slip_velocity.shape)
-    rims = np.broadcast_to(pulley_speed * prepared.radii, (*touched.shape[:-1], len(prepared.radii)))
-    pressed = np.nonzero((touched >= 0) & (normal > 0.0) & ~prepared.toothed[touched])
-    pulley, slip = touched[pressed], slip_velocity[pressed]
-    rim = rims[(*pressed[:-1], pulley)]
-    creep = prepared.friction_parameters.saturation(normal[pressed], prepared.frictions[pulley], rim)
+    pressed = (touched >= 0) & (normal > 0.0) & ~prepared.toothed[touched]
+    law, rim = prepared.friction_parameters, pulley_speed * prepared.radii
+    creep = saturation_at(law, pressed, touched, normal, prepared.frictions, rim)
+    slip, beyond = slip_velocity[pressed], np.zeros(slip_velocity.shape)
     beyond[pressed] = slip - np.clip(slip, -creep, creep)
     return beyond
 

@@ -14,6 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from beltdyn.arrays import BoolArray, ComplexArray, FloatArray, IntArray
+from beltdyn.contact.friction import saturation_at
 from beltdyn.quadrature import running_integral
 from beltdyn.solvers.eigenvalues import arnoldi, unit_masses
 from beltdyn.solvers.engine import linearise
@@ -205,13 +206,10 @@ class FlutterWatch:
         """Time in which the belt moves by the length of its longest piece that slides, s; zero where none does."""
         system = self._system
         normal, touched = seen["normal_force"], seen["contact_pulley"]
-        points, friction = normal > 0.0, system.pulleys.friction
-        state, point = np.nonzero(points & (friction[touched] > 0.0))
-        pulley = touched[state, point]
-        rim = pulley_speeds(system, velocity)[state, pulley] * system.rims.radius[pulley]
-        saturation = system.law.friction.saturation(normal[state, point], friction[pulley], rim)
-        points[:] = False
-        points[state, point] = np.abs(seen["slip_velocity"][state, point]) >= saturation
+        friction, rim = system.pulleys.friction, pulley_speeds(system, velocity) * system.rims.radius
+        points = (normal > 0.0) & (friction[touched] > 0.0)
+        saturation = saturation_at(system.law.friction, points, touched, normal, friction, rim)
+        points[points] = np.abs(seen["slip_velocity"][points]) >= saturation
         result = np.zeros(len(points))
         needed = _ELEMENTS * system.control.shape[1] * system.contact.points.size
         some = np.flatnonzero(np.count_nonzero(points, axis=1) > needed)

@@ -6,7 +6,6 @@ import numpy as np
 
 from beltdyn.arrays import FloatArray
 from beltdyn.contact.contact_force import NO_CONTACT_TANGENT, ContactTotals, contact_force
-from beltdyn.contact.contact_zone import out_of_reach
 from beltdyn.kernel import kernel
 from beltdyn.machines.links import link_torque
 from beltdyn.machines.loads.shaft import sensor_slope, shaft_torque, state_rate
@@ -31,13 +30,7 @@ from beltdyn.system.arrays import (
     TangentFactors,
 )
 from beltdyn.system.carrying import NO_CARRYING_TANGENT, add_carrying
-from beltdyn.system.element_state import (
-    add_material_damping,
-    centreline,
-    element_workspace,
-    gather_motion,
-    move_centreline,
-)
+from beltdyn.system.element_state import add_material_damping, centreline, element_workspace, gather_motion, reaches
 from beltdyn.system.guide import push_carriage
 from beltdyn.system.moving_center import pulley_state, tensioner_coordinate
 
@@ -320,8 +313,7 @@ def find_body_forces(system: System, motion: Motion, work: np.record, corner: Fl
             piece = centreline(system, element, curve, work)
             for p in range(system.pulleys.size):
                 pulley = pulley_state(system, p, motion.position, motion.velocity)
-                if not out_of_reach(piece.control, pulley):
-                    move_centreline(system, element, curve, work)
+                if reaches(system, element, curve, pulley, work):
                     totals = contact_force(piece, pulley, system.law, system.contact, NO_CONTACT_TANGENT, work.contact)
                     add_contact(forces, p, totals)
     add_machines(system, motion, NO_TANGENT, corner, forces)

@@ -4,7 +4,8 @@ import numpy as np
 
 from beltdyn.arrays import FloatArray, blank, record
 from beltdyn.contact.contact_force import contact_record
-from beltdyn.contact.contact_zone import Curve
+from beltdyn.contact.contact_zone import Curve, out_of_reach
+from beltdyn.contact.law import PulleyState
 from beltdyn.contact.surface import element_start
 from beltdyn.elements import damping_force
 from beltdyn.elements.kind import DampingFactors, is_damped
@@ -122,8 +123,8 @@ def centreline(system: System, element: int, curve: int, work: np.record) -> Cur
     """A curve of the centerline of an element.
 
     `element`, `curve`: which curve of which element; `work`: from `element_workspace`, with the coordinates of the
-    element; the control points are written into it, and their velocities by `move_centreline`. Returns valid until
-    `work` is used for the next curve.
+    element; the control points are written into it, and their velocities by `move_centreline` or `reaches`. Returns
+    valid until `work` is used for the next curve.
     """
     fill_control(system, element, curve, work.coordinates[0], work.control)
     length = system.length[element] / system.control.shape[1]
@@ -135,6 +136,15 @@ def centreline(system: System, element: int, curve: int, work: np.record) -> Cur
 def move_centreline(system: System, element: int, curve: int, work: np.record) -> None:
     """Velocities of the control points of a curve from `centreline`, whose element has its rates in `work`."""
     fill_control(system, element, curve, work.coordinates[1], work.control_velocity)
+
+
+@kernel(inline=True)
+def reaches(system: System, element: int, curve: int, pulley: PulleyState, work: np.record) -> bool:
+    """Whether a curve from `centreline` may touch a pulley; then its control points have their velocities too."""
+    if out_of_reach(work.control, pulley):
+        return False
+    move_centreline(system, element, curve, work)
+    return True
 
 
 @kernel

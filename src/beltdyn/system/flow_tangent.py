@@ -21,21 +21,13 @@ import numpy as np
 
 from beltdyn.arrays import FloatArray
 from beltdyn.contact.contact_force import ContactFactors, contact_force
-from beltdyn.contact.contact_zone import out_of_reach
 from beltdyn.elements.kind import DampingFactors
 from beltdyn.kernel import by_type, kernel
 from beltdyn.system.arc_mesh import first_arc
 from beltdyn.system.arrays import BENDING_LOSS, STRETCH_LOSS, Equations, Motion, RingMatrix, System, TangentFactors
 from beltdyn.system.body_forces import add_contact, differentiates_forces
 from beltdyn.system.carrying import CarryingFactors, add_carried, find_accelerations
-from beltdyn.system.element_state import (
-    centreline,
-    couple_rim,
-    loses_in_belt,
-    material_forces,
-    move_centreline,
-    take_contact,
-)
+from beltdyn.system.element_state import centreline, couple_rim, loses_in_belt, material_forces, reaches, take_contact
 from beltdyn.system.frame import (
     ArcMesh,
     Flowing,
@@ -122,9 +114,8 @@ def _add_contact(system: System, motion: Motion, element: int, factors: FlowFact
     by = ContactFactors(factors.place, factors.rate, factors.turning, by_slope, factors.flow, factors.secant)
     for p in range(system.pulleys.size):
         pulley = pulley_state(system, p, motion.position, motion.velocity)
-        if out_of_reach(piece.control, pulley):
+        if not reaches(system, element, 0, pulley, work):
             continue
-        move_centreline(system, element, 0, work)
         center = moving_center(system, p, motion.position, motion.velocity)
         drifting = factors.rate != 0.0 and center.unknown >= 0 and center.turning
         if drifting:

@@ -151,9 +151,9 @@ def add_hysteresis_flow(
 @kernel
 def hysteresis_tension(own: np.record, vectors: tuple[int, ...], work: np.record) -> float:
     """What hysteresis adds to the tension of an element over |q|, N; as for `add_hysteresis`."""
-    scratch = work.hysteresis
     if own.axial == 0.0:
         return 0.0
+    scratch = work.hysteresis
     _find_strains(own, vectors, work.coordinates, scratch)
     return hysteretic(own.axial, scratch.strain, scratch.strain_rate, scratch.square, own.stretch_length).stress
 
@@ -223,8 +223,8 @@ def _find_curvature(own: np.record, vectors: tuple[int, ...], coordinates: Float
             vx += factor * velocity[vectors[a]]
             vy += factor * velocity[vectors[a] + 1]
         inverse = 1.0 / (x * x + y * y)
-        by_square = side * inverse * inverse
-        across, along = by_square * 2.0 * x * y, by_square * (y * y - x * x)
+        squared = side * inverse * inverse
+        across, along = squared * 2.0 * x * y, squared * (y * y - x * x)
         scratch.turning[end, 0, 0], scratch.turning[end, 0, 1] = across, along
         scratch.turning[end, 1, 0], scratch.turning[end, 1, 1] = along, -across
         slope_x, slope_y = -side * inverse * y, side * inverse * x

@@ -11,7 +11,6 @@ import numpy as np
 
 from beltdyn.arrays import FloatArray, IntArray, Records, records
 from beltdyn.contact.contact_force import tooth_force, tooth_numbers
-from beltdyn.contact.contact_zone import out_of_reach
 from beltdyn.contact.surface import TEETH, MeshingRims, PolygonRims, RoundRims, ShapedRims, ToothedRims
 from beltdyn.contact.surface.toothed import FOLLOWS, PHASE, SPEED
 from beltdyn.kernel import by_type, kernel
@@ -20,7 +19,7 @@ from beltdyn.model.toothing import DISCRETE
 from beltdyn.system.arrays import BodyForces, Motion, NoCarriage, RingMatrix, System, TangentFactors
 from beltdyn.system.body_forces import add_machines
 from beltdyn.system.constant_drive import constant_drive, without_actions
-from beltdyn.system.element_state import centreline, element_workspace, gather_motion, move_centreline
+from beltdyn.system.element_state import centreline, element_workspace, gather_motion, reaches
 from beltdyn.system.frame import Travelling, centreline_places, passed_lengths
 from beltdyn.system.moving_center import pulley_center, pulley_state
 from beltdyn.system.state import State
@@ -404,9 +403,8 @@ def fill_tooth_forces(
                 piece = centreline(system, element, curve, work)
                 for p in range(system.pulleys.size):
                     pulley = pulley_state(system, p, position[k], velocity[k])
-                    if out_of_reach(piece.control, pulley):
+                    if not reaches(system, element, curve, pulley, work):
                         continue
-                    move_centreline(system, element, curve, work)
                     first, last = tooth_numbers(pulley.surface, piece)
                     for number in range(first, last):
                         if number < found.shape[1]:

@@ -5,7 +5,7 @@ from typing import NamedTuple
 import numpy as np
 
 from beltdyn.arrays import FloatArray, IntArray
-from beltdyn.contact.contact_zone import Curve, combine, fill_bernstein, out_of_reach, touching_intervals
+from beltdyn.contact.contact_zone import Curve, combine, fill_bernstein, touching_intervals
 from beltdyn.contact.law import PulleyState
 from beltdyn.contact.penetration import approach, slip_velocity
 from beltdyn.contact.point_force import point_force
@@ -14,7 +14,7 @@ from beltdyn.model import Prepared
 from beltdyn.model.nip import Pair
 from beltdyn.system.arc_mesh import fit_mesh
 from beltdyn.system.arrays import System
-from beltdyn.system.element_state import centreline, element_workspace, gather_motion, move_centreline
+from beltdyn.system.element_state import centreline, element_workspace, gather_motion, reaches
 from beltdyn.system.material_loss import hysteresis_tension
 from beltdyn.system.moving_center import pulley_state
 from beltdyn.system.observe import stretch_at
@@ -85,8 +85,7 @@ def fill_nips(
                 piece, first = centreline(system, element, curve, work), (element * curves + curve) * count
                 for r in range(rollers.size):
                     pulley = pulley_state(system, rollers[r], position[k], velocity[k])
-                    if not out_of_reach(piece.control, pulley):
-                        move_centreline(system, element, curve, work)
+                    if reaches(system, element, curve, pulley, work):
                         part = Part(k, r, first, pull)
                         _press(system, piece, pulley, part, work, found)
                         _enter(system, piece, pulley, part, work, found)

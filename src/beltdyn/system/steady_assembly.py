@@ -24,7 +24,6 @@ import numpy as np
 
 from beltdyn.arrays import FloatArray
 from beltdyn.contact.contact_force import ContactFactors, contact_force
-from beltdyn.contact.contact_zone import Curve, out_of_reach
 from beltdyn.elements import elastic_force
 from beltdyn.kernel import by_type, kernel
 from beltdyn.system.arc_mesh import add_holding_force, fit_mesh, hold_arcs
@@ -56,7 +55,7 @@ from beltdyn.system.element_state import (
     gather,
     gather_motion,
     hold_fixed,
-    move_centreline,
+    reaches,
     scatter,
     take_contact,
 )
@@ -138,8 +137,7 @@ def _travelling_element(
     _add_inertia(system, element, factors, wanted, equations.work)
     add_material_damping(system, element, factors, equations.work, equations.forces)
     for curve in range(system.control.shape[1]):
-        piece = centreline(system, element, curve, equations.work)
-        _contact(system, motion, factors, element, curve, piece, equations)
+        _contact(system, motion, factors, element, curve, equations)
 
 
 @kernel(inline=True)
@@ -161,22 +159,15 @@ def _add_inertia(system: System, element: int, factors: TangentFactors, wanted: 
 
 @kernel(inline=True)
 def _contact(
-    system: System,
-    motion: Motion,
-    factors: TangentFactors,
-    element: int,
-    curve: int,
-    piece: Curve,
-    equations: Equations,
+    system: System, motion: Motion, factors: TangentFactors, element: int, curve: int, equations: Equations
 ) -> None:
     """Take the contact forces of a curve off the residual of its element, and couple it to the pulleys it touches."""
     work, matrix = equations.work, equations.matrix
-    wanted = differentiates_forces(factors)
+    wanted, piece = differentiates_forces(factors), centreline(system, element, curve, work)
     for p in range(system.pulleys.size):
         pulley = pulley_state(system, p, motion.position, motion.velocity)
-        if out_of_reach(piece.control, pulley):
+        if not reaches(system, element, curve, pulley, work):
             continue
-        move_centreline(system, element, curve, work)
         center = moving_center(system, p, motion.position, motion.velocity)
         drifting = center.unknown >= 0 and factors.by_position != 0.0 and center.turning
         rounds = 2 if drifting else 1

@@ -60,13 +60,21 @@ SLIDING = COMMON | {
 }
 
 
+LOSSES: dict[str, dict[str, float]] = {
+    "lossless": {},
+    "damping": {"stretch_damping_time": 1e-5, "bending_damping_time": 1e-2},
+    "hysteresis": {"stretch_loss_factor": 0.1, "bending_loss_factor": 0.3},
+}
+"""Of the belt's material."""
+
+
 @pytest.fixture(scope="session")
-def with_machines(drive: Drive) -> Callable[[str], Drive]:
+def with_machines(drive: Drive) -> Callable[..., Drive]:
     """The paper's drive with an idler on a tensioner, a hub chain behind the driven pulley, and loads on its end."""
 
-    def make(tensioner: str) -> Drive:
+    def make(tensioner: str, losses: str = "lossless") -> Drive:
         data = drive.model_dump(by_alias=True, exclude_none=True)
-        data["belt"] |= {"length": 1.2965, "elements": 12}
+        data["belt"] |= {"length": 1.2965, "elements": 12} | LOSSES[losses]
         data["contact"] = CONTACT | FRICTION["force_slope"]
         driver, driven = data["pulley"]
         driven |= {

@@ -44,25 +44,17 @@ def ring(drive: Drive) -> System:
 @pytest.mark.parametrize(
     ("tensioner", "law", "losses"),
     [
-        ("sliding", "force_slope", {}),
-        ("rotary", "relative_creep", {"stretch_damping_time": 1e-5, "bending_damping_time": 1e-2}),
-        ("sliding", "force_slope", {"stretch_loss_factor": 0.1, "bending_loss_factor": 0.3}),
-        pytest.param("rotary", "force_slope", {}, marks=pytest.mark.slow),
-        pytest.param(
-            "sliding",
-            "relative_creep",
-            {"stretch_damping_time": 1e-5, "bending_damping_time": 1e-2},
-            marks=pytest.mark.slow,
-        ),
-        pytest.param(
-            "rotary", "force_slope", {"stretch_loss_factor": 0.1, "bending_loss_factor": 0.3}, marks=pytest.mark.slow
-        ),
+        ("sliding", "force_slope", "lossless"),
+        ("rotary", "relative_creep", "damping"),
+        ("sliding", "force_slope", "hysteresis"),
+        pytest.param("rotary", "force_slope", "lossless", marks=pytest.mark.slow),
+        pytest.param("sliding", "relative_creep", "damping", marks=pytest.mark.slow),
+        pytest.param("rotary", "force_slope", "hysteresis", marks=pytest.mark.slow),
     ],
 )
-def test_tangent(with_machines: Callable[[str], Drive], tensioner: str, law: str, losses: dict[str, float]) -> None:
+def test_tangent(with_machines: Callable[..., Drive], tensioner: str, law: str, losses: str) -> None:
     """Along any direction of all unknowns, which move position, velocity and acceleration, by central differences."""
-    drive = with_machines(tensioner)
-    drive = drive.replace(belt=drive.belt.replace(**losses))
+    drive = with_machines(tensioner, losses)
     if law == "relative_creep":
         contact = drive.contact.model_dump(exclude_none=True) | {"friction_law": law, "creep_ratio": 0.15}
         contact.pop("creep_rate_factor")

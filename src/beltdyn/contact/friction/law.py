@@ -3,9 +3,10 @@
 from collections.abc import Callable
 from typing import Any, NamedTuple, Protocol
 
+import numpy as np
 from numpy.typing import ArrayLike
 
-from beltdyn.arrays import FloatArray
+from beltdyn.arrays import BoolArray, FloatArray, IntArray
 from beltdyn.kernel import KernelKinds
 from beltdyn.kinds import Parameter
 
@@ -18,6 +19,24 @@ class FrictionParameters(Protocol):
 
     def smoothed(self, factor: float) -> Any:
         """The same law with its saturation at a slip velocity larger by a factor."""
+
+
+def saturation_at(
+    law: FrictionParameters,
+    chosen: BoolArray,
+    touched: IntArray,
+    normal: FloatArray,
+    friction: FloatArray,
+    rim: FloatArray,
+) -> FloatArray:
+    """Slip velocities at which friction saturates at those points that are chosen, m/s.
+
+    `chosen`, `touched`, `normal`: points, numbers of the pulleys that they touch, and normal forces (N/m), shape (...,
+    points); `friction`, `rim`: coefficients of the pulleys, shape (P,), and speeds of their rims (m/s), shape (..., P).
+    """
+    pulley, (*states, _) = touched[chosen], np.nonzero(chosen)
+    rims = np.broadcast_to(rim, (*touched.shape[:-1], rim.shape[-1]))
+    return law.saturation(normal[chosen], friction[pulley], rims[(*states, pulley)])
 
 
 class FrictionLaw(NamedTuple):
