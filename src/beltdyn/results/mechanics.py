@@ -12,7 +12,7 @@ from numpy.typing import ArrayLike
 
 from beltdyn.arrays import BoolArray, FloatArray, IntArray
 from beltdyn.contact.contact_zone import BINOMIALS
-from beltdyn.contact.friction import saturation_at
+from beltdyn.contact.friction.law import saturation_at
 from beltdyn.elements import ELEMENTS, ElementKind
 from beltdyn.model import Prepared
 from beltdyn.model.path import span_directions, span_points, wrap_angles

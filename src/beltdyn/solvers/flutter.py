@@ -14,7 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from beltdyn.arrays import BoolArray, ComplexArray, FloatArray, IntArray
-from beltdyn.contact.friction import saturation_at
+from beltdyn.contact.friction.law import saturation_at
 from beltdyn.quadrature import running_integral
 from beltdyn.solvers.eigenvalues import arnoldi, unit_masses
 from beltdyn.solvers.engine import linearise

@@ -18,7 +18,6 @@ from beltdyn.contact.friction.creep_rate import coefficient_slope, force_slope, 
 from beltdyn.contact.friction.law import LAWS as LAWS
 from beltdyn.contact.friction.law import FrictionLaw as FrictionLaw
 from beltdyn.contact.friction.law import FrictionParameters as FrictionParameters
-from beltdyn.contact.friction.law import saturation_at as saturation_at
 from beltdyn.contact.friction.stribeck import Stribeck as Stribeck
 from beltdyn.contact.friction.stribeck import stribeck
 from beltdyn.kernel import by_type, kernel
