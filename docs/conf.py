@@ -1,18 +1,13 @@
 """Sphinx settings."""
 
 import sys
-from collections.abc import Mapping
 from importlib.metadata import version as installed_version
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
-from beltdyn.model import Entry, read_catalogue
-from beltdyn.results import COORDINATES, VARIABLES, Variable
-
-sys.path.insert(0, str(Path(__file__).parent))
-from key_tables import KEYS, KINDS
+sys.path.insert(0, str(Path(__file__).parent))  # of the extension mathml
 
 project = "beltdyn"
 author = "The beltdyn developers"
@@ -27,55 +22,8 @@ extensions = [
     "sphinx.ext.autosummary",
     "sphinx.ext.napoleon",
 ]
-myst_enable_extensions = ["amsmath", "colon_fence", "dollarmath", "substitution"]
+myst_enable_extensions = ["amsmath", "colon_fence", "dollarmath"]
 myst_heading_anchors = 3
-
-
-def table(variables: Mapping[str, Variable]) -> str:
-    """Give the variables of a result as a table in Markdown."""
-    rows = [
-        f"| `{name}` | {variable.long_name} | {variable.units if variable.dtype != 'str' else 'text'} "
-        f"| {', '.join(variable.dims)} |"
-        for name, variable in variables.items()
-    ]
-    return "\n".join(["| name | meaning | unit | dimensions |", "|---|---|---|---|", *rows])
-
-
-def profiles(catalogue: Mapping[str, Entry]) -> str:
-    """Give the profiles of the catalogue as a table in Markdown, below their kinds."""
-    rows, kind = [], ""
-    for name, entry in catalogue.items():
-        if entry.kind != kind:
-            kind = entry.kind
-            rows.append(f"| **{kind}** | | | | | | | |")
-        smallest = f"{1e3 * entry.smallest_diameter:.3g}" if entry.smallest_diameter else ""
-        rows.append(
-            f"| `{name}` | {1e3 * entry.width:.3g} | {1e3 * entry.thickness:.3g} | {entry.axial_stiffness / 1e3:.3g} "
-            f"| {entry.bending_stiffness:.2g} | {1e3 * entry.mass_per_length:.3g} "
-            f"| {1e3 * entry.pitch_offset:.3g}, {1e3 * entry.back_offset:.3g} | {smallest} |"
-        )
-    headings = (
-        "profile",
-        "width",
-        "thickness",
-        "$EA$",
-        "$EI$",
-        "mass",
-        "`pitch_offset`, `back_offset`",
-        "smallest pulley",
-    )
-    units = ("", "mm", "mm", "kN", "N m²", "g/m", "mm", "mm")
-    titles = [f"{heading}{', ' * bool(unit)}{unit}" for heading, unit in zip(headings, units, strict=True)]
-    return "\n".join([f"| {' | '.join(titles)} |", "|---" * len(titles) + "|", *rows])
-
-
-myst_substitutions = {
-    "variables": table(VARIABLES),
-    "coordinates": table(COORDINATES),
-    "catalogue": profiles(read_catalogue()),
-    "keys": KEYS,
-    "kinds": KINDS,
-}
 napoleon_google_docstring = False
 autodoc_member_order = "bysource"
 autodoc_typehints = "description"

@@ -1,253 +1,169 @@
-"""Tables of the keys of drive files and studies, made from the fields that read them: `{{ keys.belt }}` on a page."""
+"""Write tables of keys, kinds, results and belts into pages, between `<!-- keys.belt -->` and `<!-- end -->`."""
 
-import json
 import re
-import typing
-from collections.abc import Iterable, Mapping
-from functools import cache
-from math import inf, pi, tau
+from collections.abc import Iterator, Mapping
 from pathlib import Path
-from typing import Any, Literal
-
-from annotated_types import Ge, Gt, Le, Lt
-from pydantic.fields import FieldInfo
+from typing import Any
 
 from beltdyn.analyses import ANALYSES
-from beltdyn.contact.surface import KINDS as SURFACES
-from beltdyn.machines import Goods, Support
 from beltdyn.machines.carrying.support import SUPPORTS
 from beltdyn.machines.links.link import LINKS
-from beltdyn.machines.loads.load import LOADS, Load
-from beltdyn.machines.profiles.harmonic import CrankSpeed
+from beltdyn.machines.loads.load import LOADS
 from beltdyn.machines.profiles.profile import PROFILES
-from beltdyn.machines.tensioners.rotary import ArmAsSupplied
 from beltdyn.machines.tensioners.tensioner import TENSIONERS
-from beltdyn.model import (
-    Belt,
-    Carriage,
-    Contact,
-    Cover,
-    FixedEnd,
-    Harmonic,
-    Limits,
-    Nip,
-    PulledEnd,
-    Pulley,
-    Roll,
-    Simulation,
-    Steady,
-    Unwinder,
-    WeightEnd,
-    Winder,
-)
-from beltdyn.model.belt_form import Nominal, Sold, Stiffnesses
-from beltdyn.model.parameter_study import (
-    DutyPoint,
-    FreeNumber,
-    Goal,
-    Measurement,
-    Obstacle,
-    Order,
-    ParameterStudy,
-    Points,
-    Requirement,
-    VariedNumber,
-)
-from beltdyn.model.pulley import Diameter, surface_part
-from beltdyn.model.rating import CordFatigue, RibFatigue, StretchCurve
-from beltdyn.parts.kind_fields import NameOf
-from beltdyn.parts.part import Part
+from beltdyn.model import Entry, read_catalogue
+from beltdyn.results import COORDINATES, VARIABLES, Variable
+from beltdyn.show.key_tables import Group, key_groups
 from beltdyn.show.plot import FIGURES
 from beltdyn.show.plot.figures import on_request
 
-CHOSEN = {
-    Belt: ("length", "elements", "discretization"),
-    Contact: ("stiffness", "damping", "creep_ratio", "standstill_creep"),
-    Simulation: ("frame",),
-}
-"""Keys that a drive chooses where its file leaves them open."""
+PAGES = Path(__file__).parent
+FAMILIES = ("surface", "load", "hub", "support", "tensioner")
+"""Families of kinds with sections of their own; `load.others` has those without one."""
 
 _CODE = re.compile(r'\{ [^}]*\}|"[\w.()\[\] -]+"|\b[a-z]+(?:_[a-z]+)+\b')
 """Values in quotation marks, and keys of more than one word."""
+_BLOCK = re.compile(r"<!-- ([\w.]+) -->\n.*?<!-- end -->", re.DOTALL)
 
 
-def table(part: type[Part], *others: type[Part], without: Iterable[str] = ("kind",)) -> str:
-    """The keys of a part as a table in Markdown, with those that others take in their place."""
-    rows = {
-        field.alias or name: f"| `{field.alias or name}` | {_meaning(field)} | {_default(part, one, name, field)} |"
-        for one in (part, *others)
-        for name, field in one.model_fields.items()
-        if name not in without
-    }
-    return "\n".join(["| key | meaning | default |", "|---|---|---|", *rows.values()])
+def spelled(text: str) -> str:
+    """A text with keys and values of the file as code."""
+    parts = re.split(r"(`[^`]*`)", text)
+    return "".join(part if part.startswith("`") else _CODE.sub(r"`\g<0>`", part) for part in parts)
 
 
-def family(kinds: Mapping[str, type[Part]], shared: type[Part] | None = None) -> dict[str, str]:
-    """Tables of all kinds; what they share has a table of its own, `shared`."""
-    common = tuple(shared.model_fields) if shared else ()
-    tables = {name: table(part, without=("kind", *common)) for name, part in kinds.items()}
-    return {**tables, "shared": table(shared)} if shared else tables
+def table(headings: str, rows: Iterator[tuple[str, ...]]) -> str:
+    """A table in Markdown."""
+    columns = headings.split("|")
+    lines = [f"| {' | '.join(row)} |" for row in (columns, *rows)]
+    return "\n".join([lines[0].replace("  ", " "), "|---" * len(columns) + "|", *lines[1:]])
 
 
-def untold(name: str) -> dict[str, type[Part]]:
-    """Kinds of one of the families that have keys, but no section on a page."""
-    return {
-        kind: part
-        for kind, part in FAMILIES[name].items()
-        if f"{{{{ keys.{name}.{kind} }}}}" not in _told() and set(part.model_fields) != {"kind"}
-    }
+def keys(group: Group) -> str:
+    """The keys of a group."""
+    return table("key|meaning|default", ((f"`{key.name}`", spelled(key.meaning), key.default) for key in group.keys))
 
 
-@cache
-def _told() -> str:
-    """All pages."""
-    return "".join(page.read_text(encoding="utf-8") for page in Path(__file__).parent.rglob("*.md"))
-
-
-def others(kinds: Mapping[str, type[Part]]) -> str:
-    """Kinds one below the other, each with its meaning and its keys."""
+def others(family: str) -> str:
+    """Kinds of a family that have no section on a page, each with its meaning and its keys."""
+    kinds = {"load": LOADS, "hub": LINKS, "support": SUPPORTS, "tensioner": TENSIONERS}.get(family, {})
     return "\n\n".join(
-        f'**`kind = "{name}"`**: {(part.__doc__ or "").partition(chr(10))[0]}\n\n{table(part)}'
-        for name, part in kinds.items()
+        f'**`kind = "{kind}"`**: {_purpose(kinds.get(kind))}\n\n{keys(key_groups()[f"{family}.{kind}"])}'
+        for kind in without_section(family)
     )
 
 
-def spelled(description: str) -> str:
-    """A description with units as they are printed, and with keys and values of the file as code."""
-    text = re.sub(r"\^([23])", lambda found: "²³"[int(found[1]) - 2], description.replace("*", " "))
-    parts = re.split(r"(`[^`]*`)", text)
-    return "".join(one if one.startswith("`") else _CODE.sub(r"`\g<0>`", one) for one in parts)
+def without_section(family: str) -> list[str]:
+    """Kinds of a family that have keys, but no section on a page."""
+    pages = "".join(page.read_text(encoding="utf-8") for page in PAGES.rglob("*.md"))
+    names = [name for name, group in key_groups().items() if name.startswith(f"{family}.") and group.keys]
+    return [name.partition(".")[2] for name in names if f"<!-- keys.{name} -->" not in pages]
 
 
-def _meaning(field: FieldInfo) -> str:
-    """Description, choices and limits."""
-    told = spelled(field.description or "")
-    words = [f"{told[0].upper()}{told[1:]}"]
-    choices = next((one.choices for one in field.metadata if isinstance(one, NameOf)), _choices(field.annotation))
-    if not all(one in told for one in choices):
-        words.append(f"one of {', '.join(f'`{one}`' for one in choices)}")
-    limits = [limit for one in field.metadata if (limit := _limit(one)) and limit not in told]
-    return "; ".join([*words, " and ".join(limits)] if limits else words)
-
-
-def _choices(annotation: Any) -> tuple[str, ...]:
-    """The words from which one is chosen."""
-    if typing.get_origin(annotation) is Literal:
-        return typing.get_args(annotation)
-    for one in getattr(annotation, "__metadata__", ()):
-        if isinstance(one, NameOf):
-            return one.choices
-    return next((found for one in typing.get_args(annotation) if (found := _choices(one))), ())
-
-
-def _limit(constraint: object) -> str:
-    """A limit in words; nothing of what goes without saying."""
-    match constraint:
-        case Gt(gt=limit) if limit:
-            return f"above {limit:g}"
-        case Ge(ge=limit) if limit:
-            return f"at least {limit:g}"
-        case Lt(lt=limit) if limit < inf:
-            return f"below {limit:g}"
-        case Le(le=limit):
-            return f"at most {'π' if limit == pi else format(limit, 'g')}"
-    return ""
-
-
-def _default(part: type[Part], one: type[Part], name: str, field: FieldInfo) -> str:
-    """The value that holds where the key is open."""
-    if name in CHOSEN.get(one, ()):
-        return "chosen"
-    if field.is_required():
-        return "required" if one is part else ""
-    value = field.get_default()
-    if value in (None, ()) or field.default_factory:
-        return ""
-    if value == tau:
-        return "one turn"
-    return f"`{json.dumps(value) if isinstance(value, bool | tuple) else value}`"
-
-
-def names(kinds: Mapping[str, Any]) -> str:
-    """The classes of a family as a table in Markdown, with their keys."""
-    rows = []
-    for name, part in kinds.items():
-        told = (part.__doc__ or "").partition("\n")[0]
-        keys = ", ".join(f"`{key}`" for key in list(part.keys()) if key != "kind")
-        rows.append(f"| `bd.{part.__name__}` | `{name}` | {told} | {keys} |")
-    return "\n".join(["| class | `kind` | | keys |", "|---|---|---|---|", *rows])
+def kinds(registry: Mapping[str, Any]) -> str:
+    """The classes of a family, with their keys."""
+    return table(
+        "class|`kind`||keys",
+        (
+            (
+                f"`bd.{part.__name__}`",
+                f"`{name}`",
+                _purpose(part),
+                ", ".join(f"`{key}`" for key in list(part.keys()) if key != "kind"),
+            )
+            for name, part in registry.items()
+        ),
+    )
 
 
 def analyses() -> str:
-    """The analyses as a table in Markdown."""
-    rows = [f"| `bd.{name}` | `beltdyn {one.command}` | {one.purpose} |" for name, one in ANALYSES.items()]
-    return "\n".join(["| function | command | |", "|---|---|---|", *rows])
+    """The analyses."""
+    return table(
+        "function|command|",
+        ((f"`bd.{name}`", f"`beltdyn {each.command}`", each.purpose) for name, each in ANALYSES.items()),
+    )
 
 
 def figures() -> str:
-    """The figures as a table in Markdown."""
-    rows = [
-        f"| `bd.plot.{name}` | {', '.join(one.of)} | {'on request' if one.by_default is on_request else ''} "
-        f"| {(one.draw.__doc__ or '').partition(chr(10))[0]} |"
-        for name, one in FIGURES.items()
-    ]
-    return "\n".join(["| figure | of results of | | |", "|---|---|---|---|", *rows])
+    """The figures."""
+    return table(
+        "figure|of results of||",
+        (
+            (
+                f"`bd.plot.{name}`",
+                ", ".join(figure.of),
+                "on request" if figure.by_default is on_request else "",
+                _purpose(figure.draw),
+            )
+            for name, figure in FIGURES.items()
+        ),
+    )
 
 
-KINDS = {"load": names(LOADS), "hub": names(LINKS), "tensioner": names(TENSIONERS), "profile": names(PROFILES)}
-KINDS |= {"support": names(SUPPORTS)}
-KINDS |= {"analysis": analyses(), "figure": figures()}
-"""The classes of the machines: `{{ kinds.load }}`."""
+def variables(schema: Mapping[str, Variable]) -> str:
+    """The variables of a result."""
+    return table(
+        "name|meaning|unit|dimensions",
+        (
+            (f"`{name}`", each.long_name, each.units if each.dtype != "str" else "text", ", ".join(each.dims))
+            for name, each in schema.items()
+        ),
+    )
 
-FAMILIES: dict[str, Mapping[str, type[Part]]] = {
-    "surface": {name: surface_part(kind) for name, kind in SURFACES.items()},
-    "load": LOADS,
-    "hub": LINKS,
-    "support": SUPPORTS,
-    "tensioner": TENSIONERS,
-}
-"""Kinds with sections of their own; `{{ keys.load.others }}` has those that were added without one."""
 
-KEYS: dict[str, Any] = {
-    "belt": table(Belt, Nominal),
-    "sold": table(Stiffnesses, Sold, without=("width", "thickness")),
-    "stretch_curve": table(StretchCurve),
-    "cord_fatigue": table(CordFatigue),
-    "rib_fatigue": table(RibFatigue),
-    "pulley": table(Pulley, Diameter),
-    "surface": family(FAMILIES["surface"]),
-    "contact": table(Contact),
-    "duty": table(DutyPoint),
-    "simulation": table(Simulation),
-    "steady": table(Steady),
-    "limits": table(Limits),
-    "end": family({"fixed": FixedEnd, "pulled": PulledEnd, "weight": WeightEnd}),
-    "carriage": table(Carriage),
-    "roll": table(Roll),
-    "unwinder": table(Unwinder),
-    "winder": table(Winder),
-    "harmonic": table(Harmonic),
-    "crank": table(CrankSpeed),
-    "load": family(LOADS, Load),
-    "arm": table(ArmAsSupplied),
-    "hub": family(LINKS),
-    "support": family(SUPPORTS, Support),
-    "goods": table(Goods),
-    "nip": table(Nip),
-    "cover": table(Cover),
-    "tensioner": family(TENSIONERS),
-    "profile": family(PROFILES),
-    "study": table(ParameterStudy),
-    "study_number": table(VariedNumber),
-    "free_number": table(FreeNumber),
-    "points": table(Points),
-    "goal": table(Goal),
-    "requirement": table(Requirement),
-    "order": table(Order),
-    "obstacle": table(Obstacle),
-    "measurement": table(Measurement),
-}
-"""All tables, by the names that the pages give them."""
+def profiles(catalogue: Mapping[str, Entry]) -> str:
+    """The profiles of the catalogue, below their kinds."""
 
-for _name in FAMILIES:
-    KEYS[_name]["others"] = others(untold(_name))
+    def rows() -> Iterator[tuple[str, ...]]:
+        kind = ""
+        for name, entry in catalogue.items():
+            if entry.kind != kind:
+                kind = entry.kind
+                yield f"**{kind}**", *[""] * 7
+            yield (
+                f"`{name}`",
+                f"{1e3 * entry.width:.3g}",
+                f"{1e3 * entry.thickness:.3g}",
+                f"{entry.axial_stiffness / 1e3:.3g}",
+                f"{entry.bending_stiffness:.2g}",
+                f"{1e3 * entry.mass_per_length:.3g}",
+                f"{1e3 * entry.pitch_offset:.3g}, {1e3 * entry.back_offset:.3g}",
+                f"{1e3 * entry.smallest_diameter:.3g}" if entry.smallest_diameter else "",
+            )
+
+    headings = "profile|width, mm|thickness, mm|$EA$, kN|$EI$, N m²|mass, g/m|"
+    return table(f"{headings}`pitch_offset`, `back_offset`, mm|smallest pulley, mm", rows())
+
+
+def _purpose(documented: Any) -> str:
+    """The first line of a docstring."""
+    return str(documented.__doc__ or "").partition("\n")[0]
+
+
+def tables() -> dict[str, str]:
+    """All tables, by the names that the pages give them."""
+    registries = {"load": LOADS, "hub": LINKS, "tensioner": TENSIONERS, "profile": PROFILES, "support": SUPPORTS}
+    return {
+        **{f"keys.{name}": keys(group) for name, group in key_groups().items()},
+        **{f"keys.{family}.others": others(family) for family in FAMILIES},
+        **{f"kinds.{name}": kinds(registry) for name, registry in registries.items()},
+        "kinds.analysis": analyses(),
+        "kinds.figure": figures(),
+        "catalogue": profiles(read_catalogue()),
+        "variables": variables(VARIABLES),
+        "coordinates": variables(COORDINATES),
+    }
+
+
+def with_tables(page: str, current: Mapping[str, str]) -> str:
+    """A page with the tables as they are now."""
+    return _BLOCK.sub(lambda block: f"<!-- {block[1]} -->\n{current[block[1]]}\n<!-- end -->", page)
+
+
+if __name__ == "__main__":
+    current = tables()
+    for path in PAGES.rglob("*.md"):
+        page = path.read_text(encoding="utf-8")
+        if (written := with_tables(page, current)) != page:
+            path.write_text(written, encoding="utf-8")
+            print(f"Written: {path.relative_to(PAGES)}")  # noqa: T201

@@ -14,7 +14,6 @@ import matplotlib.pyplot as plt
 import pytest
 import run_tasks
 import tomli_w
-from key_tables import untold
 
 from beltdyn.analyses import ANALYSES, EQUILIBRIUM, RUN
 from beltdyn.cli import main
@@ -22,13 +21,7 @@ from beltdyn.designs.designs import free_number
 from beltdyn.designs.residuals import read_measured
 from beltdyn.machines.profiles.profile import PROFILES
 from beltdyn.model import (
-    Belt,
-    Contact,
-    Limits,
-    Pulley,
     Rating,
-    Simulation,
-    Steady,
     Toothing,
     advise,
     dumps,
@@ -36,13 +29,12 @@ from beltdyn.model import (
     load,
     loads,
 )
-from beltdyn.model.belt_form import Nominal, Sold
 from beltdyn.model.catalogue import Entry, read_catalogue
 from beltdyn.model.parameter_study import CalibrationStudy, OptimizationStudy
-from beltdyn.model.pulley import Diameter
 from beltdyn.model.toml import example
 from beltdyn.model.toothing import ToothRating
 from beltdyn.parts.part import Part
+from beltdyn.show.key_tables import AUTOMATIC, described, key_groups
 from beltdyn.show.plot import FIGURES
 from beltdyn.show.plot.figures import on_request
 from beltdyn.transient.simulate import simulate
@@ -78,65 +70,54 @@ def test_the_readmes_drive_is_that_of_the_demo() -> None:
     assert loads(text) == example("fan_direct_start")
 
 
-@pytest.mark.parametrize(
-    ("part", "name"),
-    [
-        *((part, part.__name__.lower()) for part in (Belt, Pulley, Contact, Simulation, Steady, Limits)),
-        *((Nominal, "belt"), (Sold, "sold"), (Diameter, "pulley")),
-    ],
-)
-def test_tables_have_every_key(part: type[Part], name: str) -> None:
-    table = key_tables.KEYS[name]
-    for key, field in part.model_fields.items():
-        meaning = re.escape(key_tables.spelled(str(field.description))[1:])
-        assert re.search(rf"^\| `{field.alias or key}` \| .{meaning}.* \|$", table, re.MULTILINE), key
+@pytest.mark.parametrize("page", sorted((ROOT / "docs").rglob("*.md")), ids=lambda page: page.stem)
+def test_tables_of_pages_are_current(page: Path, tables: dict[str, str]) -> None:
+    """Otherwise `python docs/key_tables.py` writes them anew."""
+    text = page.read_text(encoding="utf-8")
+    assert key_tables.with_tables(text, tables) == text
 
 
-def test_tables_tell_defaults_choices_and_limits() -> None:
-    rows = key_tables.KEYS["contact"].splitlines()
-    assert next(row for row in rows if "`friction_law`" in row).endswith("`stribeck` | `relative_creep` |")
-    assert next(row for row in rows if "`stiffness`" in row).endswith("| chosen |")
-    assert "at least 1 and at most 64" in next(row for row in rows if "`quadrature_points`" in row)
-    assert "| required |" in next(row for row in key_tables.KEYS["belt"].splitlines() if "`width`" in row)
+def test_a_changed_table_is_noticed(tables: dict[str, str]) -> None:
+    text = DRIVE_FILE.read_text(encoding="utf-8").replace("| `length` |", "| `lenght` |", 1)
+    assert key_tables.with_tables(text, tables) != text
+
+
+@pytest.fixture(scope="module")
+def tables() -> dict[str, str]:
+    current: dict[str, str] = key_tables.tables()
+    return current
 
 
 def test_descriptions_are_spelled_as_they_are_printed() -> None:
-    said = 'the force, in N*s/m^2, under `length` or measuring_force, by "green"'
-    assert key_tables.spelled(said) == 'the force, in N s/m², under `length` or `measuring_force`, by `"green"`'
+    text = described('the force, in N*s/m^2, under `length` or measuring_force, by "green"')
+    assert key_tables.spelled(text) == 'the force, in N s/m², under `length` or `measuring_force`, by `"green"`'
 
 
-def test_what_a_drive_chooses_is_told() -> None:
-    chosen = {f"{part.__name__.lower()}.{key}" for part, keys in key_tables.CHOSEN.items() for key in keys}
+def test_what_a_drive_chooses_is_in_the_tables() -> None:
+    chosen = {f"{part.__name__.lower()}.{key}" for part, keys in AUTOMATIC.items() for key in keys}
     assert {choice.key for choice in example("alternator_drive").completed.choices} <= chosen
 
 
-def names_of(tables: dict[str, Any], above: str = "keys") -> list[str]:
-    """What pages call the tables of keys."""
-    found = []
-    for key, one in tables.items():
-        found += names_of(one, f"{above}.{key}") if isinstance(one, dict) else [f"{above}.{key}"]
-    return found
-
-
-def test_every_table_of_keys_stands_on_a_page() -> None:
-    """But those of profiles and of kinds without a section, which have one together, and of the circle without keys."""
+def test_every_table_of_keys_stands_on_a_page(tables: dict[str, str]) -> None:
+    """But those of profiles and of kinds without a section, which have one together, and of groups without keys."""
     text = "".join(page.read_text(encoding="utf-8") for page in (ROOT / "docs").rglob("*.md"))
-    shown = set(re.findall(r"^{{ (keys[\w.]+) }}$", text, re.MULTILINE))
+    shown = set(re.findall(r"^<!-- (keys[\w.]+) -->$", text, re.MULTILINE))
+    apart = {f"keys.{family}.{kind}" for family in key_tables.FAMILIES for kind in key_tables.without_section(family)}
+    empty = {f"keys.{name}" for name, group in key_groups().items() if not group.keys}
     assert shown == {
-        name
-        for name in names_of(key_tables.KEYS)
-        if not name.startswith("keys.profile.") and name != "keys.surface.circle"
-    } - {f"keys.{family}.{kind}" for family in key_tables.FAMILIES for kind in untold(family)}
+        name for name in tables if name.startswith("keys.") and not name.startswith("keys.profile.")
+    } - apart - empty - {"keys.drive"}
 
 
 @pytest.mark.parametrize("family", ["load", "hub", "tensioner"])
 def test_every_kind_of_machine_has_a_section(family: str) -> None:
     text = MACHINES.read_text(encoding="utf-8")
-    for kind in key_tables.KEYS[family]:
-        if kind not in ("shared", "others", *untold(family)):
+    for name, group in key_groups().items():
+        above, _, kind = name.partition(".")
+        if above == family and kind != "shared" and group.keys and kind not in key_tables.without_section(family):
             section = text.split(f'\n### `kind = "{kind}"`\n')
             assert len(section) == 2, kind
-            assert f"{{{{ keys.{family}.{kind} }}}}" in section[1].split("\n#")[0]
+            assert f"<!-- keys.{family}.{kind} -->" in section[1].split("\n#")[0]
 
 
 @pytest.mark.parametrize("profile", PROFILES.values())

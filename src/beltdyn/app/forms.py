@@ -10,7 +10,7 @@ from typing import Any, Literal, NamedTuple
 from beltdyn.app.scene import groups
 from beltdyn.machines.loads.load import LOADS
 from beltdyn.model import Drive, read_catalogue
-from beltdyn.parts.quantity import to_si
+from beltdyn.parts.quantity import described_unit, printed_unit, to_si
 from beltdyn.parts.text_file import ErrorLocation, option_names
 from beltdyn.parts.toml_edits import Location
 
@@ -52,13 +52,7 @@ _OF_SHOPS: Mapping[str, Unit] = MappingProxyType(
 def unit_in(system: System, si: str) -> Unit:
     """The unit of a system for an SI unit."""
     other = _OF_SHOPS.get(si) if system == "mm" else None
-    return other or Unit(_printed(si), "", 1.0)
-
-
-def _printed(si: str) -> str:
-    """An SI unit as it is printed."""
-    powers = si.replace("^2", "²").replace("^3", "³").replace("^4", "⁴")
-    return powers.replace("*", " ")
+    return other or Unit(printed_unit(si), "", 1.0)
 
 
 def shown(value: Any, si: str, system: System) -> str:
@@ -95,7 +89,6 @@ Form = Literal["text", "number", "choice", "flag", "point", "numbers", "group", 
 
 _NOT_IN_FILES = frozenset({"function"})
 """Kinds that a drive file cannot hold."""
-_IN_UNIT = re.compile(r", in ((?:rad|m|s|N|Pa|kg|Hz|W)(?:\^\d)?(?:[ *^/\d]+(?:rad|m|s|kg)(?:\^?\d)?)*)(?=$|[;,])")
 _NUMERIC = frozenset({"number", "integer"})
 _SHORT_OF: Mapping[str, tuple[str, ...]] = {
     "belt": ("profile", "ribs", "width", "installed_tension", "length", "nominal_length"),
@@ -200,7 +193,9 @@ def fields(data: Mapping[str, Any], location: Location) -> list[Field]:
     tagged, schema = _tagged(locations, data, location), schema_of(data, location)
     required = schema.get("required") or []
     short = _SHORT_OF.get(_group_name(location), ())
-    of_values = _unit(str(locations.locate(_tagged(locations, data, location[:-1]) + location[-1:])[1]["description"]))
+    of_values = described_unit(
+        str(locations.locate(_tagged(locations, data, location[:-1]) + location[-1:])[1]["description"])
+    )
     found = []
     for key in schema.get("properties", {}):
         own = locations.locate((*tagged, key))[1]
@@ -294,14 +289,14 @@ def _field(
     return Field(
         location,
         form,
-        _unit(hint) or given_unit if numeric else "",
+        described_unit(hint) or given_unit if numeric else "",
         hint,
         choices,
         default,
         first,
         required,
         value,
-        _unit(hint) if form == "group" else "",
+        described_unit(hint) if form == "group" else "",
         next(iter(schema.get("examples", ())), None),
     )
 
@@ -310,12 +305,6 @@ def _choices(schema: Mapping[str, Any]) -> tuple[str, ...]:
     """What may be chosen; nothing where there is no choice."""
     options = (schema, *option_names(schema).values())
     return tuple(choice for option in options for choice in option.get("enum", ()))
-
-
-def _unit(description: str) -> str:
-    """The unit that a description ends with; empty without one."""
-    found = _IN_UNIT.search(description)
-    return found[1] if found else ""
 
 
 def _form(schema: Mapping[str, Any]) -> Form:

@@ -14,7 +14,7 @@ from beltdyn.cli.analysis import analysis_command
 from beltdyn.cli.catalogue import catalogue, select
 from beltdyn.cli.check import check
 from beltdyn.cli.console import show_error, take_any_terminal
-from beltdyn.cli.new import new, schema
+from beltdyn.cli.new import keys, new, schema
 from beltdyn.cli.services import app as page
 from beltdyn.cli.services import compile_, fmu
 from beltdyn.cli.show import demo, export, plot, report
@@ -35,7 +35,7 @@ app = App(
 _COMMANDS: tuple[Callable[..., object] | Analysis, ...] = (
     *(new, select, check),
     *ANALYSES.values(),
-    *(study, plot, report, export, fmu, page, demo, catalogue, schema, compile_),
+    *(study, plot, report, export, fmu, page, demo, catalogue, keys, schema, compile_),
 )
 for position, one in enumerate(_COMMANDS):
     if isinstance(one, Analysis):

@@ -82,6 +82,18 @@ def show_table(title: str, headings: Iterable[str], rows: Iterable[Iterable[str]
     Console(width=max(console.width, needed)).print(table)
 
 
+def show_grid(headings: Iterable[str], rows: Iterable[Iterable[str]]) -> None:
+    """Write a table of texts; the last column is broken at words, the others stay whole."""
+    *short, last = headings
+    table = Table(box=None, pad_edge=False)
+    for heading in short:
+        table.add_column(heading, no_wrap=True, header_style="dim")
+    table.add_column(last, header_style="dim")
+    for row in rows:
+        table.add_row(*map(Text, row))
+    Console().print(table)
+
+
 def show_paragraphs(paragraphs: Iterable[str]) -> None:
     """Write paragraphs broken at words, set in by two spaces."""
     for paragraph in paragraphs:

@@ -1,14 +1,17 @@
-"""`beltdyn new`."""
+"""`beltdyn new`, `beltdyn keys` and `beltdyn schema`: drive files to begin with, and what may stand in them."""
 
 import json
 from importlib.resources import files
 from pathlib import Path
-from typing import Annotated
+from typing import TYPE_CHECKING, Annotated
 
 from cyclopts import Parameter
 
-from beltdyn.cli.console import show
+from beltdyn.cli.console import show, show_facts, show_grid
 from beltdyn.errors import ModelError
+
+if TYPE_CHECKING:
+    from beltdyn.show.key_tables import Key
 
 
 def new(
@@ -53,7 +56,33 @@ def write_text(file: Path, text: str) -> None:
         temporary.write_text(text, encoding="utf-8")
 
 
-# `beltdyn schema`
+# `beltdyn keys` and `beltdyn schema`
+
+
+def keys(group: str | None = None, /) -> None:
+    """Print the keys of drive and study files, with units, defaults and meanings.
+
+    Parameters
+    ----------
+    group
+        A group such as belt, a kind such as load.motor, or a key such as friction; by default the groups are listed.
+    """
+    from beltdyn.show.key_tables import groups_for, key_groups
+
+    if group is None:
+        show_facts((name, each.heading) for name, each in key_groups().items())
+        show("\n`beltdyn keys belt` prints the keys of a group, `beltdyn keys friction` the groups that have a key.")
+        return
+    for name, each in groups_for(group).items():
+        show(f"{each.heading}   ({name})" if each.keys else f"{each.heading} has no keys.")
+        show_grid(("key", "unit", "default", "meaning"), (_row(key) for key in each.keys))
+        show()
+
+
+def _row(key: "Key") -> tuple[str, ...]:
+    """A key in a table of the terminal, where the unit has a column of its own."""
+    meaning = key.meaning.replace(f", in {key.unit}", "", 1) if key.unit else key.meaning
+    return key.name, key.unit, key.default.strip("`"), meaning.replace("`", "")
 
 
 def schema() -> None:

@@ -92,6 +92,23 @@ SHOWN_UNITS = MappingProxyType({"rad/s": ("rpm", RPM), "rad": ("°", math.degree
 """SI unit -> the one that readers are shown, and the factor on numbers."""
 
 
+_DESCRIBED_UNIT = re.compile(
+    r", in ((?:rad|m|s|N|Pa|kg|Hz|W)(?:\^\d)?(?:[ *^/\d]+(?:rad|m|s|kg)(?:\^?\d)?)*)(?=$|[;,])"
+)
+
+
+def described_unit(description: str) -> str:
+    """The SI unit of bare numbers that the description of a key names; empty without one."""
+    unit = _DESCRIBED_UNIT.search(description)
+    return unit[1] if unit else ""
+
+
+def printed_unit(unit: str) -> str:
+    """An SI unit as it is printed."""
+    powers = unit.replace("^2", "²").replace("^3", "³").replace("^4", "⁴")
+    return powers.replace("*", " ")
+
+
 @lru_cache(maxsize=1)
 def _registry() -> "pint.UnitRegistry[float]":
     import pint

@@ -46,3 +46,20 @@ def test_an_existing_file_is_kept(tmp_path: Path, refuse: Callable[[list[str]], 
 @pytest.mark.parametrize("name", EXAMPLES)
 def test_help_names_every_example(name: str) -> None:
     assert name in str(getdoc(new))
+
+
+def test_keys_of_a_group_are_printed_with_units_and_defaults(run_main: RunMain) -> None:
+    code, output, _ = run_main(["keys", "limits"])
+    lines = output.splitlines()
+    assert (code, lines[0]) == (0, "[limits]   (limits)")
+    assert next(line for line in lines if line.startswith("largest_hub_load")).split()[1] == "N"
+
+
+def test_without_a_name_groups_of_keys_are_listed(run_main: RunMain) -> None:
+    assert '[[pulley.load]] kind = "motor"' in run_main(["keys"])[1]
+
+
+def test_an_unknown_group_of_keys_is_refused(run_main: RunMain) -> None:
+    code, _, error = run_main(["keys", "lenght"])
+    assert code == 2
+    assert 'no group or key "lenght"' in error
