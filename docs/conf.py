@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-sys.path.insert(0, str(Path(__file__).parent))  # of the extension mathml
+sys.path.insert(0, str(Path(__file__).parent / "_extensions"))
 
 project = "beltdyn"
 author = "The beltdyn developers"

@@ -72,7 +72,7 @@ def test_the_readmes_drive_is_that_of_the_demo() -> None:
 
 @pytest.mark.parametrize("page", sorted((ROOT / "docs").rglob("*.md")), ids=lambda page: page.stem)
 def test_tables_of_pages_are_current(page: Path, tables: dict[str, str]) -> None:
-    """Otherwise `python docs/key_tables.py` writes them anew."""
+    """Otherwise `python docs/scripts/key_tables.py` writes them anew."""
     text = page.read_text(encoding="utf-8")
     assert key_tables.with_tables(text, tables) == text
 

@@ -1,6 +1,6 @@
 """Draw docs/_static/verification/run_up_orders.png: linear response and a run-up of the same drive, on the same axes.
 
-    python docs/run_up_figure.py [SWEEP.nc]
+    python docs/scripts/run_up_figure.py [SWEEP.nc]
 
 The example alternator_drive, whose crank turns with a wave of 0.2 % and order 2, from 900 to 2100 rpm in 2 s.  The
 run-up takes some minutes, or is that of a file: `beltdyn sweep` with these speeds.  What a run-up at this rate shows of
@@ -20,7 +20,7 @@ from beltdyn.arrays import ComplexArray, FloatArray
 from beltdyn.results.derived import orders
 from beltdyn.show.plot.style import new_figure, styled
 
-FILE = Path(__file__).parent / "_static" / "verification" / "run_up_orders.png"
+FILE = Path(__file__).parents[1] / "_static" / "verification" / "run_up_orders.png"
 RPM = np.pi / 30.0
 FIRST, LAST, DURATION, SETTLING, ORDER = 900.0 * RPM, 2100.0 * RPM, 2.0, 0.5, 2.0
 SPAN = "alternator-crank"

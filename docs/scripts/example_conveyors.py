@@ -1,4 +1,4 @@
-"""What the page of belts that carry says in numbers, beside a hand calculation; see `docs/example_numbers.py`."""
+"""What the page of belts that carry says in numbers, beside a hand calculation; see `example_numbers.py`."""
 
 from collections.abc import Iterator
 from math import hypot, pi, tanh

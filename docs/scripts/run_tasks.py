@@ -1,4 +1,4 @@
-"""Run the Python blocks of docs/tasks, and write below each what it prints: `python docs/run_tasks.py [PAGE...]`."""
+"""Run the Python blocks of docs/tasks and write their output below: `python docs/scripts/run_tasks.py [PAGE...]`."""
 
 import contextlib
 import io
@@ -10,7 +10,7 @@ from importlib.resources import files
 from pathlib import Path
 from typing import Any
 
-FOLDER = Path(__file__).parent / "tasks"
+FOLDER = Path(__file__).parents[1] / "tasks"
 _BLOCK = re.compile(r"```python\n(.*?)```\n\n```text\n(.*?)```", re.DOTALL)
 
 

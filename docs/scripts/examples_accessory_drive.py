@@ -1,4 +1,4 @@
-"""What docs/examples/accessory_drive.md says in numbers, as `docs/example_numbers.py` has it of the other examples."""
+"""What docs/examples/accessory_drive.md says in numbers, as `example_numbers.py` has it of the other examples."""
 
 from collections.abc import Iterator
 from dataclasses import replace

@@ -1,6 +1,6 @@
 """Calibrate the belt rig of docs/verification/design.md, and draw how often its intervals hold the true numbers.
 
-    python docs/calibration_figure.py [DRAWS]
+    python docs/scripts/calibration_figure.py [DRAWS]
 
 Measurements are made of a rig whose numbers differ from those of its file, on a finer mesh than that of the fit, with
 noise.  A calibration of them is shown; then DRAWS more (2000) are fitted, on a surface of second degree through the
@@ -29,9 +29,9 @@ from beltdyn.model.parameter_study import CalibrationStudy
 from beltdyn.model.toml import read_study
 from beltdyn.show.plot.style import INK, new_figure, styled
 
-HERE = Path(__file__).parent
-RIG, STUDY = (HERE / "verification" / name for name in ("belt_rig.toml", "belt_rig_study.toml"))
-PICTURE = HERE / "_static" / "verification" / "calibration.svg"
+PAGES = Path(__file__).parents[1]
+RIG, STUDY = (PAGES / "verification" / name for name in ("belt_rig.toml", "belt_rig_study.toml"))
+PICTURE = PAGES / "_static" / "verification" / "calibration.svg"
 SURE = 0.99
 """Confidence of the intervals of a coverage."""
 CHECKED = 3

@@ -1,4 +1,4 @@
-"""Draw docs/_static/verification/waterfall.png: a run-up on both meshes (`python docs/frames_figure.py`, a minute).
+"""Draw verification/waterfall.png: a run-up on both meshes (`python docs/scripts/frames_figure.py`, a minute).
 
 The example alternator_drive from 500 to 1500 rpm of the crank in 1 s, whose crank turns evenly: what stands out is the
 mesh's.
@@ -15,7 +15,7 @@ import beltdyn as bd
 from beltdyn.results.derived import element_order, waterfall
 from beltdyn.show.plot.style import INK, new_figure, styled
 
-FILE = Path(__file__).parent / "_static" / "verification" / "waterfall.png"
+FILE = Path(__file__).parents[1] / "_static" / "verification" / "waterfall.png"
 ELEMENTS = 90
 """That travel."""
 DECIBELS = -60.0, 20.0

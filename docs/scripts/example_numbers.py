@@ -1,7 +1,7 @@
 """What the pages of the examples say in numbers: each run beside what a hand calculation gives.
 
-`docs/make_examples.py` prints them, and `tests/validation/test_examples.py` holds each within its tolerance. Those of
-the accessory drive stand in `docs/examples_accessory_drive.py`.
+`make_examples.py` prints them, and `tests/validation/test_examples.py` holds each within its tolerance. Those of
+the accessory drive stand in `docs/scripts/examples_accessory_drive.py`.
 """
 
 from collections.abc import Iterator

@@ -11,7 +11,7 @@ import beltdyn as bd
 from beltdyn.show.plot.style import new_figure, styled
 from validation.published import demo_text
 
-PICTURES = Path(__file__).parent / "_static"
+PICTURES = Path(__file__).parents[1] / "_static"
 
 
 def loaded_drive() -> bd.Drive:
@@ -53,7 +53,7 @@ if __name__ == "__main__":
     draw(fan, {"speeds": bd.plot.speeds, "tensions": bd.plot.span_tensions}, PICTURES / "readme.png")
     contact = partial(bd.plot.contact_forces, pulley="driver")
     draw(bd.simulate(loaded_drive()), {"speeds": bd.plot.speeds, "contact": contact}, PICTURES / "two_pulley.png")
-    tasks = Path(__file__).parent / "tasks"
+    tasks = Path(__file__).parents[1] / "tasks"
     pressed = bd.steady_state(bd.load(tasks / "press_roller.toml"))
     bd.plot.nip_pressure(pressed).figure.figure.savefig(PICTURES / "nip_pressure.png", dpi=110, bbox_inches="tight")
     calender = bd.steady_state(bd.load(tasks / "calender.toml"))

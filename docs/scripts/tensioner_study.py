@@ -9,7 +9,7 @@ from pathlib import Path
 import beltdyn as bd
 from beltdyn.cli.output import show_result
 
-HERE = Path(__file__).parent
+PAGES = Path(__file__).parents[1]
 LENGTH = 1.514
 """Of the belt as it is bought, m."""
 
@@ -23,7 +23,7 @@ def given() -> bd.Drive:
 @cache
 def found() -> bd.Result:
     """The result of the study, which is made once."""
-    return bd.optimize(given(), study=HERE / "examples" / "tensioner_study.toml")
+    return bd.optimize(given(), study=PAGES / "examples" / "tensioner_study.toml")
 
 
 def main() -> None:
@@ -34,7 +34,7 @@ def main() -> None:
     sys.stdout.write(f"{time.process_time() - begun:.1f} s of one core\n")
     for design, goal in enumerate(result.dataset["design_goal"].values, 1):
         sys.stdout.write(f"design {design}: {goal:.1f} N\n")
-    pictures = HERE / "_static" / "examples"
+    pictures = PAGES / "_static" / "examples"
     bd.plot.save_all(result, pictures, ("optimization",))
     (pictures / "optimization.png").replace(pictures / "tensioner_study.png")
 

@@ -1,11 +1,11 @@
-"""Draw the pictures of docs/studies.md: `python docs/studies_figures.py`, in some minutes."""
+"""Draw the pictures of docs/commands/designs.md: `python docs/scripts/studies_figures.py`, in some minutes."""
 
 from importlib.resources import files
 from pathlib import Path
 
 import beltdyn as bd
 
-PICTURES = Path(__file__).parent / "_static" / "studies"
+PICTURES = Path(__file__).parents[1] / "_static" / "studies"
 RESULTS = ["hub_load[alternator]", "slip_safety[alternator]", "tensioner_position", "efficiency"]
 PRELOAD = {"path": "tensioner[1].preload", "values": "8..20 N m", "steps": 7}
 TORQUE = {"path": "pulley[alternator].load[1].constant", "values": "2..12 N m", "steps": 6}

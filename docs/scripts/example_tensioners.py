@@ -1,4 +1,4 @@
-"""What the pages of the drives with a tensioner say in numbers, as `docs/example_numbers.py` has it of the others.
+"""What the pages of the drives with a tensioner say in numbers, as `example_numbers.py` has it of the others.
 
 The drives are the conveyor, that of an alternator, and that of a press whose arm meets its stop.
 """

@@ -1,4 +1,4 @@
-"""Run the examples, draw the pictures of their pages, and print the numbers: `python docs/make_examples.py [NAME...]`.
+"""Run the examples, draw their pictures, and print their numbers: `python docs/scripts/make_examples.py [NAME...]`.
 
 Without a name all are run, one after another, in about four minutes.  Pictures go to docs/_static/examples.
 """
@@ -24,7 +24,7 @@ from PIL import Image
 import beltdyn as bd
 from beltdyn.cli.output import show_result
 
-PICTURES = Path(__file__).parent / "_static" / "examples"
+PICTURES = Path(__file__).parents[1] / "_static" / "examples"
 
 
 class Example(NamedTuple):

@@ -1,6 +1,6 @@
 """Draw the figures of docs/verification from the curves of the verification tests.
 
-    python docs/verification_figures.py [CURVES]
+    python docs/scripts/verification_figures.py [CURVES]
 
 runs all verification tests, slow ones too, and those of tolerance, ripple and the published drive (a quarter of an
 hour), or takes a file that `pytest --curves FILE` has written, and draws docs/_static/verification/*.svg.
@@ -18,7 +18,7 @@ from matplotlib.axes import Axes
 
 from beltdyn.show.plot.style import COLORS, dash, new_figure, styled
 
-ROOT = Path(__file__).parents[1]
+ROOT = Path(__file__).parents[2]
 FOLDER = ROOT / "docs" / "_static" / "verification"
 TESTS = (
     "tests/verification",

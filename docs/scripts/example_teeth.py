@@ -1,4 +1,4 @@
-"""What the page of toothed belts says in numbers, beside a hand calculation; see `docs/example_numbers.py`."""
+"""What the page of toothed belts says in numbers, beside a hand calculation; see `docs/scripts/example_numbers.py`."""
 
 from collections.abc import Iterator
 from math import cosh, pi, sinh, sqrt

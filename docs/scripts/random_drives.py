@@ -1,6 +1,6 @@
 """Drives made at random, on which `beltdyn.model.resolution` is validated, and what their runs give.
 
-`python docs/measure.py resolution` measures the tables of docs/verification/resolution.md with them.
+`python docs/scripts/measure.py resolution` measures the tables of docs/verification/resolution.md with them.
 """
 
 import math

@@ -17,7 +17,7 @@ from beltdyn.show.key_tables import Group, key_groups
 from beltdyn.show.plot import FIGURES
 from beltdyn.show.plot.figures import on_request
 
-PAGES = Path(__file__).parent
+PAGES = Path(__file__).parents[1]
 FAMILIES = ("surface", "load", "hub", "support", "tensioner")
 """Families of kinds with sections of their own; `load.others` has those without one."""
 

@@ -1,4 +1,4 @@
-"""Measure the tables of docs/deviations.md and docs/tutorial.md again: `python docs/measure.py [NAME...]`.
+"""Measure the tables of docs/deviations.md and docs/tutorial.md again: `python docs/scripts/measure.py [NAME...]`.
 
 Without a name all are measured, one after another, in about five minutes; `--list` names them.  Each is printed
 as a table in Markdown.  Computing times are those of this machine, and counts of steps vary by a few per cent between

@@ -8,7 +8,7 @@ from matplotlib.axes import Axes
 import beltdyn as bd
 from beltdyn.show.plot.style import new_figure, styled
 
-PICTURE = Path(__file__).parent / "_static" / "diameters.png"
+PICTURE = Path(__file__).parents[1] / "_static" / "diameters.png"
 Points = list[tuple[float, float]]
 
 METAL = {"facecolor": "0.8", "edgecolor": "0.35", "linewidth": 1.0}
