@@ -6,6 +6,7 @@ creep, without vibration.
 
 import gc
 import json
+import os
 from collections.abc import Callable, Iterator, Sequence
 from pathlib import Path
 from typing import Any
@@ -15,6 +16,7 @@ import pytest
 from numpy.typing import ArrayLike, NDArray
 
 from beltdyn.arrays import FloatArray
+from beltdyn.errors import TRACEBACKS
 from beltdyn.kinds import Registry
 from beltdyn.model import Drive, prepare
 from beltdyn.results import Layout, MemoryRecorder, Run, provenance
@@ -62,6 +64,25 @@ def _own_kinds() -> Iterator[None]:
         for name in set(registry) - before.get(id(registry), set()):
             if registry.is_own(name):
                 registry.forget(name)
+
+
+@pytest.fixture(autouse=True, scope="session")
+def _tracebacks(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """Where this process, and those that it starts, leave tracebacks of internal errors."""
+    file = tmp_path_factory.mktemp("tracebacks") / "internal_errors.txt"
+    file.touch()
+    os.environ[TRACEBACKS] = str(file)
+    return file
+
+
+@pytest.fixture(autouse=True)
+def _no_internal_errors(request: pytest.FixtureRequest, _tracebacks: Path) -> Iterator[None]:
+    """A test fails where an internal error is told as a result, unless it is marked to provoke one."""
+    before = _tracebacks.stat().st_size
+    yield
+    text = _tracebacks.read_text(encoding="utf-8")[before:] if _tracebacks.stat().st_size > before else ""
+    provokes = request.node.get_closest_marker("provokes_internal_errors")
+    assert not text or provokes, f"an internal error was told:\n{text}"
 
 
 @pytest.fixture

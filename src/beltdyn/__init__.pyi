@@ -10,6 +10,7 @@ from .designs.study import study
 from .errors import (
     BeltdynError,
     ConvergenceError,
+    InternalError,
     ModelError,
 )
 from .model import (
@@ -67,6 +68,7 @@ __all__ = [
     "Contact",
     "ConvergenceError",
     "Drive",
+    "InternalError",
     "Limits",
     "ModelError",
     "OptimizationStudy",

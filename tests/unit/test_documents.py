@@ -17,7 +17,7 @@ import tomli_w
 
 from beltdyn.analyses import ANALYSES, EQUILIBRIUM, RUN
 from beltdyn.cli import main
-from beltdyn.designs.designs import free_number
+from beltdyn.designs.designs import free_numbers
 from beltdyn.designs.residuals import read_measured
 from beltdyn.machines.profiles.profile import PROFILES
 from beltdyn.model import (
@@ -338,7 +338,7 @@ def test_the_studies_of_the_task_fit_the_example(tmp_path: Path) -> None:
     example = files("beltdyn").joinpath("examples", "alternator_drive.toml").read_text(encoding="utf-8")
     optimisation, calibration = (tomllib.loads(block) for block in blocks(page, "toml"))
     drive, best, fitted = loads(example), OptimizationStudy(**optimisation), CalibrationStudy(**calibration)
-    assert [free_number(drive, one).start for one in (*best.numbers, *fitted.numbers)] == [300.0, pytest.approx(12e4)]
+    assert [one.start for one in free_numbers(drive, [*best.numbers, *fitted.numbers])] == [300.0, pytest.approx(12e4)]
     (table,) = (text for text in blocks(page, "text") if text.startswith("load, "))
     (tmp_path / fitted.measurements[0].table).write_text(table, encoding="utf-8")
     measured = read_measured(tmp_path / fitted.measurements[0].table, drive)

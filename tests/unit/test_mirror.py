@@ -19,7 +19,6 @@ FAMILIES = {
 
 ELSEWHERE = {
     # Kinds of one contract: the test of their family runs over all of them alike.
-    "errors.py": "unit/observation/test_observer_slip_through.py",
     "contact/friction/*.py": "unit/contact/test_friction.py",
     "contact/normal/*.py": "unit/contact/test_normal.py",
     "contact/surface/*.py": "unit/contact/test_surface.py",

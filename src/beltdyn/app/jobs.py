@@ -13,7 +13,7 @@ from beltdyn.analyses import ANALYSES
 from beltdyn.app.computing import Counted, in_words, tell_of_compilation
 from beltdyn.app.findings import Findings, findings_of
 from beltdyn.designs.processes import SPAWN, heeding, start_process, start_worker, working
-from beltdyn.errors import BeltdynError
+from beltdyn.errors import cause_of
 from beltdyn.model import loads
 from beltdyn.show.sheet import Facts, Table
 
@@ -129,8 +129,8 @@ def _analyse(
         told.send(_outcome(found, result))
     except KeyboardInterrupt:
         told.send(Outcome("interrupted"))
-    except BeltdynError as error:
-        told.send(Outcome("failed", str(error)))
+    except Exception as error:
+        told.send(Outcome("failed", cause_of(error)))
     told.close()
 
 

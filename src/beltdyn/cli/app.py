@@ -1,6 +1,7 @@
 """The command `beltdyn`, and how it reports errors."""
 
 import os
+import shlex
 import sys
 import warnings
 from collections.abc import Callable, Sequence
@@ -19,7 +20,7 @@ from beltdyn.cli.services import app as page
 from beltdyn.cli.services import compile_, fmu
 from beltdyn.cli.show import demo, export, plot, report
 from beltdyn.cli.study import study
-from beltdyn.errors import BeltdynError
+from beltdyn.errors import classified
 from beltdyn.signals import ending_in_order, exit_code
 
 _BAD_INPUT = 2
@@ -48,7 +49,7 @@ def main(arguments: Sequence[str] | None = None) -> None:
     """Run the command line and exit.
 
     The exit code is 0 for success, 2 for bad input, 3 for a simulation that could not continue, 4 for warnings under
-    --strict, and for an interruption 128 plus the number of the signal: 130 for Ctrl-C.
+    --strict, 5 for an internal error, and for an interruption 128 plus the number of the signal: 130 for Ctrl-C.
     Linear algebra uses one thread unless OMP_NUM_THREADS says otherwise: the matrices are too small for more.
     """
     os.environ.setdefault("OMP_NUM_THREADS", "1")
@@ -71,12 +72,13 @@ def _exit_code(arguments: Sequence[str] | None) -> int:
     except CycloptsError as error:
         show_error(_usage(error))
         return _BAD_INPUT
-    except BeltdynError as error:
-        show_error(str(error))
-        return error.exit_code
     except OSError as error:
         show_error(f"{error.filename or 'a file'} cannot be read or written: {error.strerror or error}.")
         return _BAD_INPUT
+    except Exception as error:
+        told = classified(error, shlex.join(["beltdyn", *(sys.argv[1:] if arguments is None else arguments)]))
+        show_error(str(told))
+        return told.exit_code
     except KeyboardInterrupt:
         show_error("interrupted")
         return exit_code()

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 from beltdyn.analyses import Analysis
 from beltdyn.cli.console import show, show_error, show_facts, show_table, show_warnings
 from beltdyn.cli.progress import progress_bar
-from beltdyn.errors import LostOutputError, ModelError, SimulationError
+from beltdyn.errors import InternalError, LostOutputError, ModelError, SimulationError, is_internal
 from beltdyn.signals import exit_code
 
 if TYPE_CHECKING:
@@ -144,5 +144,8 @@ def doubt(warnings: Sequence[str]) -> int:
 
 
 def ended(result: "Result") -> int:
-    """Exit code of an analysis that ended without an error."""
-    return exit_code() if result.status == "interrupted" else 0
+    """Exit code of an analysis that ended without an error, but perhaps with internal errors at some points."""
+    if result.status == "interrupted":
+        return exit_code()
+    failures = result.dataset["failure"].values.ravel() if "failure" in result.dataset else ()
+    return InternalError.exit_code if any(is_internal(str(one)) for one in (*failures, *result.warnings)) else 0

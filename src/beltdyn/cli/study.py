@@ -11,9 +11,9 @@ from cyclopts.validators import Number
 
 from beltdyn.analyses import Analysis
 from beltdyn.cli.console import lines_of_file, show, show_error, show_table, show_warnings
-from beltdyn.cli.output import Extras, doubt, require_output, show_result, write_extras
+from beltdyn.cli.output import Extras, doubt, ended, require_output, show_result, write_extras
 from beltdyn.cli.progress import progress_bar, runs_bar
-from beltdyn.errors import ModelError, SimulationError
+from beltdyn.errors import InternalError, ModelError, SimulationError, is_internal
 from beltdyn.signals import exit_code
 
 if TYPE_CHECKING:
@@ -56,13 +56,11 @@ def study(
     force
         Recompute all points, and also replace files that beltdyn did not write.
     """
-    from beltdyn.cli.output import Extras, nothing_kept, write_extras
+    from beltdyn.cli.output import nothing_kept
     from beltdyn.designs.study import study as compute
-    from beltdyn.results.atomic import stamp, target_of
+    from beltdyn.results.atomic import stamp
 
     path = output or file.with_suffix(".nc")
-    if target_of(file) in (target_of(path), target_of(path.with_suffix(".csv"))):
-        raise ModelError(f"{file} is the study file; the results would overwrite it. Choose another --output.")
     before = stamp(path)
     with progress_bar() as tell:
         result = compute(file, jobs=jobs, scheduler=scheduler, retry=retry, output=path, progress=tell, overwrite=force)
@@ -74,8 +72,8 @@ def study(
         show("\nInterrupted. The results computed so far are kept; the same command resumes the study.")
     show(f"\nResults: {path}, {path.with_suffix('.csv')}   (figures: beltdyn plot {path})")
     write_extras(result, path, Extras(csv=False, report=report), force)
-    if result.status == "interrupted":
-        return exit_code()
+    if code := ended(result):
+        return code
     if result.dataset.sizes["point"] == int((result.dataset["failure"] != "").sum()):
         show_error("all points of the study failed.")
         return SimulationError.exit_code
@@ -145,8 +143,9 @@ def analyse_several(
     if any(end.status in ("interrupted", "not started") for end in ends.values()):
         show("Interrupted. The results computed so far are kept.")
         return exit_code()
-    if any(end.error for end in ends.values()):
-        return SimulationError.exit_code
+    errors = [end.error for end in ends.values() if end.error]
+    if errors:
+        return (InternalError if any(map(is_internal, errors)) else SimulationError).exit_code
     return doubt([warning for end in ends.values() for warning in end.warnings]) if strict else 0
 
 

@@ -10,7 +10,7 @@ from xml.etree.ElementTree import Element, SubElement
 
 from beltdyn import __version__
 from beltdyn.cosimulation.component import TOLERANCE, Component, ComponentState, Input, Interface, Output
-from beltdyn.errors import BeltdynError, ModelError
+from beltdyn.errors import ModelError, cause_of
 
 # The model description of a unit: what the packages that make units leave out of it
 
@@ -242,10 +242,8 @@ class DriveSlave:
         """Do something, and tell whether it has succeeded; if not, the host is told why."""
         try:
             action(*arguments)
-        except BeltdynError as error:
-            self._tell(str(error), _ERROR)
         except Exception as error:
-            self._tell(f"{type(error).__name__}: {error}", _ERROR)
+            self._tell(cause_of(error), _ERROR)
         else:
             return True
         return False

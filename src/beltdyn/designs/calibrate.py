@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from beltdyn.arrays import FloatArray
-from beltdyn.designs.designs import Free, free_number
+from beltdyn.designs.designs import Free, free_numbers
 from beltdyn.designs.named_results import unit_of
 from beltdyn.designs.optimization_history import headed, require_free, write_found
 from beltdyn.designs.residuals import MOST, Residuals
@@ -241,7 +241,7 @@ def _calibrate(
 ) -> Result:
     given = study if isinstance(study, CalibrationStudy) else read_study(study, CalibrationStudy)
     base = Path() if isinstance(study, CalibrationStudy) else Path(study).parent
-    numbers = tuple(free_number(drive, one) for one in given.numbers)
+    numbers = free_numbers(drive, given.numbers)
     fitting = Residuals(drive, numbers, given, base, force_tolerance, progress)
     first = fitting.start()
     found = fit(fitting.residuals, fitting.jacobian, first, given.confidence, known=fitting.known, most=MOST)

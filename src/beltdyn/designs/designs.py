@@ -13,7 +13,7 @@ from beltdyn.designs.named_results import need_bands
 from beltdyn.errors import ConvergenceError, ModelError
 from beltdyn.model import Drive, prepare
 from beltdyn.model.parameter_study import FreeNumber, Points
-from beltdyn.parts.change import converted, unit_at, value_at
+from beltdyn.parts.change import converted, require_distinct, unit_at, value_at
 from beltdyn.state.search import go_on
 from beltdyn.state.staying import Standing, bring_to_stand, stand_like
 from beltdyn.state.steady import Beside, steady_beside, steady_from
@@ -84,7 +84,13 @@ class Free:
         return float(min(max(float(f"{value:.12g}"), self.least), self.largest))
 
 
-def free_number(drive: Drive, given: FreeNumber) -> Free:
+def free_numbers(drive: Drive, given: Sequence[FreeNumber]) -> tuple[Free, ...]:
+    """The numbers of a study in SI units, each of them another one."""
+    require_distinct(drive, [one.path for one in given])
+    return tuple(_free_number(drive, one) for one in given)
+
+
+def _free_number(drive: Drive, given: FreeNumber) -> Free:
     """A number of a study in SI units."""
     path, start = given.path, value_at(drive, given.path)
     if isinstance(start, bool) or not isinstance(start, float):

@@ -1,7 +1,7 @@
 """A drive in steady running, or at rest, and its results by name, modes among them."""
 
 from abc import ABC, abstractmethod
-from collections.abc import Mapping, Sequence
+from collections.abc import Collection, Mapping, Sequence
 from functools import cached_property
 from typing import TYPE_CHECKING, Any, NamedTuple, Protocol
 
@@ -10,7 +10,7 @@ import numpy as np
 from beltdyn.arrays import ComplexArray, FloatArray
 from beltdyn.designs.named_results import MODES, OF_MODES, name_of, values_of, variable_and_label
 from beltdyn.model import Drive, prepare
-from beltdyn.points.operating_points import labels_of
+from beltdyn.points.operating_points import computed_with, labels_of
 from beltdyn.results import Run
 from beltdyn.state.installation import looked_at
 from beltdyn.state.linearized import SmallMotions
@@ -214,10 +214,9 @@ class FoundState(ABC):
     def drive(self) -> Drive:
         """The drive."""
 
-    @property
     @abstractmethod
-    def values(self) -> Mapping[str, float]:
-        """Its scalar results by name, but for those of modes."""
+    def values(self, variable: str) -> Mapping[str, float]:
+        """Its scalar results by name, at least those of a variable, but for those of modes."""
 
     @property
     @abstractmethod
@@ -232,7 +231,7 @@ class FoundState(ABC):
         """A result by its name; NaN where there is no such value."""
         variable, label = variable_and_label(name)
         if variable not in OF_MODES:
-            return float(self.values.get(name, np.nan))
+            return float(self.values(variable).get(name, np.nan))
         mode = self._mode_of(variable, label)
         if mode is None:
             return np.nan
@@ -305,17 +304,19 @@ class Running(FoundState):
 
     def __init__(self, run: Run, near: FoundState | None = None, *, bands: bool = False) -> None:
         super().__init__(near)
-        self.run, self._bands = run, bands
+        self.run, self._bands, self._values = run, bands, dict[Collection[str], Mapping[str, float]]()
 
     @property
     def drive(self) -> Drive:
         """The drive."""
         return self.run.drive
 
-    @cached_property
-    def values(self) -> Mapping[str, float]:
-        """Its scalar results by name, but for those of modes."""
-        return values_of(self.run)
+    def values(self, variable: str) -> Mapping[str, float]:
+        """Its scalar results, each group of variables as soon as it is asked for; see `FoundState`."""
+        group = frozenset(computed_with(variable))
+        if group not in self._values:
+            self._values[group] = values_of(self.run, group)
+        return self._values[group]
 
     @cached_property
     def motions(self) -> SmallMotions:
@@ -351,9 +352,12 @@ class Resting(FoundState):
         """The drive."""
         return self.rest.drive
 
-    @cached_property
-    def values(self) -> Mapping[str, float]:
+    def values(self, variable: str) -> Mapping[str, float]:
         """Its belt's length, tensions, hub loads, wrap angles and tensioners by name."""
+        return self._values
+
+    @cached_property
+    def _values(self) -> Mapping[str, float]:
         rest, labels = self.rest, labels_of(self.rest.drive)
         there = looked_at(rest.prepared, rest.system, rest.state).installation
         found = {

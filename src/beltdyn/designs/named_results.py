@@ -1,13 +1,13 @@
 """Results of steady running and at rest by name, such as "pulley_slip[driven]" and "mode_frequency[2]"."""
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Collection, Iterable, Mapping, Sequence
 
 import numpy as np
 
 from beltdyn.errors import ModelError
 from beltdyn.model import Drive, prepare
 from beltdyn.parts.messages import suggest
-from beltdyn.points.operating_points import DATA, VARIABLES, labels_of, values_by_name, variables_of
+from beltdyn.points.operating_points import DATA, VARIABLES, labels_of, values_by_name, variables_in, variables_of
 from beltdyn.results import Run, Variable
 from beltdyn.results.run import OWN
 from beltdyn.results.summary import means_of
@@ -52,15 +52,19 @@ def listed(names: str | Sequence[str]) -> list[str]:
     return [name.strip() for name in given if name.strip()]
 
 
-def values_of(run: Run) -> dict[str, float]:
-    """All scalar results of steady running by their names."""
-    found = dict[str, float]()
-    labels = labels_of(run.drive)
-    for name, values in values_by_name(run, means_of(run)).items():
-        dims, numbers = VARIABLES[name].dims, np.asarray(values)
-        if numbers.dtype.kind == "f" and len(dims) < 2:
+def scalar_results(run: Run) -> list[str]:
+    """Variables of a run that are numbers, or numbers of pulleys, spans, tensioners and causes."""
+    return [name for name, one in variables_in(run).items() if one.dtype != "str" and len(one.dims) < 2]
+
+
+def values_of(run: Run, variables: Collection[str]) -> dict[str, float]:
+    """Scalar results of a run by their names, of some variables of `scalar_results`."""
+    found, labels, wanted = dict[str, float](), labels_of(run.drive), set(variables).intersection(scalar_results(run))
+    for name, values in values_by_name(run, means_of(run), wanted).items() if wanted else ():
+        if name in wanted:
+            dims = VARIABLES[name].dims
             parts = [name_of(name, label) for label in (labels[dims[0]] if dims else [""])]
-            found |= {part: float(value) for part, value in zip(parts, np.atleast_1d(numbers), strict=True)}
+            found |= {part: float(value) for part, value in zip(parts, np.atleast_1d(values), strict=True)}
     return found
 
 

@@ -8,7 +8,7 @@ import numpy as np
 
 from beltdyn.arrays import FloatArray
 from beltdyn.designs.batch import held, study_points
-from beltdyn.designs.designs import Design, Designs, free_number
+from beltdyn.designs.designs import Design, Designs, free_numbers
 from beltdyn.designs.optimization_history import Aims, History, aims_of
 from beltdyn.errors import ConvergenceError, ModelError
 from beltdyn.model import Drive
@@ -194,7 +194,7 @@ def optimize(
         raise ModelError(f"most = {most} must be 2 or more designs.")
     given = study if isinstance(study, OptimizationStudy) else read_study(study, OptimizationStudy)
     base = Path() if isinstance(study, OptimizationStudy) else Path(study).parent
-    numbers, there = tuple(free_number(drive, one) for one in given.numbers), held(drive, given.points)
+    numbers, there = free_numbers(drive, given.numbers), held(drive, given.points)
     points = study_points(drive, given.points, base)
     aims = aims_of(given, there, points)
     history = History(drive, numbers, points, aims, output, overwrite, study=study)

@@ -26,7 +26,7 @@ from types import FrameType, ModuleType
 from typing import TYPE_CHECKING, Any, Protocol
 
 from beltdyn.analyses import Analysis
-from beltdyn.errors import BeltdynError, LostOutputError, ModelError, SimulationError
+from beltdyn.errors import BeltdynError, LostOutputError, ModelError, SimulationError, cause_of
 from beltdyn.model import Drive
 from beltdyn.observation.compilation import usable_cores
 from beltdyn.results import Result, Run, Summary, open_result, summarize
@@ -272,15 +272,15 @@ def analyse(place: int, file: Path, drive: Drive | Run, work: Work) -> Ending:
             if work.finish is not None and result.status == "completed":
                 work.finish(result)
             return ending
-    except LostOutputError as error:
-        return Ending("failed", str(error))
-    except SimulationError as error:
-        left = stamp(file) not in (before, None)
-        return _kept(file, str(error)) if left else Ending("failed", str(error))
-    except BeltdynError as error:
-        return Ending("failed", str(error))
     except Exception as error:
-        return Ending("failed", f"{type(error).__name__}: {error}")
+        told = cause_of(error, call_of(work.analysis, "drive", work.options))
+        keeps = not isinstance(error, LostOutputError | ModelError) and stamp(file) not in (before, None)
+        return _kept(file, told) if keeps else Ending("failed", told)
+
+
+def call_of(analysis: Analysis, drive: str, options: Mapping[str, Any]) -> str:
+    """The call of an analysis in Python, in one line."""
+    return f"bd.{analysis.name}({', '.join([drive, *(f'{name}={value!r}' for name, value in options.items())])})"
 
 
 def _kept(file: Path, error: str) -> Ending:

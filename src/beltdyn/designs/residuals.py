@@ -14,7 +14,7 @@ from beltdyn.designs.named_results import names_of, unit_of
 from beltdyn.errors import ConvergenceError, ModelError
 from beltdyn.model import Drive
 from beltdyn.model.parameter_study import CalibrationStudy, Measurement, Points
-from beltdyn.parts.change import unit_at
+from beltdyn.parts.change import meaning_of, require_distinct, unit_at
 from beltdyn.parts.messages import suggest
 from beltdyn.parts.table_file import HeadedColumn, read_headed
 from beltdyn.points.duty import UNITS, Column, at_row
@@ -62,6 +62,7 @@ def read_measured(path: Path, drive: Drive) -> MeasuredTable:
     table = MeasuredTable([], [], {}, {})
     for column in read_headed("table", path):
         _take(table, column, drive)
+    require_distinct(drive, [one.path for one in table.conditions], f"{path}: the heading")
     if not table.results:
         raise ModelError(
             f'{path} has no column of results. Add a column such as "pulley_slip[{drive.pulleys[-1].name}]".'
@@ -237,11 +238,12 @@ def _series(
     names, groups = list(table.results), dict[tuple[float, ...], list[int]]()
     for row in range(table.rows):
         groups.setdefault(tuple(table.changes(row).values()), []).append(row)
-    free = {number.path for number in numbers}
+    free = {meaning_of(drive, number.path): number.path for number in numbers}
     for rows in groups.values():
         changes = table.changes(rows[0])
-        if free & changes.keys():
-            raise ModelError(f"{one.table} has a column {next(iter(free & changes.keys()))}, which is to be fitted.")
+        fitted = [path for path in changes if meaning_of(drive, path) in free]
+        if fitted:
+            raise ModelError(f"{one.table} has a column {fitted[0]}, which is to be fitted. Remove one of them.")
         labels = [f"{Path(one.table).stem}, row {row + 1}" for row in rows]
         points = [
             OperatingPoint(label, 1.0 / len(rows), partial(at_row, columns=table.points, row=row))

@@ -23,7 +23,7 @@ from beltdyn.designs.named_results import listed, names_in, names_of, need_bands
 from beltdyn.errors import ConvergenceError, ModelError
 from beltdyn.model import Drive, prepare
 from beltdyn.model.parameter_study import Points
-from beltdyn.parts.change import tolerances_of, unit_at, value_at
+from beltdyn.parts.change import require_distinct, tolerances_of, unit_at, value_at
 from beltdyn.parts.messages import suggest
 from beltdyn.parts.part import Part
 from beltdyn.parts.text_file import entry_name
@@ -101,7 +101,9 @@ def chosen_numbers(drive: Drive, numbers: str | Sequence[str] | None, tolerances
         known.setdefault(path, Number(path, value, PART * value or size))
     if numbers is None:
         return list(known.values())
-    return [known.get(path) or _number_in_place(drive, path, list(known)) for path in listed(numbers)]
+    chosen = [known.get(path) or _number_in_place(drive, path, list(known)) for path in listed(numbers)]
+    require_distinct(drive, [one.path for one in chosen], "numbers:")
+    return chosen
 
 
 def _number_in_place(drive: Drive, path: str, known: Sequence[str]) -> Number:

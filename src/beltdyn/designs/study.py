@@ -2,7 +2,7 @@
 
 import time
 from collections import deque
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from concurrent.futures import FIRST_COMPLETED, Future, wait
 from contextlib import suppress
 from inspect import signature
@@ -13,18 +13,19 @@ from typing import Any
 import numpy as np
 
 from beltdyn.analyses import ANALYSES, Analysis
-from beltdyn.designs.point_work import ChunkOutcome, Outcome, PointWork, compute_points, require_reductions
+from beltdyn.designs.point_work import ChunkOutcome, Outcome, PointWork, compute_points
 from beltdyn.designs.processes import GONE, ThisProcess, Workers, workers_of
+from beltdyn.designs.study_columns import require_possible
 from beltdyn.designs.study_plan import plan_of
-from beltdyn.designs.study_table import StudyTable
-from beltdyn.errors import ModelError, SimulationError
+from beltdyn.designs.study_table import StudyTable, rows_file
+from beltdyn.errors import ModelError, SimulationError, cause_of
 from beltdyn.model import Drive, ParameterStudy, load
 from beltdyn.model.pulley import refuse_functions
 from beltdyn.model.toml import read_study
 from beltdyn.parts.kind_fields import refuse_kinds_of_scripts
 from beltdyn.parts.messages import suggest
 from beltdyn.results import Result
-from beltdyn.results.atomic import make_folder
+from beltdyn.results.atomic import make_folder, target_of
 from beltdyn.signals import uninterrupted
 from beltdyn.solvers.run_progress import Pace, Phase, Progress, Report
 from beltdyn.transient.beginning import compile_ahead
@@ -77,8 +78,10 @@ class Dispatch:
                         self._land(future)
                 self._tell()
         except BaseException:
-            self._workers.close(abandon=True)
-            self._take_what_came()
+            try:
+                self._workers.close(abandon=True)
+            finally:
+                self._take_what_came()
             raise
         self._workers.close()
 
@@ -111,7 +114,7 @@ class Dispatch:
         if error is not None and self._workers.lost(error):
             self._lose(chunk)
         elif error is not None:
-            raise error
+            self._tell_alone(chunk, error)
         else:
             found = future.result()
             self._take_outcomes(found)
@@ -125,6 +128,17 @@ class Dispatch:
             latest = sum(one.seconds for one in found.outcomes) / len(found.outcomes)
             self._seconds += (_LATEST if self._seconds > 0.0 else 1.0) * (latest - self._seconds)
             self._take(found.outcomes, found.units)
+
+    def _tell_alone(self, chunk: Chunk, error: BaseException) -> None:
+        """Compute points again, each alone: the one whose answer cannot be passed on has failed."""
+        if not isinstance(error, Exception):
+            raise error
+        if chunk[1:]:
+            self._attempts |= {point: max(self._attempts.get(point, 0), _ATTEMPTS - 1) for point in chunk}
+            self._again.extend(chunk)
+        else:
+            told = cause_of(error, self._work.call(self._changes(chunk[0])))
+            self._take([Outcome(chunk[0], {}, told, "", 0.0)], {})
 
     def _lose(self, chunk: Chunk) -> None:
         """Recompute points whose process was killed; a point that kills too many processes has failed."""
@@ -214,10 +228,15 @@ def study(
     drive = _drive_of(given, base) if drive is None else drive
     analysis = ANALYSES[given.analysis]
     options = _options(analysis, given.options, base)
-    require_reductions(given.results)
     plan = plan_of(given, drive, base)
+    require_possible(given.results, drive, plan.paths)
     path = None if output is None else Path(output)
-    work = PointWork(drive, analysis, options, given.results, _folder(given, path))
+    inputs = [study if isinstance(study, Path | str) else None, given.table and base / given.table]
+    inputs += [given.drive and base / given.drive, *(one for one in options.values() if isinstance(one, Path))]
+    if path is not None:
+        _spare([Path(one) for one in inputs if one], path)
+    source = f"bd.load({(base / given.drive).as_posix()!r})" if given.drive else "drive"
+    work = PointWork(drive, analysis, options, given.results, _folder(given, path), source=source)
     workers = workers_of(jobs, scheduler)
     if not isinstance(workers, ThisProcess):
         rule = "points are computed by other processes, which a Python function cannot be passed to"
@@ -258,6 +277,16 @@ def _options(analysis: Analysis, given: Mapping[str, Any], base: Path) -> dict[s
         name: base / value if isinstance(value, str) and "Path" in str(known[name].annotation) else value
         for name, value in given.items()
     }
+
+
+def _spare(inputs: Sequence[Path], output: Path) -> None:
+    """Make sure that results overwrite no input of the study."""
+    targets = {target_of(one) for one in (output, rows_file(output))}
+    for file in inputs:
+        if target_of(file) in targets:
+            raise ModelError(
+                f"{file} is an input of the study; the results would overwrite it. Choose another --output."
+            )
 
 
 def _folder(study: ParameterStudy, output: Path | None) -> Path | None:

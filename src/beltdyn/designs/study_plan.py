@@ -15,7 +15,7 @@ from beltdyn.arrays import FloatArray
 from beltdyn.errors import ModelError
 from beltdyn.model import Drive, ParameterStudy
 from beltdyn.model.parameter_study import SAMPLED, VariedNumber
-from beltdyn.parts.change import converted, unit_at, value_at
+from beltdyn.parts.change import converted, require_distinct, unit_at, value_at
 from beltdyn.parts.quantity import numbers_in
 from beltdyn.parts.table_file import HeadedColumn, read_headed
 
@@ -90,6 +90,7 @@ def plan_of(study: ParameterStudy, drive: Drive, base: Path) -> Plan:
     """Lay out the points of a study."""
     columns = read_headed("table", base / study.table) if study.table is not None else []
     paths = tuple(column.what for column in columns) or tuple(one.path for one in study.numbers)
+    require_distinct(drive, paths)
     units, given = tuple(_unit(drive, path) for path in paths), tuple(value_at(drive, path) for path in paths)
     if columns:
         values = _together([_column(column, drive, unit) for column, unit in zip(columns, units, strict=True)])

@@ -7,6 +7,7 @@ import json
 import re
 import time
 from collections.abc import Callable, Iterator, Mapping, Sequence
+from contextlib import suppress
 from pathlib import Path
 from types import TracebackType
 from typing import Any, NamedTuple, Self
@@ -18,7 +19,7 @@ from beltdyn.analyses import STUDY
 from beltdyn.arrays import BoolArray, FloatArray
 from beltdyn.designs.point_work import Outcome
 from beltdyn.designs.study_plan import Plan
-from beltdyn.errors import ModelError, OutputError
+from beltdyn.errors import ModelError, OutputError, is_internal
 from beltdyn.model import Drive, ParameterStudy, dumps
 from beltdyn.parts.text_file import LONGEST_TABLE, read_text
 from beltdyn.results import Result, Variable, build_result
@@ -119,6 +120,11 @@ class StudyRows:
             yield Row(tuple(cells[1:numbers]), outcome)
 
 
+def rows_file(output: Path) -> Path:
+    """The CSV file of a study beside its result file."""
+    return output.with_suffix(".csv")
+
+
 def is_study_table(path: Path) -> bool:
     """Tell whether a file has the headings of a study."""
     try:
@@ -183,11 +189,12 @@ class StudyTable:
         self._texts: dict[str, NDArray[np.object_]] = {
             name: np.full(count, "", dtype=object) for name in ("failure", "warnings")
         }
-        self._early: list[Outcome] = []
         self._status, self._written, self._pause = "running", time.perf_counter(), _OFTEN
-        self._rows = None if output is None else StudyRows(output.with_suffix(".csv"), plan)
+        self._rows = None if output is None else StudyRows(rows_file(output), plan)
         self._lock: OutputLock | None = None
         self._begun = False
+        self._has_head = False
+        """Whether the result file tells whose rows there are, so that a study that is killed can go on."""
         if output is not None:
             self._claim(output, overwrite, retry)
 
@@ -214,19 +221,27 @@ class StudyTable:
         if not rows:
             return
         remedy = "Choose another --output, or recompute all with --force (in Python: overwrite=True)."
-        if self._known_computing(output) != self.computing:
-            raise ModelError(
-                f"{self._rows.path} holds {len(rows)} points of another drive, analysis or list of results. {remedy}"
+        known = self._known_computing(output)
+        if known != self.computing:
+            of = (
+                "another drive, analysis or list of results"
+                if known
+                else f"a study whose head {output} is missing or damaged"
             )
-        places = {self._rows.key(point): point for point in range(len(self._plan.values))}
+            raise ModelError(f"{self._rows.path} holds {len(rows)} points of {of}. {remedy}")
+        self._has_head = True
+        keys = [self._rows.key(point) for point in range(len(self._plan.values))]
+        places = {key: point for point, key in enumerate(keys)}
         lost = sum(row.key not in places for row in rows)
         if lost:
             raise ModelError(f"{self._rows.path} holds {lost} points that are no longer in the study. {remedy}")
         self._columns = dict(self._rows.columns)
         self._values = {name: np.full(len(self.done), np.nan) for name in self._columns}
         for row in rows:
-            if not (retry and row.outcome.failure):
-                self._note(row.outcome, places[row.key])
+            if not (row.outcome.failure and (retry or is_internal(row.outcome.failure))):
+                point = row.outcome.point
+                is_same = 0 <= point < len(keys) and keys[point] == row.key
+                self._note(row.outcome, point if is_same else places[row.key])
 
     def _known_computing(self, output: Path) -> str:
         try:
@@ -253,9 +268,7 @@ class StudyTable:
         """Close the files with a status."""
         self._status = status_after(kind)
         try:
-            with uninterrupted():
-                self._append(self._early)  # those of a study of which no point has results
-                self._early = []
+            with suppress(KeyboardInterrupt), uninterrupted():  # all is done, and on disk, where it is left
                 if self.done.any():
                     self._save()
         finally:
@@ -266,21 +279,15 @@ class StudyTable:
     def take(self, outcomes: list[Outcome], units: Mapping[str, str]) -> None:
         """Take what became of points, and write it."""
         fresh = [one for one in outcomes if not self.done[one.point]]
-        if not self._columns:
-            missing = next((one.missing for one in fresh if not one.failure and one.missing), "")
-            if missing:
-                raise ModelError(missing)
+        if missing := next((one.missing for one in fresh if one.missing), ""):
+            raise ModelError(missing)
         added = {name: unit for name, unit in units.items() if name not in self._columns}
         self._columns |= added
         self._values |= {name: np.full(len(self.done), np.nan) for name in added}
         for one in fresh:
             self._note(one, one.point)
-        if not self._columns:
-            self._early += fresh
-            return
         self._begun = self._begun and not added
         self._append(fresh)
-        self._early = []
         if time.perf_counter() - self._written > self._pause:
             self._save()
 
@@ -291,6 +298,9 @@ class StudyTable:
         if self._begun:
             self._rows.append(outcomes)
             return
+        if not self._has_head:
+            self._rows.path.unlink(missing_ok=True)  # rows of another study must not come under this head
+            self._save()
         self._rows.begin(self._columns, [self._outcome(int(one)) for one in np.flatnonzero(self.done)])
         self._begun = True
 
@@ -358,6 +368,7 @@ class StudyTable:
         if self._path is not None and self._lock is not None:
             with uninterrupted(), self._lock.used():
                 self.result().save(self._path, overwrite=True)
+            self._has_head = True
         self._written = time.perf_counter()
         self._pause = max(_OFTEN, _SHARE * (self._written - begun))
 

@@ -85,6 +85,28 @@ def _followed(part: Part, path: str) -> list[tuple[str, Any]]:
     return found
 
 
+def meaning_of(part: Part, path: str) -> Steps:
+    """What a path leads to, the same for all its paths: entries by their numbers, arguments by those they replace."""
+    found = list[str]()
+    for step, (place, value) in zip(steps_of(path), _followed(part, path), strict=False):
+        is_key = isinstance(value, Part)
+        found.append(value.in_place_of.get(step, step) if is_key else f"{_place_of(value, step, place) + 1}")
+    return tuple(found)
+
+
+def require_distinct(part: Part, paths: Sequence[str], key: str = "number") -> None:
+    """Make sure that paths lead to different values, of which none is a part of another."""
+    known = [(path, meaning_of(part, path)) for path in paths]
+    for place, (path, meaning) in enumerate(known):
+        for other, same in known[:place]:
+            if path == other:
+                raise ModelError(f'{key} "{path}" is given twice. Remove one.')
+            if meaning == same:
+                raise ModelError(f'{key} "{path}" and "{other}" are the same value. Remove one.')
+            if meaning[: len(same)] == same or same[: len(meaning)] == meaning:
+                raise ModelError(f'{key} "{path}" and "{other}" overlap: one is a part of the other. Remove one.')
+
+
 def steps_of(path: str) -> Steps:
     """The steps of a path: keys, and names or numbers of entries."""
     found = list(_STEP.finditer(str(path)))
@@ -125,9 +147,14 @@ def _in_part(part: Part, groups: Mapping[str, Mapping[Steps, Any]], path: str) -
 
 
 def _in_list(entries: Sequence[Any], groups: Mapping[str, Mapping[Steps, Any]], path: str) -> list[Any]:
-    changed = list(entries)
-    for step, inner in groups.items():
-        place = _place_of(entries, step, path)
+    changed, places = list(entries), dict[int, dict[Steps, Any]]()
+    for step, inner in groups.items():  # an entry may be called by its name and by its number
+        merged = places.setdefault(_place_of(entries, step, path), {})
+        if twice := merged.keys() & inner.keys():
+            rest = "".join(f".{one}" for one in next(iter(twice)))
+            raise ModelError(f"{path}[{step}]{rest} is changed twice, by two names of the entry. Give it once.")
+        merged |= inner
+    for place, inner in places.items():
         changed[place] = _changed(entries[place], inner, f"{path}[{entry_name(entries[place]) or place + 1}]")
     return changed
 

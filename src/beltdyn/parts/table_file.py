@@ -179,7 +179,12 @@ def read_headed(option: str, path: Path) -> list[HeadedColumn]:
     if body[1:] and (units := row_of_units(body[0].cells)):
         pairs = zip(headings, units, strict=True)
         headings, body = [f"{name} [{unit}]" if unit and " [" not in name else name for name, unit in pairs], body[1:]
-    return list(_columns(path, headings, body))
+    columns = list(_columns(path, headings, body))
+    whole = [one.what if not one.unit or is_unit(one.unit) else f"{one.what}[{one.unit}]" for one in columns]
+    twice = [name for place, name in enumerate(whole) if name in whole[:place]]
+    if twice:
+        raise ModelError(f'{path} has the heading "{twice[0]}" twice. Remove one of the columns.')
+    return columns
 
 
 def _columns(path: Path, headings: list[str], rows: list[CsvRow]) -> Iterator[HeadedColumn]:

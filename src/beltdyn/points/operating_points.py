@@ -14,7 +14,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from beltdyn.arrays import FloatArray
-from beltdyn.errors import ConvergenceError, ModelError, cause_of
+from beltdyn.errors import BeltdynError, ConvergenceError, InternalError, ModelError, classified
 from beltdyn.model import Drive
 from beltdyn.parts.quantity import RPM, Numbers, numbers_in
 from beltdyn.points.changed_drive import at_speed_under, driver_of, held_at, sense_of, with_load
@@ -24,7 +24,7 @@ from beltdyn.results.damage import VARIABLES as OF_FATIGUE
 from beltdyn.results.damage import fatigue_by_name, known_variables
 from beltdyn.results.dataset import is_result
 from beltdyn.results.recorder import status_after
-from beltdyn.results.schema import AXIS_NAMES, COORDINATES
+from beltdyn.results.schema import AXIS_NAMES, COORDINATES, runs_steadily
 from beltdyn.results.summary import Means, means_of
 from beltdyn.results.tension_balance import causes_of
 from beltdyn.results.tooth_loads import ToothLoads, tooth_loads
@@ -100,6 +100,9 @@ _OF_PULLEYS = {
 _OF_TEETH = {"teeth_in_mesh": "in_mesh", "tooth_load": "largest", "jump_margin": "jump_margin"}
 """Variable -> attribute of `ToothLoads`."""
 
+_COSTLY = (OF_FATIGUE.keys(), _OF_TEETH.keys(), {"mesh_error"})
+"""Variables that are computed together, where one of them is asked for."""
+
 _OF_RATING = ("rated_power", "utilization")
 _CORDS = "[belt.cord_fatigue] with its source, or a profile that has it, such as SPZ"
 _RIBS = "[belt.rib_fatigue] with its source, or a profile that has it, such as PK"
@@ -134,8 +137,19 @@ def variables_of(drive: Drive) -> dict[str, Variable]:
     return {name: one for name, one in VARIABLES.items() if name not in unknown}
 
 
-def values_by_name(run: Run, means: Means, names: Collection[str] = VARIABLES.keys()) -> dict[str, Any]:
-    """The values of an operating point by the names of `VARIABLES`; of fatigue only where some names need them."""
+def variables_in(run: Run) -> dict[str, Variable]:
+    """Those of `VARIABLES` that a run has: of fatigue in steady running alone, where an hour is like any other."""
+    steadily = runs_steadily(run.dataset)
+    return {name: one for name, one in variables_of(run.drive).items() if steadily or name not in OF_FATIGUE}
+
+
+def computed_with(name: str) -> Collection[str]:
+    """The variables that come with one at no further cost, itself among them."""
+    return next((group for group in _COSTLY if name in group), VARIABLES.keys() - set().union(*_COSTLY))
+
+
+def values_by_name(run: Run, means: Means, names: Collection[str]) -> dict[str, Any]:
+    """The values of an operating point by the names of `VARIABLES`; of fatigue, teeth and mesh where some need them."""
     balance, dataset, tensions = means.balance, run.dataset, [one.tension for one in means.spans]
     known = variables_of(run.drive)
     values: dict[str, Any] = {
@@ -153,7 +167,7 @@ def values_by_name(run: Run, means: Means, names: Collection[str] = VARIABLES.ke
         "efficiency": balance.efficiency,
         "loss": [balance.losses[cause] for cause in _causes(run.drive)],
     }
-    if run.drive.belt.teeth:
+    if run.drive.belt.teeth and not _OF_TEETH.keys().isdisjoint(names):
         values |= _tooth_values(tooth_loads(run), [one.name for one in means.pulleys])
     safeties = np.array(values["slip_safety"])
     if np.any(np.isfinite(safeties)):
@@ -163,6 +177,8 @@ def values_by_name(run: Run, means: Means, names: Collection[str] = VARIABLES.ke
         values["tensioner_position"] = stands = [one.position for one in means.tensioners]
         for name in ("tensioner_position_after_tensioning", "tensioner_position_after_yielding"):
             values[name] = dataset.attrs.get(name, stands)
+    if "mesh_error" in names:
+        values["mesh_error"] = run.resolution.errors["peak pressure"]
     return values if OF_FATIGUE.keys().isdisjoint(names) else values | fatigue_by_name(run)
 
 
@@ -218,7 +234,7 @@ class OperatingPoints:
         self._near: Run | None = None
         self._near_at: Sequence[float] = ()
         self._run: Run | None = None
-        self._error: Exception | None = None
+        self._error: BeltdynError | None = None
         """What went wrong first."""
         self.more: Axes = {}
         """Further coordinates."""
@@ -293,8 +309,7 @@ class OperatingPoints:
             run = found(there) if stride is None else self._reach(found, np.array(there), stride)
             self._take(index, run, means_of(run))
         except Exception as error:
-            self._error = self._error or error
-            self._fail(index, "no operating point", cause_of(error))
+            self._fail(index, "no operating point", error)
         else:
             self._run = self._near = run
             self._near_at = there
@@ -341,10 +356,12 @@ class OperatingPoints:
         try:
             then(index, self._run)
         except Exception as error:
-            self._fail(index, f"no {found_then}", cause_of(error))
+            self._fail(index, f"no {found_then}", error)
 
-    def _fail(self, index: tuple[int, ...], what: str, reason: str) -> None:
+    def _fail(self, index: tuple[int, ...], what: str, error: Exception) -> None:
         """Mark a point by the reason why something is not found there, and warn of it."""
+        told = classified(error, f"{self._kind} at {self._place(index)}")
+        self._error, reason = self._error or told, str(told)
         self.arrays["failure"][index] = reason
         text = f"{what}: {reason}"
         self._warn(index, re.sub(r"[\d.,e+\-−–%]+", "#", text), text)
@@ -352,9 +369,11 @@ class OperatingPoints:
     def result(self) -> Result:
         """The table as it is now."""
         if self._error and not self.found and self._status != "interrupted":
+            if isinstance(self._error, InternalError):
+                raise self._error
             kind = ModelError if isinstance(self._error, ModelError) else ConvergenceError
             points = f"no steady running at any of {self._done} points. The first one: " if self._done > 1 else ""
-            raise kind(points + cause_of(self._error)) from self._error
+            raise kind(points + str(self._error)) from self._error
         kept = {name: (self._labelled(VARIABLES[name]), values) for name, values in self.arrays.items()}
         coordinates = {**self._axes, **self.more, **self._named()}
         variables = {**kept, **self._extremes(), **self.derive(self.arrays)}
@@ -408,7 +427,6 @@ class OperatingPoints:
     def _take(self, index: tuple[int, ...], run: Run, means: Means) -> None:
         """Note an operating point."""
         values, findings = values_by_name(run, means, self.arrays), run.findings
-        values["mesh_error"] = run.resolution.errors["peak pressure"]
         for name in self.arrays.keys() & values.keys():
             self.arrays[name][index] = values[name]
         for finding in findings:

@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from beltdyn.arrays import FloatArray
-from beltdyn.errors import ConvergenceError, ModelError, cause_of
+from beltdyn.errors import BeltdynError, ConvergenceError, ModelError
 from beltdyn.model import Drive
 from beltdyn.model.pulley import flat_friction_on
 from beltdyn.parts.quantity import Numbers, numbers_in
@@ -283,9 +283,9 @@ def _past_gross_slip(slipping: Callable[[float, float], Drive], number: int, poi
         part = min(_FURTHER * creeping or _FIRST, 0.5 * (creeping + sliding))
         try:
             found = steady_state(slipping(part, _FIRMER), force_tolerance=_ROUGHLY, start=run)
-        except Exception as error:
+        except BeltdynError as error:
             if part < _LEAST:
-                raise ConvergenceError(f"no steady running found at any slip: {cause_of(error)}") from error
+                raise ConvergenceError(f"no steady running found at any slip: {error}") from error
             sliding = part
             continue
         if max(_sliding(found, number)) > _ALL:
@@ -321,7 +321,7 @@ def _jump_torque(loaded: Callable[[float], Drive], number: int, force_tolerance:
             holding = torque
         except ConvergenceError as error:
             if torque < _LEAST * float(run.prepared.belt.axial_stiffness) * radius:
-                raise ConvergenceError(f"no steady running found under any torque: {cause_of(error)}") from error
+                raise ConvergenceError(f"no steady running found under any torque: {error}") from error
             jumping = torque
         torque = min(_FURTHER * holding or np.inf, 0.5 * (holding + jumping))
     return holding

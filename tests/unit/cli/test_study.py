@@ -5,6 +5,8 @@ from pathlib import Path
 import pytest
 
 from beltdyn.cli import main
+from beltdyn.designs import point_work
+from beltdyn.designs.study_columns import columns_of
 
 STUDY = """
 drive = "drive.toml"
@@ -62,3 +64,28 @@ def test_a_wrong_study_is_told_with_its_file(study_file: Path, capsys: pytest.Ca
     study_file.write_text(STUDY.replace("results =", "result ="), encoding="utf-8")
     assert code_of("study", str(study_file)) == 2
     assert 'Did you mean "results"' in capsys.readouterr().err
+
+
+@pytest.mark.provokes_internal_errors
+def test_internal_errors_have_an_exit_code_of_their_own(
+    study_file: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """At one of two points: the other has its row."""
+    inner, count = columns_of, iter(range(10))
+    monkeypatch.setattr(point_work, "columns_of", lambda *given: inner(*given) if next(count) else None)
+    assert code_of("study", str(study_file), "-j", "1") == 5
+    captured = capsys.readouterr()
+    assert "failed at point 1: internal error in designs/point_work.py" in captured.out
+    assert "points          2 of 2, 1 failed" in captured.out
+
+
+@pytest.mark.provokes_internal_errors
+def test_a_command_that_fails_by_itself_says_so(
+    study_file: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr("beltdyn.designs.study.plan_of", lambda *given: None)
+    assert code_of("study", str(study_file), "-j", "1") == 5
+    err = capsys.readouterr().err
+    assert "Traceback" not in err
+    assert "internal error in designs/study.py:" in err
+    assert f"repeats it: beltdyn study {study_file} -j 1" in err

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from beltdyn.designs.batch import held, study_points
-from beltdyn.designs.designs import Designs, free_number
+from beltdyn.designs.designs import Designs, free_numbers
 from beltdyn.designs.optimization_history import aims_of
 from beltdyn.designs.optimize import optimize
 from beltdyn.errors import ConvergenceError, ModelError
@@ -155,7 +155,7 @@ def test_a_design_followed_along_the_tangent_is_that_found_from_rest(loaded: Dri
     """Halving the tension is far beyond Newton's method from the state at hand, and not beyond the path of states."""
     given = study()
     there, points = held(loaded, given.points), study_points(loaded, given.points, Path())
-    number = free_number(loaded, given.numbers[0])
+    (number,) = free_numbers(loaded, given.numbers[:1])
     watched = aims_of(given, there, points).watched
     designs = Designs(loaded, [number], points, given.points, watched, None, lambda part: None)
     start = designs.find({number.path: TENSION})

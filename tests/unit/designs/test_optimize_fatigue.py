@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from beltdyn.designs.batch import OperatingPoint
-from beltdyn.designs.named_results import names_of, unit_of, values_of
+from beltdyn.designs.named_results import names_of, scalar_results, unit_of, values_of
 from beltdyn.designs.optimization_history import aims_of
 from beltdyn.model import Drive, OptimizationStudy
 from beltdyn.results.damage import hourly_damage
@@ -15,7 +15,7 @@ TORQUE = {"path": "belt.installed_tension", "least": "250 N", "largest": "350 N"
 
 def test_damage_and_lives_are_results_of_steady_running(fatigue_drive: Drive) -> None:
     run = steady_state(fatigue_drive)
-    found, damage = values_of(run), hourly_damage(run)
+    found, damage = values_of(run, scalar_results(run)), hourly_damage(run)
     assert found["cord_life"] == pytest.approx(1.0 / damage.cord.sum())
     assert found["rib_damage[large]"] == damage.rib[1]
     names = names_of(fatigue_drive)

@@ -1,74 +1,74 @@
-"""Results of analyses as named numbers."""
+"""What a process does at points: a fault at one leaves the others, and says how to repeat it."""
 
 import re
+from collections.abc import Callable, Sequence
+from typing import Any
 
 import numpy as np
 import pytest
-from numpy.typing import ArrayLike
 
-from beltdyn.designs.named_results import names_in, names_of
-from beltdyn.designs.point_work import columns_of, require_reductions
-from beltdyn.errors import ModelError
+import beltdyn as bd
+from beltdyn.designs import study_columns
+from beltdyn.designs.point_work import PointWork, compute_points
 from beltdyn.model import Drive
-from beltdyn.results import Run, Variable, build_result, summarize
-from beltdyn.state.equilibrium import equilibrium
+from beltdyn.results import Result
+
+Make = Callable[..., PointWork]
 
 
-def test_a_variable_gives_a_number_for_each_name(drive: Drive) -> None:
-    rest = equilibrium(drive)
-    found = columns_of(rest, ["hub_load", "tension", "span_tension[driven-driver]"])
-    assert list(found.values) == ["hub_load[driver]", "hub_load[driven]", "tension", "span_tension[driven-driver]"]
-    assert found.values["hub_load[driven]"] == float(rest.dataset["hub_load"][1])
-    assert found.units["tension"] == "N"
-    assert not found.missing
+def widths_of(work: PointWork, *widths: float) -> list[Any]:
+    points = [(number, {"belt.width": width}) for number, width in enumerate(widths)]
+    return compute_points(work, points).outcomes
 
 
-def test_reductions_go_over_time_and_over_what_has_no_names(drive: Drive, run: Run) -> None:
-    found = columns_of(run, ["largest(span_tension)", "swing(span_tension[driver-driven])", "last(pulley_speed)"])
-    tension = run.dataset["span_tension"].values
-    assert found.values["largest(span_tension[driver-driven])"] == tension[:, 0].max()
-    assert found.values["swing(span_tension[driver-driven])"] == np.ptp(tension[:, 0])
-    assert found.values["last(pulley_speed[driven])"] == float(run.dataset["pulley_speed"][-1, 1])
-    assert found.units["largest(span_tension[driver-driven])"] == "N"
+@pytest.mark.provokes_internal_errors
+def test_an_internal_error_is_told_with_the_line_that_repeats_it(
+    tiny_work: Make, drive: Drive, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    reductions = dict(study_columns._REDUCTIONS)
+    monkeypatch.setattr(study_columns, "_REDUCTIONS", {"largest": reductions["largest"]})  # another one is a KeyError
+    work, request = tiny_work(), study_columns._Request("mean", "width")
+    monkeypatch.setattr(study_columns, "request_of", lambda text: request)
+    monkeypatch.setattr(study_columns, "_unnamed", lambda variable: [str(dim) for dim in variable.dims] or ["x"])
+    first, other, third = widths_of(work, 0.01, -1.0, 0.02)
+    for one in (first, third):
+        assert re.match(r"internal error in designs/study_columns.py:\d+ \(KeyError: 'mean'\)", one.failure)
+        assert one.values == {}
+    assert "belt.width" in other.failure
+    line = third.failure.partition("repeats it: ")[2]
+    assert line == work.call({"belt.width": 0.02})
 
 
-def test_plain_names_of_a_run_are_those_of_its_summary(run: Run) -> None:
-    found = columns_of(run, ["pulley_slip[driven]", "efficiency"])
-    assert found.values["pulley_slip[driven]"] == summarize(run).pulleys[1].slip
+def test_the_line_that_repeats_a_point_is_python(drive: Drive) -> None:
+    analysis = bd.analyses.ANALYSES["modes"]
+    work = PointWork(drive, analysis, {"count": 3}, ("frequency",), None)
+    found = eval(work.call({"belt.width": 0.012}), {"bd": bd, "drive": drive})
+    assert isinstance(found, Result)
+    assert list(found.dataset.data_vars)[:3] == ["frequency[1]", "frequency[2]", "frequency[3]"]
+    assert found.dataset["belt.width"].values.tolist() == [0.012]
 
 
-def test_all_takes_every_single_number(drive: Drive) -> None:
-    variables: dict[str, tuple[Variable, ArrayLike]] = {
-        "one": (Variable((), "m", "One"), 1.5),
-        "some": (Variable(("mode",), "Hz", "Some"), [2.0, 3.0]),
-        "word": (Variable((), "1", "Word", "str"), "no"),
-        "field": (Variable(("node",), "m", "Field"), [1.0, 2.0]),
-    }
-    result = build_result("modes", drive, variables, {"mode": (Variable(("mode",), "1", "Mode"), [1, 2])})
-    assert columns_of(result, ["all"]).values == {"one": 1.5, "some[1]": 2.0, "some[2]": 3.0}
-    assert columns_of(result, ["largest(field)"]).values == {"largest(field)": 2.0}
+@pytest.mark.parametrize("profiles", [("SPZ", "SPA"), ("SPA", "SPZ")])
+def test_what_only_some_points_have_is_told_at_the_others(profiles: Sequence[str], drive: Drive) -> None:
+    """Whatever the order of the points: cords of SPA have no S-N line."""
+    study = bd.ParameterStudy(
+        analysis="steady_state",
+        results=["cord_life", "largest_tension"],
+        number=[{"path": "belt.profile", "values": profiles}],
+    )
+    given = drive.with_({"belt.profile": "SPZ", "belt.ribs": 1, "belt.installed_tension": "200 N"})
+    found = bd.study(study, given, jobs=1).dataset
+    has_it = found["belt.profile"].values == "SPZ"
+    assert np.isfinite(found["cord_life"].values).tolist() == has_it.tolist()
+    warned = ["'cord_life' needs data" in text for text in found["point_warnings"].values.tolist()]
+    assert warned == (~has_it).tolist()
+    assert np.isfinite(found["largest_tension"].values).all()
 
 
-def test_what_there_is_not_is_told(drive: Drive) -> None:
-    found = columns_of(equilibrium(drive), ["hub_laod", "tension"])
-    assert found.values.keys() == {"tension"}
-    assert found.missing == "results = 'hub_laod' is not a numerical result. Did you mean \"hub_load\"?"
-
-
-@pytest.mark.parametrize(
-    ("result", "needed"),
-    [
-        ("cord_life", "[belt.cord_fatigue]"),
-        ("rib_life", "passages in [belt.rib_fatigue]"),
-        ("utilization", "SPZ or PK"),
-    ],
-)
-def test_what_the_belt_has_no_data_for_says_which(result: str, needed: str, drive: Drive) -> None:
-    with pytest.raises(ModelError, match=re.escape(needed)):
-        names_in(names_of(drive), result)
-
-
-@pytest.mark.parametrize("text", ["greatest(span_tension)", "largest(span_tension", "largest()"])
-def test_reductions_that_are_none_are_told(text: str) -> None:
-    with pytest.raises(ModelError, match="is not a result"):
-        require_reductions([text])
+def test_points_of_runs_have_what_the_belt_has_data_for(fatigue_drive: Drive) -> None:
+    """Of a belt with fatigue data too, which are of steady running alone."""
+    study = bd.ParameterStudy(number=[{"path": "simulation.duration", "values": [1e-3]}])
+    found = bd.study(study, fatigue_drive, jobs=1).dataset
+    assert found["failure"].values.tolist() == [""]
+    assert float(found["span_tension[small-large]"][0]) > 0.0
+    assert not [name for name in found.data_vars if str(name).startswith(("cord_", "rib_"))]

@@ -12,9 +12,11 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from beltdyn.designs import point_work
+from beltdyn.designs import point_work, study_table
+from beltdyn.designs.point_work import Outcome
 from beltdyn.designs.processes import ThisProcess
 from beltdyn.designs.study import study
+from beltdyn.designs.study_table import StudyTable
 from beltdyn.errors import ModelError
 from beltdyn.model import Drive, ParameterStudy
 from beltdyn.results import Result, open_result
@@ -199,23 +201,105 @@ def test_a_study_waits_for_workers_and_says_so(study_file: Path, monkeypatch: py
 
 
 @pytest.mark.slow
-def test_a_study_that_is_killed_goes_on(study_file: Path, tmp_path: Path) -> None:
-    """With processes of its own, which end with it."""
+@pytest.mark.parametrize("rows_before", [1, 9])
+def test_a_study_that_is_killed_goes_on(rows_before: int, study_file: Path, tmp_path: Path) -> None:
+    """With processes of its own, which end with it, as soon as there is a row, and later."""
     text = study_file.read_text(encoding="utf-8").replace("10, 12, 14 mm", "10..14 mm")
     study_file.write_text(text.replace('values = "10..14 mm"', 'values = "10..14 mm"\nsteps = 60'), encoding="utf-8")
     program = f"import beltdyn as bd; bd.study({str(study_file)!r}, output={str(tmp_path / 's.nc')!r}, jobs=2)"
     process = subprocess.Popen([sys.executable, "-c", program])
     rows = tmp_path / "s.csv"
-    while process.poll() is None and (not rows.exists() or rows.read_text(encoding="utf-8").count("\n") < 10):
+    while process.poll() is None and (not rows.exists() or rows.read_text(encoding="utf-8").count("\n") <= rows_before):
         time.sleep(0.02)
     os.kill(process.pid, signal.SIGKILL)
     process.wait()
     before = rows.read_text(encoding="utf-8").count("\n") - 1
-    assert 9 <= before < 180
+    assert rows_before <= before < 180
     result = study(study_file, output=tmp_path / "s.nc", jobs=1)
     assert result.status == "completed"
     points = [row["point"] for row in rows_of(rows)]
     assert sorted(points, key=int) == [str(number) for number in range(1, 181)]
+
+
+def test_the_first_row_has_its_head(study_file: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """A study that is killed right behind its first row goes on there."""
+
+    class Killed(BaseException):
+        pass
+
+    def append(self: StudyTable, outcomes: list[Outcome]) -> None:
+        written(self, outcomes)
+        raise Killed
+
+    written = StudyTable._append
+    with monkeypatch.context() as patch:
+        patch.setattr(StudyTable, "_append", append)
+        patch.setattr(StudyTable, "__exit__", lambda self, *_: self._lock.release())
+        with pytest.raises(Killed):
+            study(study_file, output=tmp_path / "s.nc", jobs=1)
+    assert len(rows_of(tmp_path / "s.csv")) == 1
+    computed = counted(monkeypatch)
+    assert study(study_file, output=tmp_path / "s.nc", jobs=1).status == "completed"
+    assert len(computed) == 8
+
+
+def test_rows_without_their_head_are_not_taken(study_file: Path, tmp_path: Path) -> None:
+    study(study_file, output=tmp_path / "s.nc", jobs=1)
+    (tmp_path / "s.nc").unlink()
+    with pytest.raises(ModelError, match=r"a study whose head .*s.nc is missing or damaged"):
+        study(study_file, output=tmp_path / "s.nc", jobs=1)
+
+
+def test_rows_that_failed_by_internal_errors_are_computed_again(
+    study_file: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """They are no results of the drive."""
+    with monkeypatch.context() as patch:
+        patch.setattr(point_work, "cause_of", lambda *_: "internal error in somewhere.py:1 (KeyError: 'x')")
+        study(study_file, output=tmp_path / "s.nc", jobs=1)
+    computed = counted(monkeypatch)
+    found = study(study_file, output=tmp_path / "s.nc", jobs=1).dataset
+    assert len(computed) == 3
+    assert not [text for text in found["failure"].values if "internal" in text]
+
+
+@pytest.mark.parametrize("overwrite", [False, True])
+@pytest.mark.parametrize("name", ["table", "drive"])
+def test_no_input_is_overwritten(overwrite: bool, name: str, study_file: Path, tmp_path: Path) -> None:
+    """The table of points has the name that rows of the study would have."""
+    output = tmp_path / "points.nc" if name == "table" else tmp_path / "drive.toml"
+    (tmp_path / "points.csv").write_text("belt.width [mm]\n10\n12\n", encoding="utf-8")
+    head = study_file.read_text(encoding="utf-8").partition("[[number]]")[0]
+    study_file.write_text(head + 'table = "points.csv"\n', encoding="utf-8")
+    before = {path.name: path.read_bytes() for path in tmp_path.iterdir()}
+    with pytest.raises(ModelError, match="is an input of the study; the results would overwrite it"):
+        study(study_file, output=output, jobs=1, overwrite=overwrite)
+    assert {path.name: path.read_bytes() for path in tmp_path.iterdir()} == before
+
+
+@pytest.mark.parametrize("saving", [1, 2])
+def test_an_interruption_while_a_file_is_saved_waits(
+    saving: int, study_file: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """At the first saving, which is the head, and when all is done; twice, as impatient people do."""
+    inner, count = Result.save, iter(range(1, 100))
+
+    def save(self: Result, path: Path, overwrite: bool = False) -> Path:
+        saved = inner(self, path, overwrite)
+        if next(count) == saving:
+            signal.raise_signal(signal.SIGINT)
+            signal.raise_signal(signal.SIGINT)
+            assert open_result(saved).kind == "study"
+        return saved
+
+    monkeypatch.setattr(Result, "save", save)
+    monkeypatch.setattr(study_table, "_OFTEN", 1e9)
+    text = study_file.read_text(encoding="utf-8")
+    study_file.write_text(text.replace("[0.081, 0.0815, 0.08]", "[0.081]"), encoding="utf-8")
+    found = study(study_file, output=tmp_path / "s.nc", jobs=1)
+    done = len(rows_of(tmp_path / "s.csv"))
+    assert open_result(tmp_path / "s.nc").status == found.status == ("interrupted" if saving == 1 else "completed")
+    assert done == (1 if saving == 1 else 3)
 
 
 def test_files_of_points_are_kept_where_asked_for(study_file: Path, tmp_path: Path) -> None:

@@ -1,13 +1,16 @@
 """Every point comes back once, whoever computes it, and whatever is killed meanwhile."""
 
+import dataclasses
 import os
 import random
 import signal
 import warnings
 from collections.abc import Callable, Mapping
+from concurrent.futures import Future
 from contextlib import suppress
 from pathlib import Path
 from threading import Event, Thread
+from typing import Any
 
 import numpy as np
 import pytest
@@ -63,6 +66,28 @@ def test_tiny_points_travel_in_chunks(tiny_work: Make, monkeypatch: pytest.Monke
     assert sizes[0] == 1
     assert max(sizes) > 20
     assert sizes[-1] <= 2
+
+
+@pytest.mark.provokes_internal_errors
+def test_a_chunk_that_cannot_be_passed_on_loses_one_point(tiny_work: Make) -> None:
+    """What a worker answers may be unreadable here: such a point fails alone."""
+
+    class Garbled(ThisProcess):
+        def submit(self, function: Callable[..., Any], *arguments: Any) -> Future[Any]:
+            if any(changes["belt.width"] == 0.013 for _, changes in arguments[1]):
+                future: Future[Any] = Future()
+                try:
+                    dataclasses.replace(arguments[0], nothing=1)
+                except TypeError as error:
+                    future.set_exception(error)
+                return future
+            return super().submit(function, *arguments)
+
+    widths = [*np.linspace(0.0101, 0.0129, 30).tolist(), 0.013, *np.linspace(0.0131, 0.02, 30).tolist()]
+    found = compute(Garbled(), tiny_work(), widths)
+    require_each_once(found, widths)
+    (failed,) = [one for one in found if one.failure]
+    assert widths[failed.point] == 0.013
 
 
 @pytest.mark.slow

@@ -118,7 +118,7 @@ def test_whatever_goes_wrong_at_points_leaves_the_others(
     found = ANALYSES[name](loaded, tmp_path)
     told = "IndexError: index 0 is out of bounds"
     assert found.status == "completed"
-    assert found.dataset.failure.values.tolist() == [told if place in broken else "" for place in range(3)]
+    assert [told in text for text in found.dataset.failure.values] == [place in broken for place in range(3)]
     assert found.dataset.belt_speed.isnull().values.tolist() == [place in broken for place in range(3)]
     assert any(told in warning for warning in found.warnings)
 
@@ -140,7 +140,7 @@ def test_vibrations_that_are_not_found_leave_those_of_other_speeds(
 
     monkeypatch.setattr(import_module(module), function, fails_once)
     found = ANALYSES[name](loaded, tmp_path).dataset
-    assert found.failure.values.tolist() == ["", "ValueError: not finite", ""]
+    assert ["ValueError: not finite" in text for text in found.failure.values] == [False, True, False]
     assert found.belt_speed.notnull().all()
     lines = found.frequency if name == "campbell" else found.span_tension_amplitude
     assert lines.isnull().all(lines.dims[1:]).values.tolist() == [False, True, False]
