@@ -10,7 +10,7 @@ from beltdyn.arrays import FloatArray
 from beltdyn.designs.batch import OperatingPoint, Watched, held
 from beltdyn.designs.found_state import FoundState, Resting, Running
 from beltdyn.designs.named_results import need_bands
-from beltdyn.errors import ConvergenceError, ModelError
+from beltdyn.errors import ConvergenceError, ModelError, cause_of
 from beltdyn.model import Drive, prepare
 from beltdyn.model.parameter_study import FreeNumber, Points
 from beltdyn.parts.change import converted, require_distinct, unit_at, value_at
@@ -172,8 +172,9 @@ class Designs:
                 states.append(found or self._state(point, rest, states))
                 self._tell((number + 1) / len(self._points))
             values = np.array([self._read(one, number) for number, one in enumerate(states)])
-        except (ConvergenceError, ModelError) as error:
-            return Design(changes, f"{where}{error}", np.full((len(self._points), len(self.watched)), np.nan))
+        except Exception as error:
+            told = cause_of(error, f"the steady running of drive.with_({dict(changes)!r}) {where}".rstrip(": "))
+            return Design(changes, f"{where}{told}", np.full((len(self._points), len(self.watched)), np.nan))
         blank = tuple(dict[str, FloatArray]() for _ in states)
         return Design(changes, "", values, self._given(changes), rest, tuple(states), blank)
 
@@ -243,8 +244,9 @@ class Designs:
                 for number, (point, one) in enumerate(zip(self._points, design.states, strict=True)):
                     beside = self._neighbour(one, point.of(side), design.tangents[number], free.path, step)
                     found[number, :, column] = (self._read(beside, number) - design.values[number]) / step
-            except (ConvergenceError, ModelError) as error:
-                self.failed.append(f"no derivative with respect to {free.path}: {error}")
+            except Exception as error:
+                told = cause_of(error, f"a change of {free.path} at {dict(design.changes)!r}")
+                self.failed.append(f"no derivative with respect to {free.path}: {told}")
         return np.nan_to_num(found)
 
     def _neighbour(

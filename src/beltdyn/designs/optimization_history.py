@@ -62,11 +62,36 @@ class Aims:
         return int(self.watched[limit.result].at.sum())
 
     def goal_values(self, values: FloatArray) -> FloatArray:
-        """The values whose maximum is the goal, from results of shape (points, results, ...), with their sign."""
-        chosen = self.sign * values[:, list(self.goal)]
-        if self.mean:
-            return np.tensordot(self.weights, chosen.mean(axis=1), 1)[None]
-        return chosen.reshape(-1, *chosen.shape[2:])
+        """The values whose maximum is the goal, with their sign, from results of shape (points, results).
+
+        What has no value, such as the tooth load of a pulley without teeth, does not count; without any it is infinite.
+        """
+        found = self._goals(values, values[..., None])[:, 0]
+        return found if found.size else np.full(1, np.inf)
+
+    def goal_slopes(self, values: FloatArray, derivatives: FloatArray) -> FloatArray:
+        """Derivatives of `goal_values`, shape (values, numbers), from those of shape (points, results, numbers)."""
+        return self._goals(values, derivatives)
+
+    def _goals(self, values: FloatArray, chosen: FloatArray) -> FloatArray:
+        """What is chosen of results, shape (points, results, n), for a goal, where they have a value."""
+        goal = list(self.goal)
+        counted, signed = np.isfinite(values[:, goal]), self.sign * chosen[:, goal]
+        if not self.mean:
+            return np.asarray(signed[counted])
+        weights = self.weights[:, None] * counted
+        return (
+            np.asarray(weights[counted] @ signed[counted] / weights.sum())[None] if counted.any() else signed[counted]
+        )
+
+    def require_values(self, values: FloatArray) -> None:
+        """Make sure that some result of the goal has a value at some operating point."""
+        if not np.isfinite(values[:, list(self.goal)]).any():
+            names = ", ".join(self.watched[number].name for number in self.goal)
+            raise ModelError(
+                f"the goal has no value: {names} cannot be computed for this drive at any operating point. Choose "
+                "another result."
+            )
 
     def goal_of(self, values: FloatArray) -> float:
         """The goal of a design, in the unit of the result, from results of shape (points, results)."""
@@ -375,6 +400,9 @@ class History:
         where = self._points[point].label if len(self._points) > 1 else ""
         return group[place].sign * float(signed[place, point]), ", ".join(filter(None, (label, where)))
 
+    def _has_value(self, best: Design, group: Sequence[Limit]) -> bool:
+        return not np.isnan(best.values[:, [limit.result for limit in group]]).all()
+
     def _warnings(self, best: Design) -> list[str]:
         """Warnings about the best design."""
         found, beyond = list(self._warned), self._aims.violation(best.values)
@@ -383,6 +411,9 @@ class History:
                 f"no design satisfies all limits: the best one violates them by {beyond:.2%}. Widen the bounds, "
                 "vary more parameters, or relax the limits."
             )
+        empty = [name for name, group in self._groups().items() if not self._has_value(best, group)]
+        if empty:
+            found.append(f"{', '.join(empty)}: no result has a value at any operating point, so nothing is limited.")
         at_bounds = [one.path for one in self._numbers if best.changes[one.path] in (one.least, one.largest)]
         if at_bounds:
             found.append(f"{', '.join(at_bounds)}: the best value lies at a bound. Widen it if possible.")

@@ -10,7 +10,7 @@ from beltdyn.arrays import FloatArray
 from beltdyn.designs.batch import held, study_points
 from beltdyn.designs.designs import Design, Designs, free_numbers
 from beltdyn.designs.optimization_history import Aims, History, aims_of
-from beltdyn.errors import ConvergenceError, ModelError
+from beltdyn.errors import ConvergenceError, InternalError, ModelError, is_internal
 from beltdyn.model import Drive
 from beltdyn.model.parameter_study import OptimizationStudy
 from beltdyn.model.toml import read_study
@@ -84,12 +84,15 @@ class Descent:
     def _set_scales(self, start: Design, derivatives: FloatArray) -> None:
         """Measure the goal by its change along the whole way between bounds, limits by themselves."""
         worst = int(np.argmax(self._aims.goal_values(start.values)))
-        self._goal_scale = float(np.abs(self._aims.goal_values(derivatives)[worst] * self._ranges).max()) or 1.0
+        slopes = self._aims.goal_slopes(start.values, derivatives)[worst]
+        self._goal_scale = float(np.abs(slopes * self._ranges).max()) or 1.0
         limits = [abs(limit.value) or 1.0 for limit in self._aims.limits for _ in range(self._aims.places(limit))]
         self._scales = np.array(limits)
 
     def _place(self, parts: FloatArray, design: Design) -> _Place:
-        distances = np.nan_to_num(self._aims.distances(design.values) / self._scales, nan=_UNBOUND, posinf=_UNBOUND)
+        distances = np.nan_to_num(
+            self._aims.distances(design.values) / self._scales, nan=_UNBOUND, posinf=_UNBOUND, neginf=-_UNBOUND
+        )
         return _Place(parts, design, self._aims.goal_values(design.values) / self._goal_scale, distances)
 
     def _try(self, here: _Place, step: FloatArray) -> _Place | None:
@@ -105,7 +108,7 @@ class Descent:
         from scipy.optimize import linprog
 
         program: Callable[..., Any] = linprog
-        goals = self._aims.goal_values(derivatives) * self._ranges / self._goal_scale
+        goals = self._aims.goal_slopes(here.design.values, derivatives) * self._ranges / self._goal_scale
         limits = self._aims.distances(derivatives) * self._ranges / self._scales[:, None]
         count = self._ranges.size
         last = np.zeros((len(goals) + len(limits), 2))
@@ -207,7 +210,9 @@ def optimize(
     designs = Designs(drive, numbers, points, given.points, aims.watched, force_tolerance, tell)
     start = designs.find({one.path: one.start for one in numbers})
     if start.failure:
-        raise ConvergenceError(f"the search starts from the given drive, which does not run. {start.failure}")
+        kind = InternalError if is_internal(start.failure) else ConvergenceError
+        raise kind(f"the search starts from the given drive, which does not run. {start.failure}")
+    aims.require_values(start.values)
     history.note(start)
     descent = Descent(designs, aims, most, history.note)
     with history:

@@ -11,7 +11,7 @@ from beltdyn.arrays import FloatArray
 from beltdyn.designs.batch import OperatingPoint, named
 from beltdyn.designs.designs import Design, Designs, Free
 from beltdyn.designs.named_results import names_of, unit_of
-from beltdyn.errors import ConvergenceError, ModelError
+from beltdyn.errors import ConvergenceError, InternalError, ModelError, is_internal
 from beltdyn.model import Drive
 from beltdyn.model.parameter_study import CalibrationStudy, Measurement, Points
 from beltdyn.parts.change import meaning_of, require_distinct, unit_at
@@ -133,6 +133,11 @@ class Series(NamedTuple):
     deviations: FloatArray
     """Shape (rows, results)."""
 
+    @property
+    def names(self) -> list[str]:
+        """The results of the rows, in the order of their values."""
+        return [f"{one.name} ({label})" for label in self.labels for one in self.designs.watched]
+
 
 class Residuals:
     """Residuals of designs, and their derivatives with respect to numbers scaled to 0 to 1 between bounds."""
@@ -170,8 +175,18 @@ class Residuals:
         first = np.array([(one.start - one.least) / (one.largest - one.least) for one in self._numbers])
         failures = [one.failure for one in self._at(first) if one.failure]
         if failures:
-            raise ConvergenceError(f"the search starts from the given drive, which does not run. {failures[0]}")
+            kind = InternalError if is_internal(failures[0]) else ConvergenceError
+            raise kind(f"the search starts from the given drive, which does not run. {failures[0]}")
         self.first = self.values(first)
+        names = [name for one in self.series for name in one.names]
+        absent = [
+            name for name, value, on in zip(names, self.first, self.on, strict=True) if on and not np.isfinite(value)
+        ]
+        if absent:
+            raise ModelError(
+                f"{absent[0]} was measured, but cannot be computed for this drive. Leave such cells empty, or "
+                "remove the column."
+            )
         return first
 
     def values(self, parts: FloatArray) -> FloatArray:

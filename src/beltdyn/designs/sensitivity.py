@@ -20,7 +20,7 @@ from beltdyn.designs.batch import OperatingPoint, named
 from beltdyn.designs.designs import CHANGE, Designs, Free, SmallChanges
 from beltdyn.designs.found_state import FoundState, Resting, Running
 from beltdyn.designs.named_results import listed, names_in, names_of, need_bands, unit_of
-from beltdyn.errors import ConvergenceError, ModelError
+from beltdyn.errors import ModelError, cause_of
 from beltdyn.model import Drive, prepare
 from beltdyn.model.parameter_study import Points
 from beltdyn.parts.change import require_distinct, tolerances_of, unit_at, value_at
@@ -311,8 +311,11 @@ def sensitivity(
             progress(Progress(place, float(len(chosen)), 0.0, place, "operating points"))
         try:
             derivatives[:, place] = _derivatives(changes, state, number, list(values))
-        except (ConvergenceError, ModelError) as error:
-            warnings.append(f"no derivative with respect to {number.path}: {error}")
+        except Exception as error:
+            told = cause_of(
+                error, f"bd.sensitivity(drive, of={list(values)!r}, numbers={number.path!r}, about={about!r})"
+            )
+            warnings.append(f"no derivative with respect to {number.path}: {told}")
     result = _result(drive, values, chosen, derivatives, warnings)
     if not tolerances:
         return result

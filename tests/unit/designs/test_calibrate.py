@@ -70,6 +70,15 @@ def test_stiffness_from_slip(drive: Drive, slips: FloatArray, tmp_path: Path) ->
     assert found.drive.belt.youngs_modulus == pytest.approx(TRUE_MODULUS, rel=2e-4)
 
 
+def test_what_cannot_be_computed_is_refused(drive: Drive, tmp_path: Path) -> None:
+    """Before anything is fitted: without power there is no efficiency."""
+    rows = ["driven torque [N m], efficiency", "-30, 0.98", "0, 0.5"]
+    (tmp_path / "slip.csv").write_text("\n".join(rows), encoding="utf-8")
+    said = r"efficiency \(slip, row 2\) was measured, but cannot be computed"
+    with pytest.raises(ModelError, match=said):
+        calibrate(drive, study=study_file(tmp_path))
+
+
 def test_an_interrupted_calibration_keeps_what_it_has_come_to(drive: Drive, slips: FloatArray, tmp_path: Path) -> None:
     """Its file says so, and the drive file beside it holds the numbers."""
     write(tmp_path, slips)

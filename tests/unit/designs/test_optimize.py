@@ -6,12 +6,13 @@ from typing import Any
 import numpy as np
 import pytest
 
+from beltdyn.arrays import FloatArray
 from beltdyn.designs.batch import held, study_points
 from beltdyn.designs.designs import Designs, free_numbers
-from beltdyn.designs.optimization_history import aims_of
+from beltdyn.designs.optimization_history import Aims, aims_of
 from beltdyn.designs.optimize import optimize
 from beltdyn.errors import ConvergenceError, ModelError
-from beltdyn.model import Drive, OptimizationStudy, dumps, loads
+from beltdyn.model import Drive, OptimizationStudy, dumps, example, loads
 from beltdyn.points.traction import traction
 from beltdyn.results import Result, open_result, summarize
 from beltdyn.solvers.run_progress import Progress
@@ -182,3 +183,67 @@ def test_what_the_tolerance_of_limits_lets_pass_is_said(found: Result, tmp_path:
     beyond = 1.0 - float(best.worst[1]) / SAFETY
     assert beyond <= 1e-4
     assert ("a limit is violated by" in str(best.ended.item())) == (beyond > 0.0)
+
+
+@pytest.mark.parametrize("mean", [False, True])
+def test_goals_count_what_has_a_value(mean: bool) -> None:
+    """Drawn at random: the goal of all values, and its slope by differences, without those that are not there."""
+    chance = np.random.default_rng(5)
+    for _ in range(50):
+        points, results = chance.integers(1, 4), chance.integers(1, 5)
+        values, slopes = chance.normal(size=(points, results)), chance.normal(size=(points, results, 1))
+        values[chance.random(values.shape) < 0.4] = np.nan
+        weights, sign = chance.random(points), chance.choice([-1.0, 1.0])
+        aims = Aims((), tuple(range(results)), "", sign, mean, (), weights)
+
+        def goal(of: FloatArray, aims: Aims = aims, weights: FloatArray = weights) -> float:
+            known = np.isfinite(of)
+            if not known.any():
+                return np.inf
+            each = np.broadcast_to(weights[:, None], of.shape)[known]
+            wanted = aims.sign * of[known]
+            return float(each @ wanted / each.sum()) if aims.mean else float(wanted.max())
+
+        assert float(np.max(aims.goal_values(values))) == pytest.approx(goal(values))
+        if np.isfinite(values).any():
+            small = 1e-7
+            worst = int(np.argmax(aims.goal_values(values)))
+            ahead = goal(values + small * slopes[..., 0])
+            assert aims.goal_slopes(values, slopes)[worst, 0] == pytest.approx((ahead - goal(values)) / small, abs=1e-6)
+
+
+@pytest.fixture(scope="module")
+def idling() -> Drive:
+    """A drive with a smooth tensioner, which has neither a rating nor teeth."""
+    return example("alternator_drive")
+
+
+@pytest.mark.parametrize(
+    ("result", "sense"),
+    [
+        ("utilization", "minimize"),
+        *(
+            pytest.param(name, sense, marks=pytest.mark.slow)
+            for name in ("slip_safety", "rated_power", "mesh_error", "rib_damage", "hub_load")
+            for sense in ("minimize", "maximize")
+        ),
+    ],
+)
+def test_a_goal_over_pulleys_is_that_of_those_that_have_it(idling: Drive, result: str, sense: str) -> None:
+    wanted = study(number=[FREE], goal={"result": result, "sense": sense}, requirement=[], points={})
+    found = optimize(idling, study=wanted, most=2).dataset
+    assert np.isfinite(found.goal_found)
+    names = [name for name in found.result.values if name.startswith(result)]
+    worst = np.nanmax if sense == "minimize" else np.nanmin
+    assert float(found.goal_at_start) == worst(found.start_result.sel(result=names))
+
+
+def test_a_goal_without_any_value_is_refused(idling: Drive) -> None:
+    with pytest.raises(ModelError, match=r"the goal has no value: utilization\[tensioner\] cannot be computed"):
+        optimize(idling, study=study(goal={"result": "utilization[tensioner]"}, requirement=[], points={}))
+
+
+def test_a_limit_of_what_has_no_value_is_told(idling: Drive) -> None:
+    limited = study(requirement=[{"result": "utilization[tensioner]", "at_most": 1.0}], points={})
+    found = optimize(idling, study=limited, most=2)
+    assert any("no result has a value at any operating point" in warning for warning in found.warnings)
