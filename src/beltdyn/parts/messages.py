@@ -198,6 +198,8 @@ _FEW = 3
 
 def suggest(given: str, known: list[str]) -> str:
     """Suggest the nearest known name, or list all."""
+    if not known:
+        return "There are none to choose from"
     near = _nearest(given, known)
     names = [near] if near else _with_word(given, known)
     if names:

@@ -18,6 +18,7 @@ from beltdyn.results import Result, Run, Variable, open_result
 from beltdyn.results.belt_history import turn_history
 from beltdyn.results.damage import HOUR, Damage, Lives, damage_of_run, known_variables
 from beltdyn.results.dataset import is_result
+from beltdyn.results.run import run_of
 from beltdyn.solvers.run_progress import Report
 
 _KEPT = ("belt_speed", "span_tension", "cord_force", "cord_damage_rate", "cord_damage", "rib_damage_rate", "rib_damage")
@@ -249,9 +250,7 @@ def _require_data(drive: Drive) -> None:
 
 def _run_of(drive: Drive, given: Run | Path | str) -> Run:
     """The run whose damage is added, of the same pulleys and with the fatigue data of the drive."""
-    run = given if isinstance(given, Run) else open_result(given)
-    if not isinstance(run, Run):
-        raise ModelError(f"run = {str(given)!r} holds results of {run.kind}. Give a result file of `beltdyn simulate`.")
+    run = run_of("run", given)
     mine, other = ([one.name for one in owner.pulleys] for owner in (drive, run.drive))
     if mine != other:
         raise ModelError(

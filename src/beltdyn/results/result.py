@@ -1,6 +1,7 @@
 """The result of an analysis: a labeled dataset, its drive, and its file."""
 
 from collections.abc import Mapping, Sequence
+from contextlib import AbstractContextManager
 from functools import cached_property
 from importlib import import_module
 from pathlib import Path
@@ -20,6 +21,8 @@ from beltdyn.results.schema import Variable
 
 if TYPE_CHECKING:
     import xarray as xr
+
+    from beltdyn.results.schema import Recorded
 
 
 _MOST_SIZES = 4
@@ -116,6 +119,26 @@ class Result:
     def warnings(self) -> list[str]:
         """The warnings: faults and remedies; empty for a sound result."""
         return str(self.dataset.attrs.get("warnings", "")).splitlines()
+
+    def require_output(self) -> None:
+        """Make sure that this is a run with an output; see `Run`."""
+        raise ModelError(
+            f"this needs results over time, of a run; these are of {self.kind.replace('_', ' ')}. Use their dataset."
+        )
+
+    def require(self, name: str) -> None:
+        """Make sure that a run has recorded a variable; see `Run`."""
+        self.require_output()
+
+    def recorded(self) -> "AbstractContextManager[Recorded]":
+        """The recorded variables of a run; see `Run`."""
+        self.require_output()
+        raise NotImplementedError
+
+    def fields_at(self, time: float | None = None) -> "xr.Dataset":
+        """The variables of a run at an instant; see `Run`."""
+        self.require_output()
+        raise NotImplementedError
 
     def save(self, path: Path | str, overwrite: bool = False) -> Path:
         """Save the result to a file for `open_result` and `beltdyn plot`.

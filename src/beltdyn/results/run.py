@@ -315,6 +315,19 @@ def _run(path: Path, dataset: "xr.Dataset") -> Run:
     return Run(dataset, drive, path)
 
 
+def run_of(option: str, given: object) -> Run:
+    """The run, or the result file of one, that an option of an analysis names."""
+    result = open_result(given) if isinstance(given, Path | str) else given
+    if isinstance(result, Run):
+        return result
+    if not isinstance(result, Result):
+        raise ModelError(f"{option} = {result!r} is not a run. Give a run, or the result file of `beltdyn simulate`.")
+    where = f" = {str(given)!r}" if isinstance(given, Path | str) else ""
+    raise ModelError(
+        f"{option}{where} holds results of {result.kind}, not of a run. Give a result file of `beltdyn simulate`."
+    )
+
+
 def open_result(path: Path | str) -> Result:
     """Open a result file of any kind lazily.
 

@@ -6,7 +6,6 @@ from typing import NamedTuple
 
 import numpy as np
 
-from beltdyn.errors import ModelError
 from beltdyn.model import Drive
 from beltdyn.model.simulation import Simulation
 from beltdyn.results.checks.mesh import STEADY_LOSSES, STEADY_SLIPS
@@ -116,8 +115,6 @@ def summarize(run: Run) -> Summary:
     >>> bd.summarize(run).pulleys[1].name
     'driven'
     """
-    if not isinstance(run, Run):
-        raise ModelError(f"a summary needs results over time; these are of {run.kind}. Use result.dataset.")
     run.require_output()
     with run.recorded() as recorded:
         return _summarize(run, recorded)

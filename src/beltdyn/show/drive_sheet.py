@@ -167,7 +167,8 @@ def _points(dataset: "xr.Dataset") -> Table:
         columns.append(aligned(((_DEGREES if turns else 1e3) * one.values[:, 0]).tolist(), 3))
         headings = (*headings, f"tensioner\n{'°' if turns else 'mm'}")
     if "utilization" in dataset:
-        columns.append([f"{100.0 * one:.0f}%" for one in np.fmax.reduce(dataset["utilization"].values, axis=1)])
+        used = np.fmax.reduce(dataset["utilization"].values, axis=1)
+        columns.append([f"{_whole(100.0 * one)}%".replace("–%", "–") for one in used])
         headings = (*headings, "rating\nused")
     return Table("Operating points", headings, tuple(zip(*columns, strict=True)))
 
@@ -181,12 +182,12 @@ def _by_name(dataset: "xr.Dataset", dim: str) -> Table:
             loads, peaks, angles = (at[one].values for one in ("hub_load", "peak_hub_load", "hub_direction"))
             shown = safeties(at["slip_safety"].values)
             cells = [
-                f"{load:.0f} ({peak:.0f}) {_DEGREES * angle:z.0f}° {safety}"
+                f"{_whole(load)} ({_whole(peak)}) {_angle(angle)} {safety}"
                 for load, peak, angle, safety in zip(loads, peaks, angles, shown, strict=True)
             ]
         else:
             tensions, peaks = at["span_tension"].values, at["peak_tension"].values
-            cells = [f"{tension:.0f} ({peak:.0f})" for tension, peak in zip(tensions, peaks, strict=True)]
+            cells = [f"{_whole(tension)} ({_whole(peak)})" for tension, peak in zip(tensions, peaks, strict=True)]
         rows.append((str(point), *cells))
     title = (
         "Hub load N (peak), direction, slip safety"
@@ -223,6 +224,10 @@ def _belts(dataset: "xr.Dataset") -> Table:
         columns.append(_or_dash(1e3 * dataset["standard_take_up"].values, 3))
         headings = (*headings, "take-up for the\nsame tension mm")
     return Table("Belts of standard length", headings, tuple(zip(*columns, strict=True)))
+
+
+def _whole(value: float) -> str:
+    return "–" if np.isnan(value) else f"{value:.0f}"
 
 
 def _angle(radians: float) -> str:

@@ -97,8 +97,10 @@ def study_sheet(result: Result) -> Sheet:
     numbers = [_row(dataset[path]) for path in str(dataset.attrs["numbers"]).splitlines()]
     tables = [Table("", ("number", "", "min", "max"), tuple(numbers))]
     if names:
-        rows = tuple(_result_row(dataset[name]) for name in names[:_MOST])
-        tables.append(Table("", ("result", "", "min", "at point", "mean", "max", "at point"), rows))
+        rows = [_result_row(dataset[name]) for name in names[:_MOST]]
+        table = Table("", ("result", "", "min", "at point", "mean", "max", "at point"), tuple(rows))
+        known = [np.isfinite(dataset[name].values) for name in names[:_MOST]]
+        tables.append(table if np.all(known) else _with_points(table, known))
     return Sheet(str(dataset.attrs["title"]), (Facts(tuple(_facts(dataset, names))), *tables))
 
 
@@ -113,6 +115,13 @@ def _facts(dataset: "xr.Dataset", names: list[str]) -> list[tuple[str, str]]:
     if len(names) > _MOST:
         facts.append(("results", f"{len(names)}, {_MOST} shown"))
     return facts
+
+
+def _with_points(table: Table, known: Sequence[BoolArray]) -> Table:
+    """Add a column with the number of points at which each result has a value."""
+    counts = (f"{one.sum()} of {one.size}" for one in known)
+    rows = tuple((*row, count) for row, count in zip(table.rows, counts, strict=True))
+    return table._replace(headings=(*table.headings, "known at"), rows=rows)
 
 
 def _row(values: "xr.DataArray") -> tuple[str, ...]:

@@ -15,7 +15,8 @@ from beltdyn.parts.quantity import Numbers, numbers_in
 from beltdyn.parts.table_file import HeadedColumn, read_headed
 from beltdyn.points.changed_drive import at_instant, at_speed, driver_of, held_at, sense_of
 from beltdyn.points.operating_points import Axes, OperatingPoints, labels_of
-from beltdyn.results import Result, Run, Variable, open_run
+from beltdyn.results import Result, Run, Variable
+from beltdyn.results.run import run_of
 from beltdyn.solvers.run_progress import Report
 from beltdyn.vibration.excitation import Excitation, averaged
 from beltdyn.vibration.modes import SLIDING, STUCK
@@ -52,7 +53,7 @@ class Place(NamedTuple):
 
 def run_up_amplitudes(given: Run | Path | str, place: Place) -> Axes:
     """Amplitudes of orders in a run-up, at the speeds of a response."""
-    run = given if isinstance(given, Run) else open_run(given)
+    run = run_of("compare", given)
     own = [str(one) for one in run.dataset["pulley"].values]
     if own != list(place.labels["pulley"]):
         raise ModelError(

@@ -113,6 +113,8 @@ def test_runs_that_do_not_fit(fatigue_drive: Drive, run: Run, tmp_path: Path, fo
         life(fatigue_drive, run=run)
     with pytest.raises(ModelError, match="holds results of life"):
         life(fatigue_drive, run=found.save(tmp_path / "life.nc"))
+    with pytest.raises(ModelError, match="run holds results of life, not of a run"):
+        life(fatigue_drive, run=found)  # type: ignore[arg-type]
     with pytest.raises(ModelError, match="reference holds results of run"):
         life(fatigue_drive, reference=steady_state(fatigue_drive))
     with pytest.raises(ModelError, match=r"repeats = 200 needs a run"):

@@ -55,6 +55,18 @@ def test_every_check_is_silent_on_a_sound_run(make_run: MakeRun, turning: Callab
     assert len(CHECKS) == len(set(CHECKS))
 
 
+def test_a_run_too_short_for_slip_says_so(turning: Callable[..., Run], run: Run) -> None:
+    """While means are taken the rim moves less than the belt stretches; a drive that comes to rest has no slip."""
+    names = ("pulley_angle", "pulley_speed", "shaft_speed", "shaft_angle")
+    short = turning(**{name: 1e-4 * run.dataset[name].values for name in names})
+    assert np.isnan(summarize(short).pulleys[1].slip)
+    assert len(said(short, "too short for slip: while means are taken the rim of driver moves")) == 1
+    ends = run.dataset["time"].values < 0.5 * float(run.dataset["time"][-1])
+    stopping = {name: np.where(ends[:, None], 1.0, 1e-4) * run.dataset[name].values for name in names[1:3]}
+    angles = {name: np.minimum(run.dataset[name].values, run.dataset[name].values[ends][-1]) for name in names[::3]}
+    assert not said(turning(**stopping, **angles), "too short for slip")
+
+
 def test_siblings_are_one_finding(turning: Callable[..., Run], run: Run) -> None:
     """Whatever is wrong with several pulleys or spans is said once, with all of their names."""
     dataset = run.dataset

@@ -12,13 +12,20 @@ import xarray as xr
 import beltdyn as bd
 from beltdyn.errors import ModelError
 from beltdyn.model import Drive, load
-from beltdyn.results import StaticResult, open_result, open_run, summarize
+from beltdyn.results import StaticResult, derived, open_result, open_run, steady_comparison, summarize
 from beltdyn.results.derived import contact_arc
 from beltdyn.show import plot
 from beltdyn.state.equilibrium import equilibrium
 from beltdyn.state.installation import bring_to_rest
 
 RunMain = Callable[[list[str]], tuple[int, str, str]]
+
+
+OF_RUNS = (
+    *(summarize, steady_comparison, derived.balance, derived.slips, derived.hub_loads, derived.mid_span_displacements),
+    *(derived.wear_by_belt, derived.slip_safety, lambda rest: plot.animate(rest, "none.gif")),
+)
+"""What needs results over time."""
 
 
 @pytest.fixture(scope="module")
@@ -72,7 +79,7 @@ def test_figures_of_one_instant_show_it(rest: StaticResult, tmp_path: Path) -> N
 @pytest.mark.parametrize(
     ("use", "message"),
     [
-        (summarize, "a summary needs results over time; these are of equilibrium"),
+        *((use, "needs results over time, of a run; these are of equilibrium") for use in OF_RUNS),
         (plot.speeds, "the figure 'speeds' shows results of run; these are of equilibrium. Available figures: conf"),
     ],
 )

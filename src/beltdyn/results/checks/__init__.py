@@ -24,6 +24,7 @@ from beltdyn.results.checks.creep import (
     near_gross_slip,
     regularized_slip,
     smoothed_friction,
+    unknown_slip,
 )
 from beltdyn.results.checks.ending import NOTHING_RECORDED, empty_rolls, unfinished, unsettled
 from beltdyn.results.checks.evidence import Check, Evidence
@@ -71,6 +72,7 @@ CHECKS: tuple[Check, ...] = (
     gross_slip,
     near_gross_slip,
     gross_slip_before,
+    unknown_slip,
     impossible_slip,
     regularized_slip,
     smoothed_friction,

@@ -9,6 +9,7 @@ import numpy as np
 from beltdyn.model.advice import other_creep
 from beltdyn.parts.messages import Finding, listing
 from beltdyn.results.checks.evidence import Evidence
+from beltdyn.results.cycles import SHORTEST
 from beltdyn.results.incidents import SLIDING_LIMIT, slides_through
 from beltdyn.results.mechanics import across, pressing_at_arcs, rim_speeds
 from beltdyn.results.slip_safety import STATE, friction_used
@@ -28,6 +29,32 @@ _LEAST = 0.01
 
 _TRANSMITS = 0.01
 """Share of the power input above which a pulley counts as loaded."""
+
+
+_STOPS = 0.01
+"""Speed of the driver at the end of a run, over its largest, below which it comes to rest and has no slip."""
+_STANDS = 1e-6
+"""Motion of the rim, over the stretch of the belt, below which it is rounding."""
+
+
+def unknown_slip(evidence: Evidence) -> Iterator[Finding]:
+    """A run in which the driver moves less than the belt stretches while means are taken, so that there is no slip."""
+    number, window = evidence.prepared.reference, evidence.window
+    driver, speeds = evidence.pulleys[number], np.abs(np.asarray(evidence.recorded["pulley_speed"])[:, number])
+    if not np.isnan(driver.slip) or abs(driver.speed) <= _STOPS * speeds.max() or len(window.time) == 1:
+        return
+    stretch = evidence.prepared.belt.stretch_parameters.stretch(max(one.tension for one in evidence.spans)) - 1.0
+    stretched = float(stretch) * evidence.prepared.belt_length
+    rim = abs(driver.speed * evidence.prepared.radii[number])
+    moved = rim * (window.end - window.start)
+    if moved <= _STANDS * stretched:
+        return
+    yield Finding(
+        f"the run is too short for slip: while means are taken the rim of {driver.name} moves {1e3 * moved:.3g} mm, "
+        f"and the belt stretches by {1e3 * stretched:.3g} mm.",
+        "Slip and creep have no values.",
+        f"Simulate {stretched / (SHORTEST * rim):.2g} s or more.",
+    )
 
 
 def impossible_slip(evidence: Evidence) -> Iterator[Finding]:

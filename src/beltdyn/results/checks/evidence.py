@@ -10,7 +10,7 @@ from beltdyn.arrays import FloatArray
 from beltdyn.model import Prepared
 from beltdyn.parts.messages import Finding
 from beltdyn.results.cycles import Window, mean_window
-from beltdyn.results.means import PulleySummary, pulley_means, span_means
+from beltdyn.results.means import PulleySummary, SpanSummary, pulley_means, span_means
 from beltdyn.results.provenance import Resolution
 from beltdyn.results.schema import Recorded
 from beltdyn.results.tension_balance import Balance, power_balance
@@ -47,6 +47,11 @@ class Evidence:
         return pulley_means(self.recorded, self.prepared, self.window)
 
     @cached_property
+    def spans(self) -> tuple[SpanSummary, ...]:
+        """Means of the spans over the end of the run."""
+        return span_means(self.recorded, self.prepared, self.window)
+
+    @cached_property
     def tooth_loads(self) -> tuple[ToothLoads, ...]:
         """Extremes of the loads of teeth on each pulley."""
         return extreme_loads(self.recorded, self.prepared)
@@ -62,8 +67,7 @@ class Evidence:
 
         The losses of an idling drive are not a share of a transmitted power.
         """
-        spans = span_means(self.recorded, self.prepared, self.window)
-        carried = max((one.tension * abs(one.belt_speed) for one in spans), default=0.0)
+        carried = max((one.tension * abs(one.belt_speed) for one in self.spans), default=0.0)
         return max(self.balance.power_in, IDLE * carried)
 
 

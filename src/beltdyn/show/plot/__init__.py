@@ -47,10 +47,10 @@ from beltdyn.show.plot.pulleys import powers as powers
 from beltdyn.show.plot.pulleys import slip as slip
 from beltdyn.show.plot.pulleys import slip_safety as slip_safety
 from beltdyn.show.plot.study_effects import parallel_coordinates as parallel_coordinates
-from beltdyn.show.plot.study_effects import sobol_indices as sobol_indices
 from beltdyn.show.plot.study_effects import study_contour as study_contour
 from beltdyn.show.plot.study_effects import study_lines as study_lines
-from beltdyn.show.plot.study_effects import tornado as tornado
+from beltdyn.show.plot.study_ranges import sobol_indices as sobol_indices
+from beltdyn.show.plot.study_ranges import tornado as tornado
 from beltdyn.show.plot.style import axes_or_new as axes_or_new
 from beltdyn.show.plot.style import color as color
 from beltdyn.show.plot.style import dash as dash

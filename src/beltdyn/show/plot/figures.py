@@ -20,6 +20,7 @@ from beltdyn.kinds import Registry
 from beltdyn.results import Result, Run, derived
 from beltdyn.results.atomic import MARK, atomic_path, is_marked, make_folder, require_replaceable
 from beltdyn.results.schema import runs_steadily
+from beltdyn.show.plot.gaps import explain_empty, first_failure, gaps
 from beltdyn.show.plot.headline import headlines, overlay, write_headline
 from beltdyn.show.plot.style import one_panel, show_enough, styled
 
@@ -105,7 +106,9 @@ def figure(
 
             def on(result: Result, ax: Axes | None) -> Axes:
                 bound.arguments |= {first: result, "ax": ax}
-                return painted(*bound.args, **bound.kwargs)
+                axes = painted(*bound.args, **bound.kwargs)
+                explain_empty(axes, result)
+                return axes
 
             ax = bound.arguments.get("ax")
             if len(results) == 1:
@@ -246,7 +249,7 @@ def save_all(
     Raises
     ------
     ModelError
-        If a figure, the pulley or the variable is not known or cannot be drawn, the run holds no output, a file cannot
+        If a figure, the pulley or the variable is not known or cannot be drawn, there is nothing to draw, a file cannot
         be written, or would replace one that is no figure of ours.
 
     Examples
@@ -263,6 +266,8 @@ def save_all(
         kinds = " and ".join(dict.fromkeys(result.kind for result in results))
         raise ModelError(f"there is no figure for {kinds}. Use its dataset: `bd.open_result(path).dataset`.")
     chosen = chosen_by_default(results) if figures is None else tuple(figures)
+    if not chosen:
+        raise ModelError(why_no_figure(results))
     for name in chosen:
         if name not in FIGURES:
             raise ModelError(f"figure {name!r} is unknown. Choose from {', '.join(known)}.")
@@ -291,6 +296,19 @@ def chosen_by_default(results: Sequence[Result]) -> tuple[str, ...]:
         for name, figure in figures.items()
         if all(map(figure.by_default, results)) and (figure.compares or len(results) == 1)
     )
+
+
+def why_no_figure(results: Sequence[Result]) -> str:
+    """Say why no figure is drawn of results by default, and what can be drawn."""
+    first, known = results[0], _known(results)
+    kinds = " and ".join(dict.fromkeys(result.kind for result in results))
+    comparing = [name for name in known if FIGURES[name].compares]
+    if len(results) > 1 and not comparing:
+        return f"no figure shows several results of {kinds} together. Plot each separately, or write one report of all."
+    if len(results) == 1 and (why := first_failure(first)):
+        return f"there is nothing to draw: {gaps(first)}. The first: {why}"
+    requested = comparing if len(results) > 1 else known
+    return f"no figure of {kinds} is drawn by default here. Choose some of {', '.join(requested)}."
 
 
 def _known(results: Sequence[Result]) -> list[str]:

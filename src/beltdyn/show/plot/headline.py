@@ -18,6 +18,7 @@ from beltdyn.parts.text_file import as_text
 from beltdyn.results import Result, Run, StaticResult, power_balance
 from beltdyn.results.cycles import mean_window
 from beltdyn.results.schema import runs_steadily
+from beltdyn.show.plot.gaps import gaps
 from beltdyn.show.plot.style import INK, NOTE, dash, name_lines
 
 # Several results in one figure: what each is called, and how its lines differ from those of the others
@@ -180,7 +181,7 @@ def headline(result: Result) -> str:
     elif isinstance(result, StaticResult):
         point = f"at rest, mean belt tension {float(result.dataset['tension']):.4g} N"
     else:
-        point = result.kind
+        point = "; ".join(part for part in (result.kind.replace("_", " "), gaps(result)) if part)
     return ": ".join(part for part in (name_of(result), point) if part)
 
 

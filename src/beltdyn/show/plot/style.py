@@ -207,9 +207,12 @@ def reserve(ax: Axes, text: str) -> None:
 
 
 def note(ax: Axes, text: str) -> None:
-    """Write below the label of the horizontal axis, at the right, where it covers nothing."""
+    """Write below the label of the horizontal axis, at the right, where it covers nothing; no empty text."""
+    if not text:
+        return
+    below = -_BELOW - _ROW * ax.get_xlabel().count("\n")
     ax.annotate(
-        text, (1.0, 0.0), (0.0, -_BELOW), "axes fraction", "offset points", ha="right", va="top", fontsize=8, gid=NOTE
+        text, (1.0, 0.0), (0.0, below), "axes fraction", "offset points", ha="right", va="top", fontsize=8, gid=NOTE
     )
 
 

@@ -20,7 +20,8 @@ from numpy.typing import ArrayLike, NDArray
 
 from beltdyn.errors import ModelError
 from beltdyn.results import Result
-from beltdyn.show.plot.figures import FIGURES, Choice, chosen_by_default, data_uri
+from beltdyn.show.plot.figures import FIGURES, Choice, chosen_by_default, data_uri, why_no_figure
+from beltdyn.show.plot.gaps import of_data
 from beltdyn.show.plot.style import LIMIT, NOTE, RESERVATION, styled
 
 # What is drawn on the axes of a figure, drawn again on a chart: lines, marks, areas, words and names
@@ -58,7 +59,7 @@ def draw_lines(chart: Any, ax: Axes, hover: Any) -> list[Named]:
     """Draw the lines of a panel, which are read out under the pointer; those with names."""
     named = []
     for lines in _sharing_abscissae(
-        [line for line in ax.lines if _of_data(line) and len(np.atleast_1d(line.get_xdata()))]
+        [line for line in ax.lines if of_data(line) and len(np.atleast_1d(line.get_xdata()))]
     ):
         named += _draw(chart, ax, lines, hover)
     return named
@@ -69,7 +70,7 @@ def draw_levels(chart: Any, ax: Axes) -> None:
     from bokeh.models import Span
 
     for line in ax.lines:
-        if _of_data(line):
+        if of_data(line):
             continue
         x, y = np.unique(line.get_xdata()), np.unique(line.get_ydata())
         across = len(y) == 1
@@ -137,7 +138,7 @@ def plain(text: str) -> Any:
 
 def name_the_rest(chart: Any, ax: Axes, named: Sequence[Named]) -> list[Named]:
     """What the legend of a panel says besides the names of its lines, such as what a mark means."""
-    legend, lines = ax.get_legend(), [line for line in ax.lines if _of_data(line)]
+    legend, lines = ax.get_legend(), [line for line in ax.lines if of_data(line)]
     if legend is None:
         return []
     known = {one.name for one in named} | {str(line.get_label()) for line in lines} | {line.get_gid() for line in lines}
@@ -189,11 +190,6 @@ def thinned(x: NDArray[Any], values: NDArray[Any], bins: int = _BINS) -> tuple[N
 def _across(ax: Axes, patch: Patch) -> bool:
     """Whether a patch is a band across the whole panel."""
     return patch.get_transform() != patch.get_patch_transform() + ax.transData
-
-
-def _of_data(line: Line2D) -> bool:
-    """Whether both coordinates of a line are data, and not a height across the whole panel."""
-    return line.axes is not None and line.get_transform() == line.axes.transData
 
 
 def _sharing_abscissae(lines: Sequence[Line2D]) -> Iterator[list[Line2D]]:
@@ -400,7 +396,10 @@ def charted(results: Sequence[Result], names: Sequence[str] | None = None) -> tu
     models: dict[str, Any] = {}
     if unknown := [name for name in names or () if name not in FIGURES]:
         raise ModelError(f"there is no figure {unknown[0]!r}. Choose one of {', '.join(FIGURES)}.")
-    for name in chosen_by_default(results) if names is None else names:
+    chosen = chosen_by_default(results) if names is None else tuple(names)
+    if not chosen:
+        shown.append(Shown("Figures", "", [], why_no_figure(results)))
+    for name in chosen:
         title = name.replace("_", " ").capitalize()
         try:
             drawn = FIGURES[name].arrange(results, Choice())

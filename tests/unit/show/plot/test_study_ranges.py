@@ -6,7 +6,7 @@ from scipy import stats
 
 from beltdyn.arrays import FloatArray
 from beltdyn.designs.study_plan import unit_points
-from beltdyn.show.plot.study_effects import indices_of as sobol_indices
+from beltdyn.show.plot.study_ranges import indices_of as sobol_indices
 
 
 def ishigami(points: FloatArray) -> FloatArray:
