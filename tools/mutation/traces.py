@@ -78,46 +78,56 @@ def read_traces(kept: Path) -> dict[str, Trace]:
 def _trace(items: list[pytest.Item], folders: list[str], seconds: float) -> dict[str, Any]:
     """Traces of the tests of a file, each as a dictionary, or None of those that fail or take too long.
 
-    A fixture may serve several tests: what the fixtures of the file execute counts for each of its tests.
+    A fixture may serve several tests: what the fixtures of the file execute counts for each of its tests.  A test that
+    ends its process is named, and the others are traced without it.
     """
-    with tempfile.NamedTemporaryFile("r", encoding="utf-8") as answer:
-
-        def work() -> bool:
-            silence()
-            wanted = [f"{SOURCE / folder}{below}" for folder in folders for below in ("", "/*", "/**/*")]
-            tool = coverage.Coverage(data_file=None, config_file=False, include=wanted)
-            tool.start()
-            durations = _durations(items, seconds)
-            tool.stop()
-            warnings.simplefilter("ignore")  # a file may execute nothing of the folders
-            lines = _lines(tool.get_data())
-            found = {
-                test: {"duration": duration, "lines": _joined(lines[SETUP], lines[test])}
-                if duration is not None
-                else None
-                for test, duration in durations.items()
-            }
-            Path(answer.name).write_text(json.dumps(found), "utf-8")
-            return True
-
-        os.waitpid(fork(work, math.inf), 0)
-        return dict(json.load(answer))
+    with tempfile.TemporaryDirectory() as folder:
+        answer, current = Path(folder, "answer"), Path(folder, "current")
+        process = fork(lambda: _write_traces(items, folders, seconds, answer, current), math.inf)
+        status = os.waitstatus_to_exitcode(os.waitpid(process, 0)[1])
+        if not status:
+            return dict(json.loads(answer.read_text("utf-8")))
+        deadly = current.read_text("utf-8") if current.exists() else ""
+    if deadly not in {item.nodeid for item in items}:
+        raise RuntimeError(f"Tracing {items[0].path} ended with status {status} outside its tests.")
+    print(f"{deadly} ends its process with status {status} while it is traced, and kills no mutant.", flush=True)
+    others = [item for item in items if item.nodeid != deadly]
+    return {deadly: None} | (_trace(others, folders, seconds) if others else {})
 
 
-def _durations(items: list[pytest.Item], seconds: float) -> dict[str, float | None]:
+def _write_traces(items: list[pytest.Item], folders: list[str], seconds: float, answer: Path, current: Path) -> int:
+    """Trace tests of a file in this process; the test under way is noted in a file."""
+    silence()
+    wanted = [f"{SOURCE / folder}{below}" for folder in folders for below in ("", "/*", "/**/*")]
+    tool = coverage.Coverage(data_file=None, config_file=False, include=wanted)
+    tool.start()
+    durations = _durations(items, seconds, current)
+    tool.stop()
+    warnings.simplefilter("ignore")  # a file may execute nothing of the folders
+    lines = _lines(tool.get_data())
+    traced = {
+        test: {"duration": duration, "lines": _joined(lines[SETUP], lines[test])} if duration is not None else None
+        for test, duration in durations.items()
+    }
+    answer.write_text(json.dumps(traced), "utf-8")
+    return 0
+
+
+def _durations(items: list[pytest.Item], seconds: float, current: Path) -> dict[str, float | None]:
     """Run tests; give the processor time of each, None where it fails or needs more than that many seconds."""
 
     def stop(*_: object) -> None:
         raise TimeoutError
 
     signal.signal(signal.SIGXCPU, stop)
-    found: dict[str, float | None] = {}
+    durations: dict[str, float | None] = {}
     for item, following in zip(items, [*items[1:], None], strict=True):
+        current.write_text(item.nodeid, "utf-8")
         begun, failed = time.process_time(), item.session.testsfailed
         resource.setrlimit(resource.RLIMIT_CPU, (math.ceil(begun + seconds), resource.RLIM_INFINITY))
         item.config.hook.pytest_runtest_protocol(item=item, nextitem=following)
-        found[item.nodeid] = time.process_time() - begun if item.session.testsfailed == failed else None
-    return found
+        durations[item.nodeid] = time.process_time() - begun if item.session.testsfailed == failed else None
+    return durations
 
 
 def _lines(data: coverage.CoverageData) -> defaultdict[str, dict[str, list[int]]]:

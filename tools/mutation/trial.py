@@ -1,5 +1,6 @@
 """Runs tests in forked copies of one pytest session, so that a test costs its own time and nothing else."""
 
+import functools
 import gc
 import importlib.machinery
 import math
@@ -7,6 +8,7 @@ import os
 import resource
 import signal
 import traceback
+from collections import defaultdict
 from collections.abc import Callable, Iterable, Iterator
 from importlib import import_module
 from itertools import groupby
@@ -31,6 +33,10 @@ OPTIONS = [
     "-o",
     "tmp_path_retention_policy=none",
 ]
+FAULT = 255
+"""Status of a copy of the process in which this tool failed."""
+MAX_TESTS = 254
+"""Most tests of a mutant: the status of a copy tells which of them failed."""
 SETUP = "set up"
 """Context of lines that fixtures execute."""
 
@@ -69,22 +75,22 @@ def in_session(tests: Iterable[str], loop: Callable[[list[pytest.Item]], None]) 
     pytest.main([*OPTIONS, *tests], plugins=[_Loop(loop)])
 
 
-def passes(items: list[pytest.Item]) -> bool:
-    """Run tests one after the other up to the first that fails, in this process."""
-    for item, following in zip(items, [*items[1:], None], strict=True):
+def first_failure(items: list[pytest.Item]) -> int:
+    """Run tests one after the other in this process up to the first that fails; its number from 1, 0 if all pass."""
+    for number, (item, following) in enumerate(zip(items, [*items[1:], None], strict=True), 1):
         item.config.hook.pytest_runtest_protocol(item=item, nextitem=following)
         if item.session.testsfailed:
-            return False
-    return True
+            return number
+    return 0
 
 
-def fork(work: Callable[[], bool], seconds: float) -> int:
-    """Start a copy of this process that does some work and ends with 0 if that returns true.
+def fork(work: Callable[[], int], seconds: float) -> int:
+    """Start a copy of this process that does some work and ends with what that returns, or with `FAULT`.
 
     Parameters
     ----------
     work : Callable
-        What to do.
+        What to do; returns 0 to `MAX_TESTS`.
     seconds : float
         Processor time after which it is ended, as it is after ten times that time on the clock.  A copy with a limit
         is silent.
@@ -96,18 +102,18 @@ def fork(work: Callable[[], bool], seconds: float) -> int:
     """
     process = os.fork()
     if process == 0:
-        good = False
+        status = FAULT
         try:
             if math.isfinite(seconds):
                 limit = math.ceil(seconds)
                 resource.setrlimit(resource.RLIMIT_CPU, (limit, limit))
                 signal.alarm(10 * limit)
                 silence()
-            good = work()
-        except Exception:
+            status = work()
+        except BaseException:
             traceback.print_exc()
         finally:
-            os._exit(0 if good else 1)
+            os._exit(status)
     return process
 
 
@@ -136,7 +142,10 @@ def functions_of(files: Iterable[str]) -> dict[str, list[FunctionType]]:
         functions[file] = []
         module = (ROOT / file).relative_to(SOURCE.parent).with_suffix("")
         import_module(".".join(module.parts).removesuffix(".__init__"))
+    gc.unfreeze()  # the tests freeze what collection makes, and frozen objects are not listed
     for function in gc.get_objects():
+        if isinstance(function, functools._lru_cache_wrapper):
+            function.cache_clear()  # of results without a change
         if isinstance(function, FunctionType):
             file = function.__code__.co_filename.removeprefix(f"{ROOT}/")
             functions.get(file, []).append(function)
@@ -144,30 +153,38 @@ def functions_of(files: Iterable[str]) -> dict[str, list[FunctionType]]:
     return functions
 
 
-def attempt(code: CodeType, functions: list[FunctionType], items: list[pytest.Item]) -> bool:
-    """Put a change into the functions of an imported module and run tests.
+def replacements(file: str, code: CodeType, functions: list[FunctionType]) -> list[tuple[FunctionType, CodeType]]:
+    """The functions that a change of their file alters, each with its new code.
 
     Parameters
     ----------
+    file : str
+        Path of the file below the root of the repository.
     code : CodeType
         The changed module.
     functions : list[FunctionType]
         All functions of the file.
-    items : list[pytest.Item]
-        The tests.
-
-    Returns
-    -------
-    bool
-        Whether all of them pass.
     """
-    changed = {(each.co_qualname, each.co_firstlineno): each for each in _codes(code)}
+    original = _codes_by_place(compile((ROOT / file).read_text(encoding="utf-8"), str(ROOT / file), "exec"))
+    changed = _codes_by_place(code)
+    altered = []
     for function in functions:
-        function.__code__ = changed[function.__code__.co_qualname, function.__code__.co_firstlineno]
-    return passes(items)
+        place = _place(function.__code__)
+        if function.__code__ in original[place]:
+            following = changed[place][original[place].index(function.__code__)]
+            if following != function.__code__:
+                altered.append((function, following))
+    return altered
 
 
-def attempt_at_import(mutant: Mutant, code: CodeType, tests: list[str]) -> bool:
+def attempt(altered: list[tuple[FunctionType, CodeType]], items: list[pytest.Item]) -> int:
+    """Put a change into functions and run tests: the number of the first that fails, or 0."""
+    for function, code in altered:
+        function.__code__ = code
+    return first_failure(items)
+
+
+def attempt_at_import(mutant: Mutant, code: CodeType, tests: list[str]) -> int:
     """Import the package with a changed module and run tests.
 
     Parameters
@@ -181,19 +198,25 @@ def attempt_at_import(mutant: Mutant, code: CodeType, tests: list[str]) -> bool:
 
     Returns
     -------
-    bool
-        Whether all of them pass.
+    int
+        Number of the first test that fails, 0 if all pass, 1 if the package cannot be imported.
     """
     path = str(ROOT / mutant.file)
     original = importlib.machinery.SourceFileLoader.get_code
+    imported = [False]
 
     def get_code(loader: importlib.machinery.SourceFileLoader, fullname: str) -> CodeType | None:
-        return code if loader.path == path else original(loader, fullname)
+        if loader.path != path:
+            return original(loader, fullname)
+        imported[0] = True
+        return code
 
     importlib.machinery.SourceFileLoader.get_code = get_code  # type: ignore[method-assign,assignment]
-    outcome: list[bool] = []
-    in_session(tests, lambda items: outcome.append(passes(items)))
-    return outcome == [True]
+    outcome: list[int] = []
+    in_session(tests, lambda items: outcome.append(first_failure(items)))
+    if not imported[0]:
+        raise RuntimeError(f"{mutant.file} is not imported by its tests.")
+    return outcome[0] if outcome else 1
 
 
 def compiled(mutants: list[Mutant]) -> Iterator[tuple[Mutant, CodeType]]:
@@ -205,8 +228,16 @@ def compiled(mutants: list[Mutant]) -> Iterator[tuple[Mutant, CodeType]]:
                 yield wanted[each.number], compile(tree, str(ROOT / file), "exec")
 
 
-def _codes(code: CodeType) -> Iterator[CodeType]:
-    yield code
-    for constant in code.co_consts:
-        if isinstance(constant, CodeType):
-            yield from _codes(constant)
+def _codes_by_place(code: CodeType) -> defaultdict[tuple[str, int], list[CodeType]]:
+    """Code objects by `_place`: several lambdas may stand in a line."""
+    codes: defaultdict[tuple[str, int], list[CodeType]] = defaultdict(list)
+    waiting = [code]
+    while waiting:
+        each = waiting.pop()
+        codes[_place(each)].append(each)
+        waiting += [constant for constant in each.co_consts if isinstance(constant, CodeType)]
+    return codes
+
+
+def _place(code: CodeType) -> tuple[str, int]:
+    return code.co_qualname, code.co_firstlineno
