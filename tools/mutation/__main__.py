@@ -107,6 +107,7 @@ def _try_group(mutants: list[Mutant], asked: argparse.Namespace, name: str) -> N
 
 def _try_in_functions(items: list[pytest.Item], mutants: list[Mutant], asked: argparse.Namespace, kept: Path) -> None:
     """Try the mutants inside functions, which replace those of the imported modules."""
+    items = _first_cases(items, asked.cases)
     if os.environ["NUMBA_DISABLE_JIT"] == "0":
         _load_kernels()
     functions = functions_of({mutant.file for mutant in mutants})
@@ -204,6 +205,18 @@ class _Trials:
         return chosen, time
 
 
+def _first_cases(items: list[pytest.Item], number: int) -> list[pytest.Item]:
+    """The first cases of each test function."""
+    seen: Counter[str] = Counter()
+    chosen = []
+    for item in items:
+        name = item.nodeid.partition("[")[0]
+        seen[name] += 1
+        if seen[name] <= number:
+            chosen.append(item)
+    return chosen
+
+
 def _tests_of_lines(known: dict[str, Trace]) -> defaultdict[tuple[str, int], list[str]]:
     """Tests that execute a line of a file."""
     lines: defaultdict[tuple[str, int], list[str]] = defaultdict(list)
@@ -241,6 +254,7 @@ def _parser() -> argparse.ArgumentParser:
     parser.add_argument("--sample", type=int, help="try that many mutants of each folder, taken at random")
     parser.add_argument("--seed", type=int, default=1, help="seed of the sample")
     parser.add_argument("--jobs", type=int, default=1, help="mutants at a time")
+    parser.add_argument("--cases", type=int, default=4, help="first cases of each test function that are tried")
     parser.add_argument("--slowest", type=float, default=3.0, help="longest time of a test, s")
     parser.add_argument("--budget", type=float, default=10.0, help="longest time of all tests of a mutant, s")
     parser.add_argument("--out", type=Path, default=Path("mutation.json"), help="file of the answers")

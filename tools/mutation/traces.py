@@ -65,6 +65,7 @@ def traces(items: list[pytest.Item], folders: list[str], seconds: float, kept: P
         if len(same) < len(tests) or any(each["digest"] != digest for each in same.values()):
             same = {test: {"digest": digest, "trace": trace} for test, trace in _trace(tests, folders, seconds).items()}
         found |= same
+        kept.write_text(json.dumps(known | found), encoding="utf-8")  # of files so far, should the run be ended
     kept.write_text(json.dumps(found), encoding="utf-8")
     return read_traces(kept)
 

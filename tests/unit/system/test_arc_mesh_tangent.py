@@ -1,0 +1,212 @@
+"""A mesh that stays at every arc: tangents over time and of steady running, lengths, accelerations of its material."""
+
+from collections.abc import Callable
+from typing import Any
+
+import numpy as np
+import pytest
+
+from beltdyn.arrays import FloatArray, IntArray
+from beltdyn.kernel import interpreted
+from beltdyn.model import Path, prepare
+from beltdyn.model.resolution import Laid
+from beltdyn.state.newton import steady_work
+from beltdyn.state.staying import laid_state
+from beltdyn.system.arc_mesh import fit_mesh, shifts_of
+from beltdyn.system.arrays import NO_TANGENT, Equations, Motion, System, TangentFactors
+from beltdyn.system.build import flowing_system, staying_system
+from beltdyn.system.constant_drive import constant_drive, with_speeds_unknown
+from beltdyn.system.frame import FlowingByArcs, StayingByArcs, centreline_places
+from beltdyn.system.ring_matrix import entries, places
+from beltdyn.system.state import State
+from beltdyn.system.steady_assembly import anchor_at, assemble, assemble_steady, new_equations, no_multipliers
+from tests.unit.model.test_carrying import conveyor
+
+ELEMENTS, SPEED = 14, 3.0
+FACTORS = TangentFactors(1.0, 7e2, 4e5)
+PULLEYS = [
+    {"name": "head", "center": [0.0, 0.0], "radius": 0.2, "speed": 15.0},
+    {"name": "tail", "center": [2.0, 0.7], "radius": 0.25, "inertia": 0.15, "torque": -5.0},
+]
+SPAN = ["tail", "head"]
+LOADED = {
+    "support": [{"kind": "idlers", "span": SPAN, "spacing": 1.0, "idler_mass": 6.0, "stiffness": 2e4}],
+    "goods": [{"span": SPAN, "mass_per_length": 30.0}],
+}
+BARE = {"support": [], "goods": [{"span": SPAN, "mass_per_length": 1e-9}], "gravity": [0.0, -1e-9]}
+"""Goods alone, so light that they do nothing but ask for such a mesh."""
+LOSSES = {"stretch_damping_time": 1e-5, "bending_damping_time": 1e-3}
+
+
+def laid(belt: dict[str, Any] | None = None, **changes: Any) -> tuple[System, State]:
+    """The belt laid 1 mm deep on its drums, disturbed."""
+    fabric = {"profile": "flat-polyester-fabric", "width": "400 mm", "installed_tension": "2 kN"}
+    prepared = prepare(conveyor(**{"pulley": PULLEYS, "belt": fabric | (belt or {})} | changes))
+    system = staying_system(prepared, prepared.equal_lengths(ELEMENTS))
+    assert isinstance(system.frame, StayingByArcs)
+    path = prepared.path
+    drawn_in = Path(path.centers, path.radii - 1e-3 * np.sign(path.radii))
+    state = laid_state(Laid.on(drawn_in, prepared.belt_length, 0), system, np.zeros(0))
+    state.position[: system.first_body] += 1e-4 * np.random.default_rng(5).normal(size=system.first_body)
+    return system, state
+
+
+def over_time(system: System, state: State, spread: float) -> tuple[System, State]:
+    """With flows that differ from arc to arc by a share."""
+    random, flowing = np.random.default_rng(6), flowing_system(system, np.array([1.0, 0.0]))
+    frame, nodes = flowing.frame, system.first_body
+    assert isinstance(frame, FlowingByArcs)
+    size = nodes + flowing.bodies.size
+    vectors = [np.append(state.position, np.zeros(size - state.position.size)), *np.zeros((2, size))]
+    moved = State(*vectors)
+    moved.velocity[:nodes] = 1e-2 * random.normal(size=nodes)
+    moved.velocity[nodes:] = 15.0
+    moved.acceleration[:] = random.normal(size=size)
+    shifts = slice(frame.place - frame.arcs.node.size, frame.place)
+    moved.position[shifts] = spread * 0.01 * random.normal(size=frame.arcs.node.size)
+    moved.velocity[shifts] = spread * SPEED * random.normal(size=frame.arcs.node.size)
+    moved.acceleration[shifts] = spread * 20.0 * random.normal(size=frame.arcs.node.size)
+    moved.velocity[frame.place], moved.acceleration[frame.place] = SPEED, 20.0
+    return flowing, moved
+
+
+def residual(system: System, state: State, equations: Equations, factors: TangentFactors = NO_TANGENT) -> FloatArray:
+    interpreted(assemble)(system, state.at(0.3), no_multipliers(system), factors, equations)
+    return np.concatenate([equations.matrix.node_side.ravel(), equations.matrix.border_side])
+
+
+def dense(equations: Equations) -> FloatArray:
+    matrix = equations.matrix
+    size = matrix.node_side.size + matrix.border_side.size
+    tangent = np.zeros((size, size))
+    np.add.at(tangent, places(matrix), entries(matrix))
+    return tangent
+
+
+def on_spans(system: System, state: State) -> IntArray:
+    """Rows of nodes between elements that touch nothing: contact with an element of changed length is left out."""
+    share = (np.arange(20) + 0.5) / 20.0
+    ends = np.cumsum(system.length)
+    along = (ends[:, None] - np.outer(system.length, share)).ravel()
+    away = centreline_places(system, state.position, along)[:, None] - system.pulleys.center
+    touching = np.any(np.hypot(away[..., 0], away[..., 1]) < system.pulleys.radius, axis=1).reshape(-1, 20).any(axis=1)
+    free = ~touching & ~np.roll(touching, 1)
+    assert free.sum() > 2
+    return np.flatnonzero(np.repeat(free, len(system.scale)))
+
+
+@pytest.mark.parametrize(("load", "belt"), [(LOADED, {}), (BARE, LOSSES)], ids=["loaded", "lossy"])
+def test_tangent_over_time(load: dict[str, Any], belt: dict[str, float]) -> None:
+    """Along directions of all unknowns but shifts, then by each shift: lengths leave out weight and bending."""
+    system, state = over_time(*laid(belt, **load), spread=0.0)
+    equations, frame, nodes = new_equations(system), system.frame, system.first_body
+    residual(system, state, equations, FACTORS)
+    tangent, random = dense(equations), np.random.default_rng(7)
+    unknown = np.asarray(system.bodies.unknown)
+    shifts = nodes + unknown[frame.place - nodes - frame.arcs.node.size : frame.place - nodes]
+
+    def at(change: FloatArray) -> FloatArray:
+        step = np.zeros_like(state.position)
+        step[:nodes] = change[:nodes]
+        step[nodes:][unknown >= 0] = change[nodes + unknown[unknown >= 0]]
+        vectors = (state.position, state.velocity, state.acceleration)
+        moved = State(*(vector + factor * step for vector, factor in zip(vectors, FACTORS[:3], strict=True)))
+        return residual(system, moved, equations)
+
+    def check(way: FloatArray, tolerance: float, rows: IntArray | slice = slice(None)) -> None:
+        difference = 0.5 * (at(way) - at(-way))[rows]
+        most = np.abs(difference).max()
+        np.testing.assert_allclose((tangent @ way)[rows], difference, rtol=tolerance, atol=tolerance * most)
+
+    scale = np.concatenate([np.tile([1.0, 1.0, 10.0, 10.0, 100.0, 100.0], system.nodes), np.ones(len(tangent) - nodes)])
+    for _ in range(2):
+        way = 1e-9 * scale * random.normal(size=len(tangent))
+        way[shifts] = 0.0
+        check(way, 1e-4)
+    for shift in shifts:
+        check(np.where(np.arange(len(tangent)) == shift, 1e-8, 0.0), 2e-3, on_spans(system, state))
+
+
+def test_tangent_of_steady_running() -> None:
+    """By nodes along two directions, by the flow, and by the shifts."""
+    given, state = laid(**LOADED)
+    system = with_speeds_unknown(constant_drive(given, 1.0))
+    system.frame.speed[0] = SPEED
+    state.velocity[:] = 0.0
+    state.velocity[system.first_body :] = 15.0
+    anchor, equations, nodes = anchor_at(state, False), steady_work(system).equations, system.first_body
+
+    def side(position: FloatArray, wanted: bool = False) -> FloatArray:
+        motion = Motion(0.0, position, state.velocity, np.zeros_like(position))
+        interpreted(assemble_steady)(system, motion, anchor, wanted, equations)
+        return np.concatenate([equations.matrix.node_side.ravel(), equations.matrix.border_side])
+
+    side(state.position, wanted=True)
+    tangent, random = dense(equations), np.random.default_rng(8)
+    scale = np.tile([1.0, 1.0, 10.0, 10.0, 100.0, 100.0], system.nodes)
+    for _ in range(2):
+        way = np.zeros_like(state.position)
+        way[:nodes] = 1e-8 * scale * random.normal(size=nodes)
+        difference = 0.5 * (side(state.position + way) - side(state.position - way))
+        np.testing.assert_allclose(
+            (tangent[:, :nodes] @ way[:nodes]), difference, rtol=1e-4, atol=1e-4 * np.abs(difference).max()
+        )
+
+    def by(change: Callable[[float], None], step: float) -> FloatArray:
+        sides = []
+        for sense in (step, -2.0 * step):
+            change(sense)
+            sides.append(side(state.position))
+        change(step)
+        return np.asarray(0.5 * (sides[0] - sides[1]) / step)
+
+    shifts, speed = shifts_of(system.frame), system.frame.speed
+
+    def shift(number: int) -> Callable[[float], None]:
+        def change(step: float) -> None:
+            shifts[number] += step
+
+        return change
+
+    def faster(step: float) -> None:
+        speed[0] += step
+
+    columns = {len(tangent) - 1: (faster, 1e-5, 1e-4)}
+    columns |= {len(tangent) - 1 - len(shifts) + k: (shift(k), 1e-6, 2e-3) for k in range(len(shifts))}
+    for column, (change, step, tolerance) in columns.items():
+        rows = on_spans(system, state)
+        expected = by(change, step)[rows]
+        np.testing.assert_allclose(tangent[rows, column], expected, atol=tolerance * np.abs(expected).max())
+
+
+def test_without_flows_that_differ_it_is_the_mesh_without_arcs() -> None:
+    """A load so light that it does nothing: the equations of nodes of a drive that carries nothing."""
+    system, state = over_time(*laid(**BARE), spread=0.0)
+    bare = prepare(conveyor(pulley=PULLEYS, support=[], goods=[], gravity=[0.0, 0.0]))
+    plain = flowing_system(staying_system(bare, bare.equal_lengths(ELEMENTS)), np.array([1.0, 0.0]))
+    shifts = system.frame.place - system.frame.arcs.node.size + np.arange(system.frame.arcs.node.size)
+    same = State(*(np.delete(v, shifts) for v in (state.position, state.velocity, state.acceleration)))
+    found, known = (residual(one, at, new_equations(one)) for one, at in ((system, state), (plain, same)))
+    nodes = system.first_body
+    np.testing.assert_allclose(found[:nodes], known[:nodes], rtol=1e-9, atol=1e-7 * np.abs(known).max())
+
+
+def test_belt_is_neither_made_nor_lost_by_shifts() -> None:
+    """Elements change by the difference of the shifts at their nodes, and hold the belt as a whole."""
+    system, state = over_time(*laid(**BARE), spread=1.0)
+    still = State(*(vector.copy() for vector in (state.position, state.velocity, state.acceleration)))
+    frame = system.frame
+    shifts = slice(frame.place - frame.arcs.node.size, frame.place)
+    still.position[shifts] = 0.0
+    lengths = []
+    for each in (still, state):
+        interpreted(fit_mesh)(frame, system, each.position)
+        lengths.append(system.length.copy())
+    change = lengths[1] - lengths[0]
+    assert np.abs(change).max() > 1e-4
+    assert change.sum() == pytest.approx(0.0, abs=1e-14)
+    for shift, node in zip(state.position[shifts], frame.arcs.node, strict=True):
+        assert change[: int(node)].sum() == pytest.approx(-shift, abs=1e-12)
+    at = np.array(system.vectors)[np.array(system.shift) != 0.0]
+    masses = [float(mass[np.ix_(at, at)].sum()) for mass in system.mass]
+    np.testing.assert_allclose(masses, system.element.section.mass * system.length, rtol=1e-9)
