@@ -8,21 +8,21 @@ import pytest
 
 from beltdyn.arrays import FloatArray, IntArray
 from beltdyn.kernel import interpreted
-from beltdyn.model import Path, prepare
+from beltdyn.model import Path, Prepared, prepare
 from beltdyn.model.resolution import Laid
 from beltdyn.state.newton import steady_work
 from beltdyn.state.staying import laid_state
-from beltdyn.system.arc_mesh import fit_mesh, shifts_of
+from beltdyn.system.arc_mesh import change_shifts, fit_mesh, largest_shift, shifts_of, zones_of
 from beltdyn.system.arrays import NO_TANGENT, Equations, Motion, System, TangentFactors
 from beltdyn.system.build import flowing_system, staying_system
 from beltdyn.system.constant_drive import constant_drive, with_speeds_unknown
-from beltdyn.system.frame import FlowingByArcs, StayingByArcs, centreline_places
+from beltdyn.system.frame import FlowingByArcs, StayingByArcs, centreline_places, node_shift
 from beltdyn.system.ring_matrix import entries, places
 from beltdyn.system.state import State
 from beltdyn.system.steady_assembly import anchor_at, assemble, assemble_steady, new_equations, no_multipliers
 from tests.unit.model.test_carrying import conveyor
 
-ELEMENTS, SPEED = 14, 3.0
+ELEMENTS, SPEED = 9, 3.0
 FACTORS = TangentFactors(1.0, 7e2, 4e5)
 PULLEYS = [
     {"name": "head", "center": [0.0, 0.0], "radius": 0.2, "speed": 15.0},
@@ -35,6 +35,8 @@ LOADED = {
 }
 BARE = {"support": [], "goods": [{"span": SPAN, "mass_per_length": 1e-9}], "gravity": [0.0, -1e-9]}
 """Goods alone, so light that they do nothing but ask for such a mesh."""
+ARM = {"kind": "rotary", "pulley": "tail", "pivot": [2.1, -0.1], "inertia": 0.8, "mass": 5.0, "preload": 300.0}
+ARM |= {"rate": 2e3, "damping": 20.0}
 LOSSES = {"stretch_damping_time": 1e-5, "bending_damping_time": 1e-3}
 
 
@@ -42,11 +44,12 @@ def laid(belt: dict[str, Any] | None = None, **changes: Any) -> tuple[System, St
     """The belt laid 1 mm deep on its drums, disturbed."""
     fabric = {"profile": "flat-polyester-fabric", "width": "400 mm", "installed_tension": "2 kN"}
     prepared = prepare(conveyor(**{"pulley": PULLEYS, "belt": fabric | (belt or {})} | changes))
+    arms = np.full(len(prepared.drive.tensioners), 2e-3)
     system = staying_system(prepared, prepared.equal_lengths(ELEMENTS))
     assert isinstance(system.frame, StayingByArcs)
     path = prepared.path
     drawn_in = Path(path.centers, path.radii - 1e-3 * np.sign(path.radii))
-    state = laid_state(Laid.on(drawn_in, prepared.belt_length, 0), system, np.zeros(0))
+    state = laid_state(Laid.on(drawn_in, prepared.belt_length, 0), system, arms)
     state.position[: system.first_body] += 1e-4 * np.random.default_rng(5).normal(size=system.first_body)
     return system, state
 
@@ -95,9 +98,11 @@ def on_spans(system: System, state: State) -> IntArray:
     return np.flatnonzero(np.repeat(free, len(system.scale)))
 
 
-@pytest.mark.parametrize(("load", "belt"), [(LOADED, {}), (BARE, LOSSES)], ids=["loaded", "lossy"])
+@pytest.mark.parametrize(
+    ("load", "belt"), [(LOADED, {}), (BARE | {"tensioner": [ARM]}, LOSSES)], ids=["loaded", "lossy-on-an-arm"]
+)
 def test_tangent_over_time(load: dict[str, Any], belt: dict[str, float]) -> None:
-    """Along directions of all unknowns but shifts, then by each shift: lengths leave out weight and bending."""
+    """Along a direction of all unknowns but shifts, then by these: lengths leave out weight and bending."""
     system, state = over_time(*laid(belt, **load), spread=0.0)
     equations, frame, nodes = new_equations(system), system.frame, system.first_body
     residual(system, state, equations, FACTORS)
@@ -119,21 +124,22 @@ def test_tangent_over_time(load: dict[str, Any], belt: dict[str, float]) -> None
         np.testing.assert_allclose((tangent @ way)[rows], difference, rtol=tolerance, atol=tolerance * most)
 
     scale = np.concatenate([np.tile([1.0, 1.0, 10.0, 10.0, 100.0, 100.0], system.nodes), np.ones(len(tangent) - nodes)])
-    for _ in range(2):
-        way = 1e-9 * scale * random.normal(size=len(tangent))
-        way[shifts] = 0.0
-        check(way, 1e-4)
-    for shift in shifts:
-        check(np.where(np.arange(len(tangent)) == shift, 1e-8, 0.0), 2e-3, on_spans(system, state))
+    way = 1e-9 * scale * random.normal(size=len(tangent))
+    way[shifts] = 0.0
+    check(way, 1e-4)
+    way = np.zeros(len(tangent))
+    way[shifts] = 1e-8, -2e-8
+    check(way, 2e-3, on_spans(system, state))
 
 
-def test_tangent_of_steady_running() -> None:
-    """By nodes along two directions, by the flow, and by the shifts."""
-    given, state = laid(**LOADED)
+@pytest.mark.parametrize("load", [LOADED, BARE | {"tensioner": [ARM]}], ids=["loaded", "on-an-arm"])
+def test_tangent_of_steady_running(load: dict[str, Any]) -> None:
+    """By nodes and the arm along a direction, by the flow, and by the shifts."""
+    given, state = laid(**load)
     system = with_speeds_unknown(constant_drive(given, 1.0))
     system.frame.speed[0] = SPEED
     state.velocity[:] = 0.0
-    state.velocity[system.first_body :] = 15.0
+    state.velocity[system.first_body : system.first_body + 2] = 15.0
     anchor, equations, nodes = anchor_at(state, False), steady_work(system).equations, system.first_body
 
     def side(position: FloatArray, wanted: bool = False) -> FloatArray:
@@ -144,13 +150,14 @@ def test_tangent_of_steady_running() -> None:
     side(state.position, wanted=True)
     tangent, random = dense(equations), np.random.default_rng(8)
     scale = np.tile([1.0, 1.0, 10.0, 10.0, 100.0, 100.0], system.nodes)
-    for _ in range(2):
-        way = np.zeros_like(state.position)
-        way[:nodes] = 1e-8 * scale * random.normal(size=nodes)
-        difference = 0.5 * (side(state.position + way) - side(state.position - way))
-        np.testing.assert_allclose(
-            (tangent[:, :nodes] @ way[:nodes]), difference, rtol=1e-4, atol=1e-4 * np.abs(difference).max()
-        )
+    way = np.zeros_like(state.position)
+    way[:nodes] = 1e-8 * scale * random.normal(size=nodes)
+    found = tangent[:, :nodes] @ way[:nodes]
+    if system.tensioners.size:
+        way[-1] = 1e-8
+        found += tangent[:, nodes + system.bodies.unknown[-1]] * way[-1]
+    difference = 0.5 * (side(state.position + way) - side(state.position - way))
+    np.testing.assert_allclose(found, difference, rtol=1e-4, atol=1e-4 * np.abs(difference).max())
 
     def by(change: Callable[[float], None], step: float) -> FloatArray:
         sides = []
@@ -210,3 +217,57 @@ def test_belt_is_neither_made_nor_lost_by_shifts() -> None:
     at = np.array(system.vectors)[np.array(system.shift) != 0.0]
     masses = [float(mass[np.ix_(at, at)].sum()) for mass in system.mass]
     np.testing.assert_allclose(masses, system.element.section.mass * system.length, rtol=1e-9)
+
+
+def test_belt_on_an_arc_moves_with_it_and_belt_on_spans_by_its_share() -> None:
+    """Zones reach beyond arcs by the same at both ends; the driver's arc holds a belt at rest, all of it along it."""
+    prepared = prepare(conveyor(pulley=PULLEYS, **LOADED))
+    lengths = prepared.graded_lengths(2.0)
+    system = staying_system(prepared, lengths)
+    frame, laid, path = system.frame, prepared.laid, prepared.path
+    assert isinstance(frame, StayingByArcs)
+    zones = zones_of(prepared)
+    assert [zone.start for zone in zones] == sorted(zone.start for zone in zones)
+    for zone in zones:
+        middle = path.arc_start(zone.arc) + 0.5 * abs(path.radii[zone.arc]) * path.wrap_angles[zone.arc]
+        assert laid.start + 0.5 * laid.stretch * (zone.start + zone.end) == pytest.approx(middle)
+        arc = abs(path.radii[zone.arc]) * path.wrap_angles[zone.arc] / laid.stretch
+        assert 0.0 < zone.end - zone.start - arc <= 0.4 * path.span_lengths.min() + 1e-12
+    starts = np.cumsum(lengths) - lengths
+    for arc in range(2):
+        frame.shift[:] = np.arange(2) == arc
+        shifts = np.array([interpreted(node_shift)(frame, np.zeros(0), node) for node in range(system.nodes)])
+        ends = [(zone.start, float(zone.arc == arc)) for zone in zones] + [
+            (zone.end, float(zone.arc == arc)) for zone in zones
+        ]
+        at, values = np.array(sorted([(0.0, 0.0), *ends, (prepared.belt_length, 0.0)])).T
+        np.testing.assert_allclose(shifts, np.interp(starts, at, values), atol=1e-12)
+        away = path.centers[arc] - nodes_of(prepared, starts[frame.arcs.node[arc]])
+        assert np.hypot(*away) == pytest.approx(abs(path.radii[arc]), rel=1e-9)
+        assert away @ frame.arcs.direction[arc] == pytest.approx(0.0, abs=1e-9)
+    held = np.flatnonzero(frame.arcs.holding.any(axis=1))
+    driver = next(zone for zone in zones if zone.arc == 0)
+    assert np.all((starts[held] > driver.start) & (starts[held] < driver.end))
+    assert np.linalg.norm(frame.arcs.holding, axis=1).sum() == pytest.approx(1.0)
+    tangents = path.tangent(laid.start + laid.stretch * starts[held])
+    assert np.sum(frame.arcs.holding[held] * tangents) == pytest.approx(1.0)
+
+
+def nodes_of(prepared: Prepared, along: float) -> FloatArray:
+    """Place on the path of a belt coordinate, m."""
+    return np.asarray(prepared.laid.path.position(np.array([prepared.laid.start + prepared.laid.stretch * along]))[0])
+
+
+def test_at_rest_a_force_along_the_belt_is_unknown() -> None:
+    """It takes the place of the flow, and pulls by one newton in all; steps go to the shifts."""
+    system, state = laid(**LOADED)
+    state.velocity[:] = 0.0
+    equations, anchor = steady_work(system).equations, anchor_at(state, True)
+    interpreted(assemble_steady)(system, state.at(0.0), anchor, True, equations)
+    matrix = equations.matrix
+    np.testing.assert_array_equal(matrix.column[:, :2, -1], system.frame.arcs.holding)
+    assert not matrix.corner[:, -1].any()
+    solution, before = np.arange(1.0, 1.0 + len(matrix.corner)), shifts_of(system.frame).copy()
+    interpreted(change_shifts)(system.frame, solution, -0.5)
+    np.testing.assert_allclose(shifts_of(system.frame) - before, -0.5 * solution[-3:-1], rtol=1e-12)
+    assert interpreted(largest_shift)(system.frame, -solution) == solution[-2]
