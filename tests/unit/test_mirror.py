@@ -32,7 +32,6 @@ ELSEWHERE = {
     "results/checks/*.py": "unit/results/test_checks.py",
     "show/plot/__init__.py": "unit/test_extend.py",
     # Parts of one calculation, which is tested as a whole: forces by their energies, tangents by differences.
-    "system/carrying.py": "unit/system/test_arc_mesh.py",
     "system/observations.py": "unit/system/test_observe.py",
     "solvers/engine.py": "unit/solvers/test_alpha_advance.py",
     "show/line_sheet.py": "unit/designs/test_line_sheet.py",

@@ -29,13 +29,20 @@ PULLEYS = [
     {"name": "tail", "center": [2.0, 0.7], "radius": 0.25, "inertia": 0.15, "torque": -5.0},
 ]
 SPAN = ["tail", "head"]
-LOADED = {
+LOADED: dict[str, Any] = {
     "support": [{"kind": "idlers", "span": SPAN, "spacing": 1.0, "idler_mass": 6.0, "stiffness": 2e4}],
     "goods": [{"span": SPAN, "mass_per_length": 30.0}],
 }
-BARE = {"support": [], "goods": [{"span": SPAN, "mass_per_length": 1e-9}], "gravity": [0.0, -1e-9]}
+BARE: dict[str, Any] = {"support": [], "goods": [{"span": SPAN, "mass_per_length": 1e-9}], "gravity": [0.0, -1e-9]}
 """Goods alone, so light that they do nothing but ask for such a mesh."""
-ARM = {"kind": "rotary", "pulley": "tail", "pivot": [2.1, -0.1], "inertia": 0.8, "mass": 5.0, "preload": 300.0}
+ARM: dict[str, Any] = {
+    "kind": "rotary",
+    "pulley": "tail",
+    "pivot": [2.1, -0.1],
+    "inertia": 0.8,
+    "mass": 5.0,
+    "preload": 300.0,
+}
 ARM |= {"rate": 2e3, "damping": 20.0}
 LOSSES = {"stretch_damping_time": 1e-5, "bending_damping_time": 1e-3}
 
@@ -178,7 +185,7 @@ def test_tangent_of_steady_running(load: dict[str, Any]) -> None:
     def faster(step: float) -> None:
         speed[0] += step
 
-    columns = {len(tangent) - 1: (faster, 1e-5, 1e-4)}
+    columns: dict[int, tuple[Callable[[float], None], float, float]] = {len(tangent) - 1: (faster, 1e-5, 1e-4)}
     columns |= {len(tangent) - 1 - len(shifts) + k: (shift(k), 1e-6, 2e-3) for k in range(len(shifts))}
     for column, (change, step, tolerance) in columns.items():
         rows = on_spans(system, state)

@@ -1,7 +1,7 @@
 """Supports and goods on one element: forces known by hand, power, tangents, accelerations along paths."""
 
 from math import comb
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 import pytest
@@ -58,6 +58,17 @@ class Case(NamedTuple):
     length: float
     """Of span, m."""
 
+    @property
+    def support(self) -> Any:
+        """Row of its first support."""
+        assert isinstance(self.system.carrying, Carrying)
+        return self.system.carrying.supports[0]
+
+    @property
+    def goods(self) -> Any:
+        assert isinstance(self.system.carrying, Carrying)
+        return self.system.carrying.goods[0]
+
     def lay(self, depth: float, bend: float = 0.0, stretch: float = 1.0) -> None:
         """Lay it straight along its span, or as a parabola with a second derivative along the normal, 1/m."""
         dof, along = len(self.system.scale), self.system.length[self.element]
@@ -76,7 +87,10 @@ class Case(NamedTuple):
         interpreted(add_carrying)(system.carrying, system, motion, self.element, factors, work, forces)
         own, flow = work.element, work.flow
         return Carried(
-            *(array.copy() for array in (own.gradient, own.tangent, flow.by_speed, flow.by_end)),
+            own.gradient.copy(),
+            own.tangent.copy(),
+            flow.by_speed.copy(),
+            flow.by_end.copy(),
             float(forces.power[CARRYING_LOSS]),
             work.coordinates[1].copy(),
         )
@@ -89,11 +103,12 @@ class Case(NamedTuple):
 
     def moment(self) -> float:
         """About the first node: what an even turn of the element does, N m."""
-        residual, dof, total, shift = self.carried().residual, len(self.system.scale), 0.0, self.system.shift
+        residual, dof, shift = self.carried().residual, len(self.system.scale), self.system.shift
+        total = 0.0
         for a, first in enumerate(self.system.vectors):
             arm = self.length * (first >= dof) if shift[a] else float(a % 3 == 1)
-            total -= arm * residual[first : first + 2] @ self.normal
-        return float(total)
+            total -= arm * float(residual[first : first + 2] @ self.normal)
+        return total
 
 
 def vectors(state: State) -> tuple[FloatArray, FloatArray, FloatArray]:
@@ -130,10 +145,10 @@ def case(over_time: bool = True, **changes: object) -> Case:
 def test_a_support_pushes_by_its_depth_and_resists(support: dict[str, object], over_time: bool) -> None:
     """A straight element 2 mm deep, stretched by 1 %, on which both ends of the support lie."""
     here, depth = case(over_time, support=[support]), 2e-3
-    first = float((here.start - here.system.carrying.supports[0].line.origin) @ here.direction)
+    first = float((here.start - here.support.line.origin) @ here.direction)
     here = case(over_time, support=[support | {"start": first + 0.4, "end": first + 1.5}])
     here.lay(depth, stretch=1.01)
-    row = here.system.carrying.supports[0]
+    row = here.support
     normal = row.stiffness * (row.raised + depth)
     drag = interpreted(resistance_of_kind)(row, normal, 1.01 * SPEED).force
     assert drag > 0.0
@@ -147,7 +162,7 @@ def test_a_support_on_an_arc_pushes_by_its_height(over_time: bool) -> None:
     """A straight element on an arc: the sagitta (x - a) (b - x) / (2 R) is missing from its depth."""
     belt = {"profile": "flat-polyester-fabric", "width": "400 mm", "installed_tension": "300 N"}
     here, radius, depth = case(over_time, support=[IDLERS]), 200.0, 0.05
-    first = float((here.start - here.system.carrying.supports[0].line.origin) @ here.direction)
+    first = float((here.start - here.support.line.origin) @ here.direction)
     arc = IDLERS | {
         "start": first - 0.5,
         "end": first + 5.5,
@@ -157,7 +172,7 @@ def test_a_support_on_an_arc_pushes_by_its_height(over_time: bool) -> None:
     }
     here = case(over_time, support=[arc], belt=belt)
     here.lay(depth)
-    row = here.system.carrying.supports[0]
+    row = here.support
     x = np.linspace(0.5, 0.5 + here.length, 2001)
     line = 500.0 * (row.raised + depth - x * (6.0 - x) / (2.0 * radius))
     assert line.min() > 0.0
@@ -172,18 +187,16 @@ def test_a_belt_that_leaves_its_idlers_is_pushed_by_nothing() -> None:
     """A guide holds it on both sides."""
     for support, holds in ((IDLERS | {"friction": 0.0, "linear": 0.0, "idler_mass": 0.0}, False), (GUIDE, True)):
         here = case(support=[support])
-        here.lay(-2e-3 - float(here.system.carrying.supports[0].raised))
+        here.lay(-2e-3 - float(here.support.raised))
         _, normal = here.force()
         assert holds or not here.carried(CarryingFactors(1.0, 1.0, 0.0, 0.0)).tangent.any()
-        assert normal == pytest.approx(
-            -here.length * here.system.carrying.supports[0].stiffness * 2e-3 if holds else 0.0
-        )
+        assert normal == pytest.approx(-here.length * here.support.stiffness * 2e-3 if holds else 0.0)
 
 
 def test_a_support_damps_the_mesh_and_never_pulls() -> None:
     """2 d v a meter while the belt sinks in; nothing where it rises so fast that damping would hold it."""
     here, dof = case(support=[IDLERS | {"friction": 0.0}]), 6
-    row = here.system.carrying.supports[0]
+    row = here.support
     for rise, expected in ((-0.05, row.stiffness * (row.raised + 1e-3) + 40.0 * 0.05), (50.0, 0.0)):
         here.lay(1e-3)
         for node in (here.element, here.element + 1):
@@ -207,13 +220,13 @@ def test_goods_have_weight_and_follow_the_belt(over_time: bool) -> None:
 def test_a_batch_moves_with_the_belt(passed: float) -> None:
     """From 0.3 m behind the first node on, stretched by the way that has passed."""
     first = case(goods=[GOODS])
-    at = float((first.start - first.system.carrying.goods[0].line.origin) @ first.direction)
+    at = float((first.start - first.goods.line.origin) @ first.direction)
     here = case(goods=[GOODS | {"batch": [at + 0.3, at + 1.1]}])
     here.lay(0.0)
     here.state.position[here.system.frame.place] = passed
     gravity = np.array([0.0, -GRAVITY])
     assert here.force() == pytest.approx(0.8 * MASS * np.array([gravity @ here.direction, gravity @ here.normal]))
-    middle = 0.7 + passed * here.system.carrying.goods[0].stretch
+    middle = 0.7 + passed * here.goods.stretch
     assert here.moment() == pytest.approx(middle * here.force()[1])
 
 
@@ -223,7 +236,7 @@ def test_rotating_mass_and_goods_are_sped_up() -> None:
     here.lay(1e-3)
     before = here.force()
     here.state.acceleration[here.system.frame.place] = 2.0
-    rotating = here.system.carrying.supports[0].rotating
+    rotating = here.support.rotating
     assert rotating == pytest.approx(6.0)
     assert here.force() - before == pytest.approx([-2.0 * (rotating + MASS) * here.length, 0.0], abs=1e-9)
 
@@ -232,7 +245,7 @@ def test_rotating_mass_and_goods_are_sped_up() -> None:
 def loaded() -> Case:
     """Supports on an arc and goods over the whole element, disturbed, with flows that differ along the belt."""
     at = case(support=[IDLERS])
-    first = float((at.start - at.system.carrying.supports[0].line.origin) @ at.direction)
+    first = float((at.start - at.support.line.origin) @ at.direction)
     arc = IDLERS | {"start": first - 0.5, "end": first + 5.5, "stiffness": 500.0, "curve_radius": 100.0}
     belt = {"profile": "flat-polyester-fabric", "width": "400 mm", "installed_tension": "300 N"}
     goods = [GOODS | {"batch": [first - 0.2, first + 5.7]}]

@@ -6,7 +6,14 @@ import xarray as xr
 
 from beltdyn.errors import ModelError
 from beltdyn.results import Run
-from beltdyn.results.derived import amplitude_spectrum, element_order, orders, waterfall
+from beltdyn.results.derived import (
+    amplitude_spectrum,
+    element_order,
+    order_spectrum,
+    orders,
+    overall_level,
+    waterfall,
+)
 from beltdyn.results.schema import PASS_BAND
 
 Signals = tuple[xr.DataArray, xr.DataArray, xr.DataArray]
@@ -378,3 +385,26 @@ def test_the_pass_band_belongs_to_the_rate_of_the_outputs() -> None:
     close = np.abs(frequency - PASS_BAND * 50.0) < 0.05
     assert (close & np.isfinite(found.values)).any()
     assert (close & np.isnan(found.values)).any()
+
+
+@pytest.mark.parametrize("way", [1.0, -1.0])
+def test_an_order_spectrum_depends_on_neither_sense_nor_beginning_of_a_rotation(way: float) -> None:
+    """5.3 turns of an angle that is recorded from before on, of which five are taken: exact for whole orders."""
+    time = np.arange(0.0, 3.0, 1e-3)
+    turned = 2.0 * np.pi * (2.0 * time + 0.1 * time**2)
+    angle = series(time, way * turned + 500.0)
+    late = time > 0.7
+    wave = series(time[late], 4.0 + 3.0 * np.cos(7.0 * turned[late]))
+    found = order_spectrum(wave, angle, "boxcar")
+    assert float(found["order"][1]) == pytest.approx(0.2)  # one over five turns
+    assert float(found.sel(order=7.0, method="nearest")) == pytest.approx(3.0, rel=1e-3)
+    assert float(found.where(np.abs(found["order"] - 7.0) > 0.1).max()) < 0.01
+
+
+def test_an_overall_level_is_that_of_all_its_waves() -> None:
+    """Root mean square of two sinusoids, whatever the mean is: Parseval's theorem."""
+    time = np.arange(0.0, 4.0, 1e-3)
+    waves = 50.0 + 3.0 * np.cos(2.0 * np.pi * 40.0 * time) + 4.0 * np.sin(2.0 * np.pi * 110.0 * time)
+    level = overall_level(waterfall(series(time, waves), series(time, 10.0 + time)))
+    np.testing.assert_allclose(level, np.sqrt(0.5 * (9.0 + 16.0)), rtol=1e-3)
+    assert level.attrs == {"units": "N", "long_name": "Overall level (RMS)"}
