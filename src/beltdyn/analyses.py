@@ -7,6 +7,7 @@ from pathlib import Path
 from typing import Any, NamedTuple
 
 from beltdyn.kinds import Registry, register
+from beltdyn.signals import closing
 
 RUN, EQUILIBRIUM = "run", "equilibrium"
 """Kinds of results with a class of their own: results over time of any analysis, and results at rest."""
@@ -70,7 +71,8 @@ class Analysis(NamedTuple):
         taken = shared.keys() & signature(function).parameters.keys()
         result = function(drive, **{name: shared[name] for name in taken}, **options)
         if not self.grows:
-            result.save(path, overwrite)
+            with closing():
+                result.save(path, overwrite)
         return result
 
 

@@ -6,7 +6,7 @@ import signal
 import stat
 import sys
 from collections.abc import Iterator
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from threading import current_thread, main_thread
 from types import FrameType
 
@@ -83,3 +83,10 @@ def uninterrupted() -> Iterator[None]:
             signal.signal(number, handler)
         for one in waiting[:1]:
             signal.raise_signal(one)
+
+
+@contextmanager
+def closing() -> Iterator[None]:
+    """Finish an analysis as `uninterrupted`: whoever interrupts that has the results a moment later, as they are."""
+    with suppress(KeyboardInterrupt), uninterrupted():
+        yield

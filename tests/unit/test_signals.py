@@ -5,7 +5,7 @@ from threading import Thread
 
 import pytest
 
-from beltdyn.signals import ENDING, ending_in_order, exit_code, uninterrupted
+from beltdyn.signals import ENDING, closing, ending_in_order, exit_code, uninterrupted
 
 pytestmark = pytest.mark.usefixtures("signal_defaults")
 
@@ -64,3 +64,11 @@ def test_other_threads_need_no_wait() -> None:
     thread.start()
     thread.join()
     assert done == [signal.getsignal(signal.SIGINT)]
+
+
+def test_what_is_closing_ends_as_it_is() -> None:
+    done = []
+    with closing():
+        signal.raise_signal(signal.SIGINT)
+        done.append("closed")
+    assert done == ["closed"]

@@ -19,7 +19,7 @@ from beltdyn.model.toml import edited, loads, read_study
 from beltdyn.results import Result, Variable, build_result
 from beltdyn.results.atomic import locked_output
 from beltdyn.results.schema import VARIOUS
-from beltdyn.signals import uninterrupted
+from beltdyn.signals import closing
 from beltdyn.solvers.run_progress import Report
 
 # Least squares between bounds (trust-region reflective, SciPy), and what the fit knows of its numbers
@@ -247,7 +247,7 @@ def _calibrate(
     found = fit(fitting.residuals, fitting.jacobian, first, given.confidence, known=fitting.known, most=MOST)
     result = _result(drive, numbers, fitting, found, given.confidence)
     if path is not None:
-        with uninterrupted():
+        with closing():
             result.save(path, overwrite)
             write_found(path, str(result.dataset.attrs["best_drive"]), overwrite)
     return result

@@ -24,7 +24,7 @@ from beltdyn.results.atomic import atomic_path, locked_output, require_replaceab
 from beltdyn.results.dataset import is_result
 from beltdyn.results.recorder import status_after
 from beltdyn.results.schema import VARIOUS
-from beltdyn.signals import uninterrupted
+from beltdyn.signals import closing, uninterrupted
 
 
 @dataclass(frozen=True)
@@ -287,7 +287,7 @@ class History:
     ) -> bool:
         """End with a status, and write what there is."""
         self._status = status_after(kind)
-        with self._held:
+        with closing(), self._held:
             self._save()
         return self._status == "interrupted"
 

@@ -7,7 +7,6 @@ import json
 import re
 import time
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from contextlib import suppress
 from pathlib import Path
 from types import TracebackType
 from typing import Any, NamedTuple, Self
@@ -26,7 +25,7 @@ from beltdyn.results import Result, Variable, build_result
 from beltdyn.results.atomic import OutputLock, atomic_path, require_replaceable, target_of, unwritable
 from beltdyn.results.dataset import is_result, read_dataset
 from beltdyn.results.recorder import status_after
-from beltdyn.signals import uninterrupted
+from beltdyn.signals import closing, uninterrupted
 
 # The rows of a study in a CSV file: added to as points finish, and read again when the study goes on
 
@@ -268,7 +267,7 @@ class StudyTable:
         """Close the files with a status."""
         self._status = status_after(kind)
         try:
-            with suppress(KeyboardInterrupt), uninterrupted():  # all is done, and on disk, where it is left
+            with closing():
                 if self.done.any():
                     self._save()
         finally:

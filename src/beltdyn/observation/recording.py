@@ -23,7 +23,7 @@ from beltdyn.results.mechanics import PASSED
 from beltdyn.results.provenance import mesh_used, own_kinds
 from beltdyn.results.recorder import status_after
 from beltdyn.results.schema import FILTER_REACH, FILTERED, TIMES
-from beltdyn.signals import uninterrupted
+from beltdyn.signals import closing, uninterrupted
 from beltdyn.solvers.run_progress import Pace, Phase, Progress, Report
 from beltdyn.solvers.trajectory import Chunk, Statistics, interpolated
 from beltdyn.system.arc_mesh import recorded_lengths
@@ -230,7 +230,7 @@ class Recording:
 
     def end(self, status: Status) -> None:
         """Write what waits, and close the results with their status; "failed" if what waits cannot be written."""
-        with uninterrupted():
+        with closing():
             written = False
             try:
                 self._write(ending=not self._ending)

@@ -28,7 +28,7 @@ from beltdyn.results.schema import AXIS_NAMES, COORDINATES, runs_steadily
 from beltdyn.results.summary import Means, means_of
 from beltdyn.results.tension_balance import causes_of
 from beltdyn.results.tooth_loads import ToothLoads, tooth_loads
-from beltdyn.signals import uninterrupted
+from beltdyn.signals import closing, uninterrupted
 from beltdyn.solvers.run_progress import Progress, Report
 from beltdyn.state.steady import require_steady, steady_state
 
@@ -261,7 +261,7 @@ class OperatingPoints:
     ) -> bool:
         """Close the table with its status."""
         self._status = status_after(kind)
-        with self._held:
+        with closing(), self._held:
             self._save()
         return self._status == "interrupted"
 

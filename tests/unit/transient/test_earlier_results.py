@@ -1,8 +1,10 @@
 """An earlier result file stays until there is a new result to put in its place, whatever ends an analysis."""
 
 import shutil
+import signal
 from collections.abc import Callable
 from contextlib import AbstractContextManager
+from functools import partial, partialmethod
 from pathlib import Path
 from typing import Any
 
@@ -14,7 +16,7 @@ from beltdyn.analyses import ANALYSES
 from beltdyn.cosimulation import fmu
 from beltdyn.errors import BeltdynError, ConvergenceError
 from beltdyn.model import CalibrationStudy, Drive, OptimizationStudy, ParameterStudy
-from beltdyn.results import Run
+from beltdyn.results import FileRecorder, Result, Run
 from beltdyn.show.plot import animate, save_all
 from beltdyn.solvers.run_progress import Progress
 from beltdyn.transient.checkpoint import checkpoint_file
@@ -113,6 +115,43 @@ def test_what_ends_before_its_first_result_changes_no_file(
     else:
         assert found.status == "interrupted"
     assert contents(earlier.parent) == before
+
+
+@pytest.mark.parametrize(
+    "name",
+    [
+        one if one in ("equilibrium", "operating_map", "calibrate") else pytest.param(one, marks=pytest.mark.slow)
+        for one in OPTIONS
+    ],
+)
+def test_an_interruption_of_the_last_saving_leaves_what_is_complete(
+    name: str, demo: Drive, earlier: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Ctrl-C, pressed twice while a file is closed slowly, takes nothing away, and is no traceback."""
+
+    def press(inner: Callable[..., Any], *arguments: Any, **options: Any) -> Any:
+        done = inner(*arguments, **options)
+        if "completed" in str(open_status(earlier)):
+            signal.raise_signal(signal.SIGINT)
+            signal.raise_signal(signal.SIGINT)
+        return done
+
+    for owner, method in ((Result, "save"), (FileRecorder, "close")):
+        monkeypatch.setattr(owner, method, partialmethod(partial(press, getattr(owner, method))))
+    earlier.unlink()
+    found = ANALYSES[name].write(fitting(name, demo), earlier, None, True, **OPTIONS[name])
+    assert found.status == "completed"
+    assert bd.open_result(earlier).status == "completed"
+
+
+def open_status(path: Path) -> str:
+    """The status of a file, if it is there."""
+    if not path.exists():
+        return ""
+    result = bd.open_result(path)
+    status = result.status
+    result.dataset.close()
+    return status
 
 
 @pytest.mark.slow
