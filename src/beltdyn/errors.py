@@ -56,6 +56,10 @@ class ConvergenceError(SimulationError):
     """
 
 
+class TimeLimitError(SimulationError):
+    """A search took longer than its limit of processor time; nothing is said of whether there is a solution."""
+
+
 class OutputError(SimulationError):
     """Results can no longer be written, for example on a full disk; results written before remain readable."""
 

@@ -20,6 +20,7 @@ from tools.campaign import damage, hostile
 from tools.campaign.__main__ import odd, report
 from tools.campaign.drive_mutations import bases
 from tools.campaign.mutants import balance, look, try_mutant
+from tools.campaign.odd_drives import odd_drive
 from tools.campaign.trial import attempt, outcome
 
 FIRST = int(os.environ.get("BELTDYN_FIRST_MUTATION", "0"))
@@ -59,6 +60,18 @@ def test_some_wrong_drive_files(tmp_path: Path) -> None:
     originals = bases()
     found = {seed: try_mutant(seed, originals, tmp_path) for seed in range(100)}
     assert {seed: one for seed, one in found.items() if one.kind not in ("fine", "refused")} == {}
+
+
+def test_odd_drives_at_rest_by_closed_forms() -> None:
+    """Slack, sunk in, too stiff to bend, with negative tensions: shown, or refused with a message."""
+    known = {seed: attempt(partial(_looked_at, seed), 10.0) for seed in range(150)}
+    assert {seed: one for seed, one in known.items() if one.kind not in ("fine", "refused")} == {}
+    assert sum(one.kind == "fine" for one in known.values()) > 40
+
+
+def _looked_at(seed: int) -> str:
+    look(odd_drive(seed))
+    return ""
 
 
 @pytest.mark.slow

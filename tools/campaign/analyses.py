@@ -5,7 +5,7 @@ from pathlib import Path
 
 import beltdyn as bd
 from beltdyn.analyses import ANALYSES, Analysis
-from beltdyn.model import Drive, ParameterStudy, advise, install
+from beltdyn.model import Drive, ParameterStudy
 from beltdyn.model.parameter_study import CalibrationStudy, OptimizationStudy
 
 Work = Callable[[Drive, Path], object]
@@ -59,7 +59,8 @@ def _as_it_is(analysis: Analysis) -> Work:
 
 
 WORKS: dict[str, Work] = {one.command: _as_it_is(one) for one in ANALYSES.values()} | {
-    "check": lambda drive, _: advise(drive, install(drive)),
+    "check": lambda drive, _: str(bd.check(drive)),
+    "check by closed forms": lambda drive, _: str(bd.check(drive, equilibrium=False)),
     "simulate": lambda drive, folder: bd.simulate(drive, output=folder / "run.nc"),
     "sweep": lambda drive, _: bd.sweep(
         drive, pulley=_driver(drive), from_="50 rad/s", to="100 rad/s", duration=0.02, settling=0.01

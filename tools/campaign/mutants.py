@@ -6,7 +6,8 @@ import time
 from collections.abc import Callable, Iterator
 from pathlib import Path
 
-from beltdyn.model import Drive, advise, install, load
+from beltdyn.model import Drive, load
+from beltdyn.show.rest_sheet import check
 from beltdyn.state.equilibrium import equilibrium
 from tools.campaign.drive_mutations import mutated
 from tools.campaign.trial import Outcome, outcome
@@ -22,8 +23,8 @@ class TooLongError(BaseException):
 
 
 def look(drive: Drive) -> None:
-    """Look at a drive at rest by closed forms, as `beltdyn check` does."""
-    advise(drive, install(drive))
+    """Look at a drive at rest by closed forms, as `beltdyn check` does before kernels are compiled."""
+    assert str(check(drive, equilibrium=False))
 
 
 def balance(drive: Drive) -> None:

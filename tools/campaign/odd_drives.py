@@ -12,10 +12,13 @@ _POWERS = {
     "tension": (-3.0, 6.0),
     "modulus": (4.0, 12.0),
     "density": (-1.0, 5.0),
-    "thickness": (-4.5, -1.5),
+    "thickness": (-4.5, -0.3),
     "inertia": (-12.0, 6.0),
     "speed": (-3.0, 5.0),
     "torque": (-3.0, 5.0),
+    "stiffness": (1.0, 13.0),
+    "length": (-2.0, 2.0),
+    "mass_per_length": (-3.0, 5.0),
 }
 """Powers of ten between which an odd number lies."""
 _USUAL = {"radius": 0.06, "tension": 200.0, "modulus": 5e8, "density": 1100.0, "thickness": 0.003, "inertia": 1e-3}
@@ -79,7 +82,22 @@ def odd_drive(seed: int, elements: int = 30) -> Drive:
         given["gravity"] = [0.0, -numbers.random.choice((9.81, 1e4))]
     if len(pulleys) > 2 and numbers.chance(0.5):
         given["tensioner"] = [_tensioner(numbers, pulleys[-1])]
+    _carry(numbers, given)
     return Drive(**given)
+
+
+def _carry(numbers: _Numbers, given: Part) -> None:
+    """Give the contact's stiffness, the belt's length in place of its tension, or goods and idlers, now and then."""
+    if numbers.chance(0.2):
+        given["contact"]["stiffness"] = numbers.of("stiffness", 1e8)
+    if numbers.chance(0.2):
+        del given["belt"]["installed_tension"]
+        given["belt"]["length"] = numbers.of("length", 1.4)
+    span = [given["pulley"][0]["name"], given["pulley"][1]["name"]]
+    if numbers.chance(0.2):
+        given["goods"] = [{"span": span, "mass_per_length": numbers.of("mass_per_length", 5.0)}]
+    if numbers.chance(0.2):
+        given["support"] = [{"kind": "idlers", "span": span, "spacing": 0.1, "idler_mass": 1.0, "friction": 0.02}]
 
 
 def _pulley(numbers: _Numbers, place: int) -> Part:

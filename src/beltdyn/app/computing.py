@@ -12,11 +12,12 @@ from typing import NamedTuple
 
 from beltdyn.app.findings import Findings, at_rest, in_running, of_modes
 from beltdyn.designs.processes import SPAWN, LocalProcesses, start_process, start_worker
-from beltdyn.errors import BeltdynError
+from beltdyn.errors import BeltdynError, TimeLimitError
 from beltdyn.kernel import observe_compilation
 from beltdyn.model import Drive, loads
 from beltdyn.results import Run
 from beltdyn.show.sheet import Facts, Table, sheet
+from beltdyn.solvers.time_limit import time_limit
 
 # Tell the page when Numba compiles kernels
 
@@ -137,16 +138,36 @@ def compile_ahead(asked: Asked, stop: SharedEvent, compiles: Counter) -> None:
 
 
 def answer(asked: Asked) -> Answer:
-    """Compute the numbers of a tab; errors are returned as answers."""
+    """Compute the numbers of a tab; errors are returned as answers.
+
+    Where the search for equilibrium takes too long, the answer is the drive at rest by closed forms.
+    """
     begun = time.perf_counter()
     try:
-        parts, told, found = {"rest": _rest, "running": _running, "modes": _modes}[asked.what](asked)
+        with time_limit(_LONGEST_SEARCH):
+            parts, told, found = {"rest": _rest, "running": _running, "modes": _modes}[asked.what](asked)
         return Answer(parts, told, "", time.perf_counter() - begun, found)
+    except TimeLimitError as error:
+        return _by_closed_forms(asked, error, begun)
     except BeltdynError as error:
         return Answer((), (), str(error), time.perf_counter() - begun)
     finally:
         if _compiles is not None:
             _compiles.clear()
+
+
+_LONGEST_SEARCH = 10.0
+"""Processor time of a search for equilibrium, s, beyond which somebody who edits a drive does not wait."""
+
+
+def _by_closed_forms(asked: Asked, error: TimeLimitError, begun: float) -> Answer:
+    """The drive at rest by closed forms, with the reason."""
+    from beltdyn.show.rest_sheet import check
+
+    checked = check(loads(asked.text, asked.folder), equilibrium=False)
+    told = f"no equilibrium is known: {error} These numbers are closed forms of the drive at rest."
+    found = at_rest(checked.drive, checked.installation)
+    return Answer(checked.sheet.parts, (told, *checked.warnings), "", time.perf_counter() - begun, found)
 
 
 Shown = tuple[tuple[Table | Facts, ...], tuple[str, ...], Findings]

@@ -17,7 +17,7 @@ from beltdyn.app.session import Session
 from beltdyn.errors import BeltdynError
 from beltdyn.model import estimate_at_rest, prepare
 from beltdyn.parts.text_file import shorten
-from beltdyn.show.rest_sheet import rest_sheet
+from beltdyn.show.rest_sheet import limitations, rest_sheet
 from beltdyn.show.sheet import Facts, Table
 
 _WIDTH, _HEIGHT = 400.0, 165.0
@@ -327,14 +327,14 @@ class NumbersView:
         drive = self._session.draft.drive
         assert drive is not None
         parts: tuple[Table | Facts, ...] = ()
-        told, shown = "", Findings()
+        told, warnings, shown = "", tuple[str, ...](), Findings()
         try:
             prepared, found = estimate_at_rest(prepare(drive))
             parts = rest_sheet(drive, prepared.drive, found, computed=False).parts
-            shown = at_rest(prepared.drive, found)
+            warnings, shown = tuple(limitations(found)), at_rest(prepared.drive, found)
         except BeltdynError as error:
             told = str(error)
-        self._show(Answer(parts, (), told, 0.0, shown))
+        self._show(Answer(parts, warnings, told, 0.0, shown))
 
     async def _work(self, calculator: Calculator) -> None:
         """Answer the latest question, until there is none."""

@@ -97,8 +97,8 @@ def rolling_resistances(prepared: Prepared) -> FloatArray:
 def compression_losses(prepared: Prepared) -> FloatArray:
     """Resistance by compression at each pulley, N, at rest; zero at the back of the belt, which no groove presses."""
     belt = prepared.belt
-    if belt.contact_stiffness is None or belt.compression_loss_factor == 0.0:
-        return np.zeros(len(prepared.pulleys))
     stiffness, tension = belt.contact_stiffness, prepared.tension_at_rest
+    if stiffness is None or belt.compression_loss_factor == 0.0 or not tension > 0.0:
+        return np.zeros(len(prepared.pulleys))
     losses = compression_loss(tension, belt.bending_stiffness, stiffness, belt.compression_loss_factor, prepared.radii)
     return np.asarray(losses * np.array([pulley.side == "inside" for pulley in prepared.pulleys]))

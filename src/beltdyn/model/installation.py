@@ -46,6 +46,8 @@ class Installation:
     span_frequencies: FloatArray
     """Lowest natural frequency of transverse vibration of each span, including bending stiffness and sag, Hz, shape
     (s,)."""
+    limitation: str = ""
+    """Why closed forms leave out bending stiffness and weight; empty where they do not, and where the belt is slack."""
 
 
 def span_frequencies(

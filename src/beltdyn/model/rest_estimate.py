@@ -10,13 +10,16 @@ Goods on slopes are held at the arc of the driver, as in static equilibrium. Of 
 counts.
 """
 
-from dataclasses import dataclass
+from collections.abc import Callable
+from contextlib import suppress
+from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import NamedTuple
 
 import numpy as np
 
 from beltdyn.arrays import FloatArray
+from beltdyn.errors import ModelError
 from beltdyn.model.carrier import moved
 from beltdyn.model.carrying import hanging_lengths
 from beltdyn.model.installation import Installation
@@ -29,6 +32,8 @@ _STEP = 1e-5
 _CHANGE = 1e-3
 """Of the tension, for the slope of tightening, relative."""
 _MOST_STEPS = 20
+_MOST_HALVINGS = 10
+_NO_BALANCE = "no tension and no places of tensioners balance the belt with its bending stiffness and weight."
 
 
 def estimate_at_rest(prepared: Prepared) -> tuple[Prepared, Installation]:
@@ -45,7 +50,8 @@ def estimate_at_rest(prepared: Prepared) -> tuple[Prepared, Installation]:
         With the belt length, or the take-up, that gives the installed tension, if given.
     installation : Installation
         Within 1 % of static equilibrium where arcs are several times as long as the layers at their ends, penetrations
-        excepted. A slack belt has the estimate without bending and weight.
+        excepted. A slack belt, and one for which closed forms of bending and weight do not hold, have the estimate
+        without them, with its `limitation`.
 
     Raises
     ------
@@ -58,9 +64,12 @@ def estimate_at_rest(prepared: Prepared) -> tuple[Prepared, Installation]:
     >>> print(f"{installation.tension:.2f} N")
     26.74 N
     """
-    belt = _balanced(prepared)
-    if belt is None:
+    if not prepared.installation.tension > 0.0:
         return prepared, prepared.installation
+    try:
+        belt = _balanced(prepared)
+    except ModelError as error:
+        return prepared, replace(prepared.installation, limitation=str(error))
     if prepared.installed_tension is not None:
         prepared = prepared.tightened(_distance(prepared, belt))
     depths = belt.tension * belt.stretch / (prepared.radii * prepared.contact_stiffness)
@@ -81,9 +90,13 @@ def tightening(prepared: Prepared) -> Tightening | None:
     tension = prepared.installed_tension
     if tension is None:
         return None
-    belts = [_balanced(prepared, tension * part) for part in (1.0, 1.0 + _CHANGE)]
-    distances = [_distance(prepared, belt) for belt in belts if belt is not None]
-    if len(distances) < len(belts) or distances[0] == distances[1]:
+    if not prepared.installation.tension > 0.0:
+        return None
+    try:
+        distances = [_distance(prepared, _balanced(prepared, tension * part)) for part in (1.0, 1.0 + _CHANGE)]
+    except ModelError:
+        return None
+    if distances[0] == distances[1]:
         return None
     return Tightening(distances[0], _CHANGE * tension / (distances[1] - distances[0]))
 
@@ -121,11 +134,6 @@ class _Belt:
             if np.all(np.abs(path.radii - before) <= _ROUNDING * np.abs(before)):
                 break
         return path
-
-    @property
-    def lies_on_rims(self) -> bool:
-        """Whether contact is stiff enough to hold it."""
-        return all(0.0 <= arc.depth < radius for arc, radius in self._rims)
 
     @property
     def stretch(self) -> float:
@@ -237,13 +245,11 @@ class _Belt:
         )
 
 
-def _balanced(prepared: Prepared, given: float | None = None) -> _Belt | None:
-    """The belt with its tension, tensioners in balance, by Newton's method; None if slack, sunk or not found."""
+def _balanced(prepared: Prepared, given: float | None = None) -> _Belt:
+    """The belt with its tension, tensioners in balance, by Newton's method; ModelError where closed forms end."""
     first = prepared.installation
     if given is None:
         given = prepared.installed_tension or prepared.loaded_belt.installed_tension
-    if not first.tension > 0.0:
-        return None
 
     def belt_at(unknown: FloatArray) -> _Belt:
         tension = given if given is not None else first.tension * float(unknown[-1])
@@ -259,13 +265,27 @@ def _balanced(prepared: Prepared, given: float | None = None) -> _Belt | None:
     strain = max(first.strain, _STEP)
     unknown = np.append(np.zeros(len(travel)), [1.0] * (given is None))
     try:
+        missing = residual(unknown)
         for _ in range(_MOST_STEPS):
-            missing = residual(unknown)
             if np.all(np.abs(missing) < _ROUNDING):
-                found = belt_at(unknown)
-                return found if found.lies_on_rims and found.length > 0.0 else None
+                return belt_at(unknown)
             slopes = [(residual(unknown + _STEP * way) - missing) / _STEP for way in np.eye(len(unknown))]
-            unknown = unknown - np.linalg.solve(np.transpose(slopes), missing)
-    except (ValueError, np.linalg.LinAlgError):
-        return None
-    return None
+            increment = np.asarray(np.linalg.solve(np.transpose(slopes), -missing), float)
+            unknown, missing = _stepped(residual, unknown, increment)
+    except np.linalg.LinAlgError as error:
+        raise ModelError(_NO_BALANCE) from error
+    except ValueError as error:  # no path around the pulleys
+        raise ModelError(f"{str(error).rstrip('.')}.") from error
+    raise ModelError(_NO_BALANCE)
+
+
+def _stepped(
+    residual: Callable[[FloatArray], FloatArray], unknown: FloatArray, increment: FloatArray
+) -> tuple[FloatArray, FloatArray]:
+    """The unknowns after a step of Newton's method, shortened to where closed forms hold, and their residual."""
+    for halvings in range(_MOST_HALVINGS):
+        ahead = unknown + 0.5**halvings * increment
+        with suppress(ValueError):
+            return ahead, residual(ahead)
+    ahead = unknown + increment
+    return ahead, residual(ahead)

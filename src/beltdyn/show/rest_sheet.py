@@ -7,7 +7,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from beltdyn.errors import BeltdynError, ConvergenceError
+from beltdyn.errors import BeltdynError, ConvergenceError, TimeLimitError
 from beltdyn.model import (
     Drive,
     Installation,
@@ -29,12 +29,16 @@ from beltdyn.model.layout import teeth_in_mesh
 from beltdyn.model.plausibility import other_diameters
 from beltdyn.model.simulation import unused_settings
 from beltdyn.model.toothing import RatedTeeth
-from beltdyn.parts.messages import aligned
+from beltdyn.parts.messages import Finding, aligned
 from beltdyn.results.layout import describe_size
 from beltdyn.show.notebook import picture, templates
 from beltdyn.show.sheet import Facts, Sheet, Table, as_text
 from beltdyn.solvers.run_progress import Report
+from beltdyn.solvers.time_limit import time_limit
 from beltdyn.state.installation import bring_to_rest, is_compiled
+
+_LONGEST_SEARCH = 5.0
+"""Processor time of a search for equilibrium that nobody asked for, s; those of all examples take below 2 s."""
 
 
 @dataclass(frozen=True, repr=False)
@@ -83,8 +87,8 @@ def check(drive: Drive, progress: Report | None = None, *, equilibrium: bool | N
     progress : callable, optional
         Called with a `Progress` before compilation and before the search.
     equilibrium : bool, optional
-        Whether to compute the static equilibrium; by default where its kernels are compiled. Belts with teeth, supports
-        or goods are judged by closed forms.
+        Whether to compute the static equilibrium; by default where its kernels are compiled, and for at most 5 s of
+        processor time. Belts with teeth, supports or goods are judged by closed forms.
 
     Returns
     -------
@@ -102,7 +106,10 @@ def check(drive: Drive, progress: Report | None = None, *, equilibrium: bool | N
     told = advise(drive, install(drive))
     if not drive.stays_at_rest and (equilibrium or (equilibrium is None and is_compiled(drive))):
         try:
-            rest = bring_to_rest(drive, progress)
+            with time_limit(None if equilibrium else _LONGEST_SEARCH):
+                rest = bring_to_rest(drive, progress)
+        except TimeLimitError as error:
+            return _estimated(drive, [str(_unfinished(error)), *told])
         except ConvergenceError as error:
             return replace(_estimated(drive, told), failure=error)
         unstable = [str(unstable_balance(rest.unstable))] if rest.unstable else []
@@ -114,8 +121,30 @@ def check(drive: Drive, progress: Report | None = None, *, equilibrium: bool | N
 def _estimated(drive: Drive, told: list[str]) -> Check:
     """A drive at rest by closed forms."""
     prepared, found = estimate_at_rest(prepare(drive))
+    told = [*limitations(found), *told]
     sheet = rest_sheet(drive, prepared.drive, found, computed=False)
     return Check(prepared.drive, found, told, sheet, computed=False)
+
+
+def limitations(installation: Installation) -> list[str]:
+    """What the closed forms of a belt at rest leave out, as warnings."""
+    if not installation.limitation:
+        return []
+    finding = Finding(
+        f"closed forms with bending stiffness and weight do not hold for this belt at rest: {installation.limitation}",
+        "Tensions, hub loads and frequencies are those of a flexible belt without weight.",
+        "Compute the static equilibrium: beltdyn equilibrium.",
+    )
+    return [str(finding)]
+
+
+def _unfinished(error: TimeLimitError) -> Finding:
+    """A search for equilibrium that took too long."""
+    return Finding(
+        f"no static equilibrium is known: {error}",
+        "Tensions, hub loads and frequencies are closed forms.",
+        "Search to the end: beltdyn check --equilibrium.",
+    )
 
 
 _NAMED = {"new": "of a new belt", "run in": "run in", "least": "before it is tensioned again"}
@@ -200,13 +229,16 @@ _HALF_TURN = 179.95
 """Angle from which a direction is shown as 180.0, degrees."""
 
 
-_METHODS = {False: "closed form, within 1 % of the computed equilibrium; penetrations less so", True: "computed"}
+_COMPUTED = "computed"
+_CLOSED_FORM = "closed form, within 1 % of the computed equilibrium; penetrations less so"
+_LIMITED_CLOSED_FORM = "closed form without bending stiffness and weight; see the warning"
 
 
 def rest_sheet(given: Drive, drive: Drive, installation: Installation, *, computed: bool = True) -> Sheet:
     """Summarize a drive at rest, as computed or by closed forms."""
+    method = _COMPUTED if computed else _LIMITED_CLOSED_FORM if installation.limitation else _CLOSED_FORM
     parts: list[Table | Facts] = [
-        Facts((*_facts(given, drive, installation), ("static equilibrium", _METHODS[computed]))),
+        Facts((*_facts(given, drive, installation), ("static equilibrium", method))),
         Table("Pulleys at rest", _PULLEY_HEADINGS, tuple(_pulleys(drive, installation))),
         Table("Spans at rest", _SPAN_HEADINGS, tuple(_spans(drive, installation))),
     ]

@@ -16,6 +16,7 @@ import numpy as np
 from beltdyn.arrays import FloatArray, Records
 from beltdyn.errors import ConvergenceError
 from beltdyn.solvers.engine import correct, linearise
+from beltdyn.solvers.time_limit import spend_time
 from beltdyn.system.arrays import Equations, Motion, System, TangentFactors
 from beltdyn.system.meshing import phases, turning_grooves, unloaded
 from beltdyn.system.state import State
@@ -64,6 +65,7 @@ def find_equilibrium(
     shift = 0.0
     iterates, norms = [start.nodes(system).copy()], list[float]()
     while len(norms) < max_iterations and shift < _LARGEST_SHIFT:
+        spend_time()
         norm = search.linearise(shift)
         converged = shift == 0.0 and norm < _STATE_TOLERANCE
         if method == "newton" or converged:

@@ -10,6 +10,7 @@ from beltdyn.errors import ConvergenceError, ModelError
 from beltdyn.model import Drive, Prepared
 from beltdyn.model.resolution import Arc, Laid
 from beltdyn.observation.compilation import ahead, compile_observing
+from beltdyn.solvers.time_limit import spend_time
 from beltdyn.state.installation import drawn_in, follow, from_starts, looked_at, with_stiffer_contact
 from beltdyn.state.newton import FOUND, find_steady, steady_work
 from beltdyn.state.static import only_tensioners
@@ -228,6 +229,7 @@ def _balance(prepared: Prepared, system: System, state: State, anchor: Anchor, f
 def _found(prepared: Prepared, still: System, state: State, anchor: Anchor) -> bool:
     """Bring a state to equilibrium without friction, if Newton's method converges."""
     tolerance = TOLERANCE * float(np.min(prepared.radii))
+    spend_time()
     shifts, begun = shifts_of(still.frame), shifts_of(still.frame).copy()
     found = find_steady(still, state.at(0.0), anchor, tolerance, _MOST, False, steady_work(still))[0] == FOUND
     if not found:

@@ -27,6 +27,7 @@ import numpy as np
 
 from beltdyn.arrays import FloatArray
 from beltdyn.stretch import StretchParameters
+from beltdyn.theory.ranges import LARGEST_EXPONENT, require_above, require_at_least, require_at_most
 from beltdyn.theory.span import open_belt
 
 
@@ -41,6 +42,8 @@ def capstan_ratio(friction: float, angle: float) -> float:
     >>> round(bd.theory.creep.capstan_ratio(0.5, pi), 3)
     4.81
     """
+    require_at_least(friction=friction, angle=angle)
+    require_at_most(LARGEST_EXPONENT, friction_times_angle=friction * angle)
     return exp(friction * angle)
 
 
@@ -72,6 +75,8 @@ def sliding_angle(
     2.197
     """
     lifted = mass_per_length * speed**2
+    require_above(lifted, tight=tight, slack=slack)
+    require_above(friction=friction)
     return log((tight - lifted) / (slack - lifted)) / friction
 
 
@@ -119,6 +124,8 @@ def entry_strain(
     the strain's EA, with e EI kappa^2 / EA the strain of a bent belt without tension; hysteresis takes pi/8 eta EI
     kappa^2, half of what bending forth and back loses.  The rim sees cos(alpha) of the belt's speed.
     """
+    require_above(axial_stiffness=axial_stiffness, contact_stiffness=contact_stiffness, radii=radii)
+    require_at_least(bending_stiffness=bending_stiffness)
     pull = np.maximum(tension, 1e-9 * axial_stiffness)
     root = np.sqrt(bending_stiffness * contact_stiffness) / pull
     bent = (root / (1.0 + root + np.sqrt(1.0 + 2.0 * root)) / radii) ** 2
@@ -148,8 +155,9 @@ def gross_slip_tensions(
     >>> round(tight, 1), round(slack, 1)
     (293.5, 114.4)
     """
+    require_above(friction=friction, distance=distance, radius=radius)
     belt, lifted = open_belt(distance, (radius, radius)), mass_per_length * speed**2
-    ratio = exp(friction * belt.wrap[0])
+    ratio = capstan_ratio(friction, belt.wrap[0])
     weight = belt.span * (ratio + 1.0) + 2.0 * radius * (ratio - 1.0) / friction
     slack = belt.length * (installed - lifted) / weight
     return lifted + ratio * slack, lifted + slack
@@ -159,17 +167,23 @@ def layer_length(
     creep_rate_factor: float, transport_speed: float, law: StretchParameters, *, mass: float = 0.0, at: float = 1.0
 ) -> float:
     """Reference length (dT/dg - rho A c^2) / (nu_s c) over which a slip velocity grows e-fold along an arc, m."""
+    require_above(creep_rate_factor=creep_rate_factor, transport_speed=transport_speed)
     stiffness = float(law.tangent_stiffness(at)) - mass * transport_speed**2
     return stiffness / (creep_rate_factor * transport_speed)
 
 
 def tension_along_arc(x: FloatArray, entry: float, leaving: float, arc: float, layer: float) -> FloatArray:
     """Tension along an arc, linearized and below the cap: T = T_in + (T_out - T_in) (e^(X/l) - 1) / (e^(a/l) - 1)."""
-    return np.asarray(entry + (leaving - entry) * np.expm1(x / layer) / np.expm1(arc / layer))
+    _require_layer(arc, layer)
+    _require_along(x, arc)
+    grown = np.exp((x - arc) / layer) * np.expm1(-x / layer) / np.expm1(-arc / layer)  # no exponential overflows
+    return np.asarray(entry + (leaving - entry) * grown)
 
 
 def friction_along_arc(x: FloatArray, entry: float, leaving: float, arc: float, layer: float) -> FloatArray:
     """Friction -dT/dX that belongs to `tension_along_arc`, N/m; it grows towards the exit.  Parameters as there."""
+    _require_layer(arc, layer)
+    _require_along(x, arc)
     return np.asarray((entry - leaving) / layer * np.exp((x - arc) / layer) / -np.expm1(-arc / layer))
 
 
@@ -180,9 +194,21 @@ def creep_speed_loss(tight: float, slack: float, law: StretchParameters, arc: fl
     omega1 R / c = g1 + (g1 - g2) / (e^(a/l) - 1).  For l << a this is elastic creep, (T1 - T2) / EA; for l >> a it is
     the slip of an inextensible belt, 2 (T1 - T2) / (nu_s a) over the rim speed.
     """
+    _require_layer(arc, layer)
     first, second = (float(law.stretch(end)) for end in (tight, slack))
     rim = first + (first - second) * exp(-arc / layer) / -expm1(-arc / layer)
     return (first - second) / tanh(0.5 * arc / layer) / rim
+
+
+def _require_layer(arc: float, layer: float) -> None:
+    """Refuse arcs and layers that are no lengths."""
+    require_above(arc=arc, layer=layer)
+
+
+def _require_along(x: FloatArray, arc: float) -> None:
+    """Refuse places that are not on the arc."""
+    require_at_least(x=x)
+    require_at_most(arc, x=x)
 
 
 def entry_creep(elastic: float, saturation: float, lengths: float) -> float:
@@ -195,6 +221,7 @@ def entry_creep(elastic: float, saturation: float, lengths: float) -> float:
     """
     from scipy.special import lambertw
 
+    require_above(saturation=saturation, lengths=lengths)
     creep = elastic / saturation
     if creep >= lengths:
         return saturation
@@ -217,6 +244,10 @@ def creeping_arc(
 ) -> tuple[FloatArray, FloatArray]:
     """Tension and friction along an arc with inertia and the Coulomb cap, integrated from the entry."""
     from scipy.integrate import solve_ivp
+
+    require_at_least(x=x, step_of_x=np.diff(x))
+    require_above(entry=entry, transport_speed=transport_speed, radius=radius)
+    require_at_least(mass=mass, friction=friction, creep_rate_factor=creep_rate_factor)
 
     def friction_force(force: FloatArray, g: FloatArray) -> FloatArray:
         pressing = (force - mass * transport_speed**2 * g) * g / radius
@@ -269,6 +300,8 @@ class SlidingBelt(NamedTuple):
 
 def flutter_at(belt: SlidingBelt, wave_number: float) -> Flutter:
     """The wave of a wave number q (1/m) that grows fastest, running either way."""
+    require_above(mass_per_length=belt.mass_per_length, axial_stiffness=belt.axial_stiffness, radius=belt.radius)
+    require_at_least(stiffness=belt.stiffness, damping=belt.damping, friction=belt.friction)
     axial, radius = belt.axial_stiffness, belt.radius
     radial = np.array([belt.mass_per_length, belt.damping, belt.stiffness + axial / radius**2])
     along = np.array([belt.mass_per_length, 0.0, axial * wave_number**2])
@@ -282,6 +315,7 @@ def flutter_at(belt: SlidingBelt, wave_number: float) -> Flutter:
 
 def fastest_flutter(belt: SlidingBelt) -> Flutter:
     """The fastest growing wave on an infinite arc, a bound for partly sliding arcs."""
+    require_above(stiffness=belt.stiffness, axial_stiffness=belt.axial_stiffness)
     in_tune = np.sqrt(belt.stiffness / belt.axial_stiffness)
     waves = in_tune * np.linspace(0.0, _SHORTEST, _WAVES + 1)[1:]
     return max((flutter_at(belt, float(wave)) for wave in waves), key=lambda flutter: flutter.rate)

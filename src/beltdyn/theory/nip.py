@@ -36,6 +36,8 @@ from typing import Final
 import numpy as np
 
 from beltdyn.arrays import FloatArray
+from beltdyn.errors import ModelError
+from beltdyn.theory.ranges import require_above, require_at_least, require_at_most
 
 _POINTS = 24
 """Of quadrature over a nip."""
@@ -50,6 +52,8 @@ def cover_modulus(youngs_modulus: float, poissons_ratio: float) -> float:
     3.793
     """
     nu = poissons_ratio
+    if not -1.0 < nu < 0.5:
+        raise ModelError(f"poissons_ratio = {nu:g} is outside the range of this closed form, from -1 to below 0.5.")
     return youngs_modulus * (1.0 - nu) / ((1.0 + nu) * (1.0 - 2.0 * nu))
 
 
@@ -61,6 +65,7 @@ def series(*stiffnesses: float) -> float:
     >>> bd.theory.nip.series(3.0, 6.0)
     2.0
     """
+    require_above(stiffness=[one for one in stiffnesses if one != inf])
     compliance = sum(0.0 if one == inf else 1.0 / one for one in stiffnesses)
     return inf if compliance == 0.0 else 1.0 / compliance
 
@@ -73,6 +78,7 @@ def equivalent_radius(*radii: float) -> float:
     >>> bd.theory.nip.equivalent_radius(0.1, 0.1)
     0.05
     """
+    require_above(radii=[one for one in radii if one != inf])
     return 1.0 / sum(1.0 / one for one in radii)
 
 
@@ -91,6 +97,7 @@ def half_width(indentation: float, radius: float) -> float:
     >>> bd.theory.nip.half_width(5e-4, 0.1)
     0.01
     """
+    require_at_least(indentation=indentation, radius=radius)
     return sqrt(2.0 * radius * indentation)
 
 
@@ -102,6 +109,8 @@ def plane_modulus(youngs_modulus: float, poissons_ratio: float) -> float:
     >>> round(bd.theory.nip.plane_modulus(206e9, 0.3) / 1e9, 1)
     226.4
     """
+    if not -1.0 < poissons_ratio <= 0.5:
+        raise ModelError(f"poissons_ratio = {poissons_ratio:g} is outside the range of this closed form, -1 to 0.5.")
     return youngs_modulus / (1.0 - poissons_ratio**2)
 
 
@@ -122,6 +131,9 @@ def hertz_compliance(modulus: float, radius: float, width: float) -> float:
     >>> bd.theory.nip.hertz_compliance(1e8, 0.05, 0.2)
     2.5e-16
     """
+    require_above(width=width)
+    if not modulus > 0.0:  # rigid rollers have an infinite one
+        raise ModelError(f"modulus = {modulus:g} is outside the range of this closed form: it must be above 0.")
     return 2.0 * radius / (width * modulus) ** 2
 
 
@@ -135,6 +147,8 @@ def hertz_half_width(load: float, modulus: float, radius: float) -> float:
     >>> round(bd.theory.nip.hertz_half_width(10e3, 1e8, 0.05) * 1e3, 3)  # mm
     2.523
     """
+    require_at_least(load=load, radius=radius)
+    require_above(modulus=modulus)
     return sqrt(4.0 * load * radius / (pi * modulus))
 
 
@@ -146,6 +160,8 @@ def line_force(overlap: float | FloatArray, stiffness: float, hertz: float = 0.0
     >>> float(bd.theory.nip.line_force(2e-3, 1e9, 1e-15))
     1000000.0
     """
+    require_at_least(stiffness=stiffness, hertz=hertz)
+    overlap = np.maximum(overlap, 0.0)  # apart there is no force
     return np.asarray(2.0 * stiffness * overlap / (1.0 + np.sqrt(1.0 + 4.0 * hertz * stiffness**2 * overlap)))
 
 
@@ -177,6 +193,8 @@ def indentation_of(load: float, stiffness: float, radius: float, hertz: float = 
     >>> round(bd.theory.nip.indentation_of(2000.0, 3e8, 0.1), 9)
     0.0005
     """
+    require_above(stiffness=stiffness, radius=radius)
+    require_at_least(load=load, hertz=hertz)
     soft = float((3.0 * load / (4.0 * stiffness * sqrt(2.0 * radius))) ** (2.0 / 3.0))
     if hertz == 0.0:
         return soft
@@ -209,6 +227,9 @@ def nip_damping(loss_factor: float, half_width: float, speed: float, solid: floa
     >>> round(bd.theory.nip.nip_damping(0.1, 0.01, 2.0) * 1e3, 4)  # ms
     0.1506
     """
+    require_at_least(loss_factor=loss_factor, half_width=half_width, speed=speed, solid=solid)
+    require_at_most(2.0, loss_factor=loss_factor)
+    require_at_most(1.0, solid=solid)
     if speed == 0.0 or loss_factor == 0.0:
         return 0.0
     from scipy.optimize import brentq
@@ -250,16 +271,21 @@ STRETCH_SHARE: Final = 0.5 * pi
 
 def bending_loss(bending_stiffness: float, loss_factor: float, radii: FloatArray) -> FloatArray:
     """Bending loss per meter of belt on each pulley, J/m, equal to a resisting force in N."""
+    require_above(radii=radii)
     return np.asarray(BENDING_SHARE * loss_factor * bending_stiffness / np.asarray(radii) ** 2)
 
 
 def stretch_loss(axial_stiffness: float, loss_factor: float, tight: float, slack: float) -> float:
     """Loss per meter of belt over a tension cycle from slack to tight and back, J/m."""
+    require_above(axial_stiffness=axial_stiffness)
     return BENDING_SHARE * loss_factor * (tight - slack) ** 2 / axial_stiffness
 
 
 def deepest(stiffness: float) -> float:
     """Penetration at the ends of an arc over that along the arc."""
+    require_at_least(stiffness=stiffness)
+    if stiffness == 0.0:  # a string
+        return 1.0
     first, second = np.roots([1.0, -1.0, stiffness * (1.0 + 1e-9)])  # squares of the rates of decay, in sqrt(T / E I)
     rates = np.sqrt(np.array([first, second], dtype=complex))
     parts = np.linalg.solve([np.ones(2), rates**2 + rates**3], [-1.0, -stiffness])
@@ -271,6 +297,7 @@ def compression_loss(
     tension: float, bending_stiffness: float, contact_stiffness: float, loss_factor: float, radii: FloatArray
 ) -> FloatArray:
     """Compression loss per meter of belt on each pulley, J/m."""
+    require_above(tension=tension, contact_stiffness=contact_stiffness, radii=radii)
     depth = deepest(bending_stiffness * contact_stiffness / tension**2)
     energy = (2.0 * depth**2 - 1.0) * tension**2 / contact_stiffness
     return np.asarray(BENDING_SHARE * loss_factor * energy / np.asarray(radii) ** 2)

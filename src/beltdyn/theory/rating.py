@@ -40,6 +40,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from beltdyn.arrays import FloatArray
+from beltdyn.theory.ranges import require_above, require_at_least
 
 _HALF_TURN, _BASE = 1.25, 5.0
 """Of the wrap factor in ISO 5292, which is 1 for half a turn."""
@@ -83,22 +84,27 @@ def rated_force(law: RatingLaw, diameter: FloatArray | float, speed: float) -> F
     >>> round(float(rated_force(wrapped, 0.1, speed) * speed))  # W; its table has 2410
     2421
     """
+    require_above(diameter=diameter, speed=speed)
     lost = law.bending / np.asarray(diameter) + law.centrifugal * speed**2 + law.speed * np.log10(speed)
     return np.asarray(law.force - lost)
 
 
 def ratio_factor(ratio: FloatArray | float, exponent: float) -> FloatArray:
     """Equivalent diameter K of two pulleys over the smaller diameter, for a ratio of the diameters of at least 1."""
+    require_at_least(1.0, ratio=ratio)
+    require_above(exponent=exponent)
     return np.asarray((2.0 / (1.0 + np.asarray(ratio) ** -exponent)) ** (1.0 / exponent))
 
 
 def ratio_force(law: RatingLaw, diameter: FloatArray | float, ratio: FloatArray | float, exponent: float) -> FloatArray:
     """What the rated pull gains where the other pulley is larger by the ratio, N."""
+    require_above(diameter=diameter)
     return np.asarray(law.bending / np.asarray(diameter) * (1.0 - 1.0 / ratio_factor(ratio, exponent)))
 
 
 def wrap_factor(wrap: FloatArray | float) -> FloatArray:
     """Factor on the rated power for a wrap angle in rad: 1 for half a turn, 0.82 for 120 degrees (ISO 5292)."""
+    require_at_least(wrap=wrap)
     return np.asarray(_HALF_TURN * (1.0 - _BASE ** (-np.asarray(wrap) / pi)))
 
 
@@ -126,6 +132,7 @@ def least_tension(pull: float, wrap: float, mass: float, speed: float) -> float:
     speed : float
         Of the belt, m/s.
     """
+    require_above(wrap=wrap)
     factor = float(wrap_factor(wrap))
     return 0.5 * pull * (_GRIP / factor - 1.0) + mass * speed**2
 
@@ -151,6 +158,8 @@ def mesh_factor(pitches: ArrayLike, most: float) -> FloatArray:
     >>> mesh_factor([4.9, 7.2], most=6).round(3).tolist()
     [0.667, 1.0]
     """
+    require_at_least(pitches=pitches)
+    require_above(most=most)
     return np.asarray(np.minimum(whole_teeth(pitches) / most, 1.0))
 
 
@@ -163,6 +172,7 @@ def speed_factor(speed: ArrayLike, loss: float, reference: float) -> FloatArray:
     >>> (24.7 * speed_factor([0.0, 1500.0, 10000.0], 0.324, 93.0)).round(1).tolist()  # tabulated: 24.7, 15.0, 8.4
     [24.7, 14.8, 8.4]
     """
+    require_above(reference=reference)
     return np.asarray(np.maximum(1.0 - loss * np.log10(1.0 + np.abs(speed) / reference), 0.0))
 
 

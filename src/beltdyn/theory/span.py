@@ -22,6 +22,9 @@ stretched by 2 w^2 / l, as by a bent line of two straight halves.
 from math import asin, cos, pi, sin, sqrt, tanh
 from typing import NamedTuple
 
+from beltdyn.errors import ModelError
+from beltdyn.theory.ranges import require_above, require_at_least
+
 _SMALLEST = 1e-12
 """lambda^2 below which a span is straight."""
 _SMALL = 1e-3
@@ -30,6 +33,8 @@ _SMALL = 1e-3
 
 def sag_parameter(weight: float, length: float, tension: float, axial_stiffness: float) -> float:
     """Irvine's parameter lambda^2 for the stiffening by sag, 1."""
+    require_above(length=length, tension=tension)
+    require_at_least(weight=weight, axial_stiffness=axial_stiffness)
     sag = weight * length / tension
     return sag**2 * axial_stiffness / (tension * (1.0 + sag**2 / 8.0))
 
@@ -43,6 +48,7 @@ def sag_ratio(weight: float, length: float, tension: float) -> float:
     >>> sag_ratio(1000.0, 1.2, 15e3)
     0.01
     """
+    require_above(tension=tension)
     return weight * length / (8.0 * tension)
 
 
@@ -50,12 +56,15 @@ def lowest_frequency(
     length: float, tension: float, mass: float, *, bending: float = 0.0, sag_parameter: float = 0.0
 ) -> float:
     """Lowest frequency of transverse vibration of a span in its plane, Hz."""
+    require_above(length=length, mass=mass)
+    require_at_least(tension=tension, bending=bending)
     wave = min(symmetric_root(sag_parameter), 2.0 * pi) / length
     return wave * sqrt((tension + bending * wave**2) / mass) / (2.0 * pi)
 
 
 def symmetric_root(sag_parameter: float) -> float:
     """First root k of the symmetric swing, between pi and 3 pi, by bisection."""
+    require_at_least(sag_parameter=sag_parameter)
     if sag_parameter < _SMALLEST:
         return pi
     low, high = 0.5 * pi, 1.5 * pi
@@ -86,11 +95,13 @@ def deflection_force(deflection: float, length: float, tension: float, bending: 
     >>> deflection_force(0.01, 0.5, 200.0)  # 4 T w / l of a string
     16.0
     """
+    require_above(length=length, tension=tension)
     return 4.0 * tension * deflection / length / _flexibility(length, tension, bending)
 
 
 def stretching(deflection: float, length: float) -> float:
     """How much longer a span becomes by a deflection of its middle, m."""
+    require_above(length=length)
     return 2.0 * deflection**2 / length
 
 
@@ -131,8 +142,11 @@ def hoop_stretch(
     >>> round(bd.theory.span.hoop_stretch(20.0, axial_stiffness=1e5, mass_per_length=0.1), 6)
     1.0004
     """
+    require_above(axial_stiffness=axial_stiffness)
     inertia = 2.0 * mass_per_length * transport_speed**2
-    return sqrt(1.0 + (inertia - 3.0 * bending_stiffness * turning**2) / axial_stiffness)
+    square = 1.0 + (inertia - 3.0 * bending_stiffness * turning**2) / axial_stiffness
+    require_above(square_of_stretch=square)
+    return sqrt(square)
 
 
 class OpenBelt(NamedTuple):
@@ -156,7 +170,13 @@ def open_belt(distance: float, radii: tuple[float, float]) -> OpenBelt:
     >>> round(bd.theory.span.open_belt(distance=0.4, radii=(0.05, 0.1)).length, 4)
     1.2775
     """
-    tilt = asin((radii[1] - radii[0]) / distance)
+    require_at_least(radius=radii)
+    if not distance >= abs(radii[1] - radii[0]):
+        raise ModelError(
+            f"distance = {distance:g} m is less than the difference of the radii, {radii[0]:g} and {radii[1]:g} m: a "
+            "pulley lies in the other. Increase the distance."
+        )
+    tilt = asin((radii[1] - radii[0]) / distance) if radii[1] != radii[0] else 0.0
     span = sqrt(distance**2 - (radii[1] - radii[0]) ** 2)
     wrap = (pi - 2.0 * tilt, pi + 2.0 * tilt)
     return OpenBelt(span, tilt, wrap, 2.0 * span + radii[0] * wrap[0] + radii[1] * wrap[1])

@@ -7,6 +7,7 @@ import numpy as np
 
 from beltdyn.errors import ModelError
 from beltdyn.stretch import StretchParameters
+from beltdyn.theory.ranges import require_above, require_at_least
 from beltdyn.theory.span import open_belt
 
 _DEEPEST = 0.15
@@ -54,6 +55,8 @@ def static_tension(
     """
     from scipy.optimize import brentq
 
+    require_above(length=length, contact_stiffness=contact_stiffness)
+    require_at_least(bending_stiffness=bending_stiffness)
     section = Section(law, contact_stiffness, bending_stiffness)
     belt = _Belt(length, distance, radii, section)
     rigid = float(law.tension(open_belt(distance, radii).length / length))
@@ -63,6 +66,11 @@ def static_tension(
         raise ModelError(
             f"length = {length:g} m is too long: around pulleys of {radii[0]:g} and {radii[1]:g} m at {distance:g} m "
             "the belt is slack, or too stiff in bending to follow them. Shorten it."
+        )
+    if _path(belt, most)[1] > length:
+        raise ModelError(
+            f"contact_stiffness = {contact_stiffness:g} N/m^2 is too soft for a belt of {length:g} m: it sinks in by "
+            f"more than {_DEEPEST:.0%} of the radius. Increase it, or lengthen the belt."
         )
     found = float(brentq(lambda tension: _path(belt, tension)[1] - length, least, most))
     one, other = (arc_at_rest(section, found, radius) for radius in radii)
@@ -116,18 +124,35 @@ def _path(belt: _Belt, tension: float) -> tuple[float, float]:
 def arc_at_rest(section: Section, tension: float, radius: float) -> ArcAtRest:
     """Depth, stretch and tension in the middle of an arc, under a tension of the spans (N), on a radius (m).
 
-    What the depth adds to the tension converges like d / R.
+    What the depth adds to the tension converges like d / R. ModelError where the belt is too stiff to follow the
+    radius, or contact too soft to hold it.
     """
+    require_above(tension=tension, radius=radius)
     here, depth = tension, 0.0
     for _ in range(50):
+        if here < 0.0:
+            raise ModelError(
+                f"a tension of {tension:.4g} N does not bend the belt around a radius of {1e3 * radius:.4g} mm: its "
+                f"bending stiffness of {section.bending:.4g} N m^2 takes {2.0 * section.bending / radius**2:.4g} N. "
+                "Reduce the bending stiffness or the thickness, or increase the tension or the radius."
+            )
         g = float(section.law.stretch(here))
-        depth = 0.5 * (radius - max(radius**2 - 4.0 * here * g / section.contact, 0.0) ** 0.5)
+        left = radius**2 - 4.0 * here * g / section.contact
+        if left < 0.0:
+            raise ModelError(
+                f"a contact stiffness of {section.contact:.4g} N/m^2 does not hold a belt with {here:.4g} N on a "
+                f"radius of {1e3 * radius:.4g} mm: the belt sinks in by more than half of it. Give at least "
+                f"{4.0 * here * g / radius**2:.2g} N/m^2."
+            )
+        depth = 0.5 * (radius - sqrt(left))
         here = tension + 0.5 * section.contact * depth**2 / g - 2.0 * section.bending / (radius - depth) ** 2
     return ArcAtRest(here, float(section.law.stretch(here)), depth)
 
 
 def end_of_contact(depth: float, radius: float, bend: float) -> float:
     """What an end of contact adds to the path around a radius inside of the penetration, m; bend is EI / T0, m^2."""
+    require_above(radius=radius)
+    require_at_least(depth=depth, bend=bend)
     return float(5 / 12 * depth * (radius * depth) ** 0.5 / radius + bend**1.5 / (12 * radius**2))
 
 
@@ -163,6 +188,8 @@ def span_radius(depth: float, radius: float, bend: float, wrap: float) -> float:
     >>> span_radius(0.0, 0.05, 4e-6, wrap=3.0)  # EI / 2 T R = 0.04 mm
     0.05004
     """
+    require_above(radius=radius)
+    require_at_least(bend=bend)
     length = sqrt(bend)
     bent = min(0.5 * wrap, length / radius)
     return radius - 0.5 * depth + bent * (length - 0.5 * radius * bent)
@@ -177,6 +204,9 @@ def stretch_with_penetration(length: float, path: float, law: StretchParameters,
     >>> round(bd.theory.static_tension.stretch_with_penetration(1.0, 1.01, Linear(1e4), sinking=1e-5), 6)
     1.009083
     """
+    require_above(length=length)
+    require_at_least(length, path=path)
+    require_at_least(sinking=sinking)
     lower, upper = 1.0, path / length
     g = upper
     while True:

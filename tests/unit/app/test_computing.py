@@ -6,6 +6,7 @@ from pathlib import Path
 import psutil
 import pytest
 
+from beltdyn.app import computing
 from beltdyn.app.computing import Answer, Asked, Calculator, answer, given_speed
 from beltdyn.model import Drive
 from beltdyn.show.sheet import Facts, Table
@@ -93,3 +94,11 @@ def test_facts_travel_between_processes() -> None:
 
     sent = Answer((Facts((("a", "b"),), "t"),), ("w",), "", 1.0)
     assert pickle.loads(pickle.dumps(sent)) == sent
+
+
+def test_an_equilibrium_that_takes_too_long_is_a_closed_form(drive_text: str, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(computing, "_LONGEST_SEARCH", 0.0)
+    found = answer(Asked("running", "slow", drive_text, HERE))
+    assert found.error == ""
+    assert found.warnings[0].startswith("no equilibrium is known: the search was ended after 0 s")
+    assert table(found, "Spans at rest")

@@ -93,3 +93,17 @@ def test_where_lines_find_no_path_there_is_no_closed_form_with_bending() -> None
     prepared = prepare(Drive(**layout_at_rest(325)))
     assert tightening(prepared) is None
     assert estimate_at_rest(prepared)[1].path.length == pytest.approx(prepared.path.length)
+    assert "no common tangent" in estimate_at_rest(prepared)[1].limitation
+
+
+@pytest.mark.parametrize("thickness", [0.003, 0.01, 0.03, 0.1, 0.3])
+def test_a_belt_too_stiff_to_bend_is_said_to_be_so(drive: Drive, thickness: float) -> None:
+    """A thickness in the wrong unit: the arcs would be under compression."""
+    prepared = prepare(drive.with_({"belt.thickness": thickness}))
+    found = estimate_at_rest(prepared)[1]
+    needed = 2.0 * prepared.belt.bending_stiffness / float(prepared.radii.min()) ** 2
+    assert found.tension > 0.0
+    assert (found.limitation != "") == (needed > 1.1 * found.tension)
+    if found.limitation:
+        assert "bending stiffness" in found.limitation
+        assert found.tension == prepared.installation.tension

@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 
 import beltdyn as bd
+import beltdyn.points.tensioner_sheet as sheet_module
 from beltdyn.errors import ModelError
 from beltdyn.model import Drive, load, loads, prepare
 from beltdyn.model.carrier import moved
@@ -139,3 +140,12 @@ def test_what_has_no_sheet(slide: Drive, drive: Drive) -> None:
         tensioner_sheet(slide, tolerance="3")
     with pytest.raises(ModelError, match="wear = '-1 %' must be non-negative"):
         tensioner_sheet(slide, wear="-1 %")
+
+
+def test_once_the_search_takes_too_long_states_are_closed_forms(slide: Drive, monkeypatch: pytest.MonkeyPatch) -> None:
+    computed = tensioner_sheet(slide).dataset
+    monkeypatch.setattr(sheet_module, "_LONGEST_SEARCH", 0.0)
+    closed = tensioner_sheet(slide)
+    assert "was ended after 0 s of processor time" in closed.warnings[0]
+    assert closed.dataset.state.values.tolist() == computed.state.values.tolist()
+    np.testing.assert_allclose(closed.dataset.tension, computed.tension, rtol=0.01, atol=1e-9)

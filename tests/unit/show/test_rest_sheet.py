@@ -84,3 +84,22 @@ def test_equilibrium_is_computed_where_its_kernels_are_compiled(drive: Drive) ->
     said = str(bd.check(drive, equilibrium=False))
     assert "closed form, within 1 %" in said
     assert "computed" in str(bd.check(drive, equilibrium=True))
+
+
+def test_a_search_that_takes_too_long_leaves_closed_forms_and_says_so(
+    drive: Drive, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(check_module, "is_compiled", lambda _: True)
+    monkeypatch.setattr(check_module, "_LONGEST_SEARCH", 0.0)
+    checked = bd.check(drive)
+    assert (checked.computed, checked.failure) == (False, None)
+    assert checked.warnings[0].startswith("no static equilibrium is known: the search was ended after 0 s")
+    assert checked.installation.tension == bd.check(drive, equilibrium=False).installation.tension
+    assert bd.check(drive, equilibrium=True).computed  # that was asked for
+
+
+def test_closed_forms_that_do_not_hold_are_named(drive: Drive) -> None:
+    checked = bd.check(drive.with_({"belt.thickness": 0.3}), equilibrium=False)
+    assert "closed forms with bending stiffness and weight do not hold" in str(checked)
+    assert "without bending stiffness and weight" in str(checked.sheet)
+    assert "do not hold" not in str(bd.check(drive, equilibrium=False))
