@@ -13,11 +13,14 @@ from pathlib import Path
 
 import pytest
 
+import beltdyn as bd
 from beltdyn.cli.app import app
 from beltdyn.errors import BeltdynError, ModelError
 from beltdyn.model import Drive, loads
 from tools.campaign import damage, hostile
-from tools.campaign.__main__ import odd, report
+from tools.campaign.__main__ import examples, odd, report
+from tools.campaign.crossed_examples import crossed
+from tools.campaign.crossing import CONSUMERS, OF_RUNS, with_gaps
 from tools.campaign.drive_mutations import bases
 from tools.campaign.mutants import balance, look, try_mutant
 from tools.campaign.odd_drives import odd_drive
@@ -94,6 +97,37 @@ def test_every_command_exists(tmp_path: Path) -> None:
         (tmp_path / str(number)).mkdir()
     words = {words_of(tmp_path / str(number))[0] for number, (_, words_of) in enumerate(cases)}
     assert words <= set(app)
+
+
+def test_every_consumer_reads_a_drive_at_rest(tmp_path: Path) -> None:
+    """Or refuses it with the reason; the slow test has all results."""
+    rest = bd.equilibrium(bd.example("two_pulley"))
+    consumers = {name: use for name, use in CONSUMERS.items() if name != "analyses of results"}
+    ends = {name: outcome(partial(use, rest, tmp_path)) for name, use in consumers.items()}
+    assert {name: end for name, end in ends.items() if end[0] not in ("fine", "refused")} == {}
+    assert {name for name, end in ends.items() if end[0] == "refused"} == {"export to vtk"}
+
+
+def test_gaps_without_a_word_are_noticed(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """A panel without values, a number that is none, and an exception that no refusal is."""
+    found = bd.tensioner_sheet(bd.example("alternator_drive"), tolerance="1 mm", wear="2 mm")
+    assert found.dataset["failure"].dims == ("state",)
+    lost = next(
+        one for one in (with_gaps(found, seed) for seed in range(99)) if one and (one.dataset.failure != "").all()
+    )
+    assert CONSUMERS["every figure"](lost, tmp_path) == ""
+    monkeypatch.setattr("beltdyn.show.plot.figures.explain_empty", lambda *_: None)
+    assert "panels are empty without a word" in CONSUMERS["every figure"](lost, tmp_path)
+    monkeypatch.setattr("tools.campaign.crossing.as_text", lambda _: "rating used: nan%")
+    assert CONSUMERS["sheet"](found, tmp_path) == "says 'rating used: nan%'"
+    monkeypatch.setitem(OF_RUNS, "summarize", lambda run: {}[run])
+    assert "summarize: KeyError" in CONSUMERS["derived quantities"](found, tmp_path)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("name", examples("all"))
+def test_every_consumer_reads_every_result(name: str, tmp_path: Path) -> None:
+    assert report(name, crossed(1, [name], tmp_path)) == 0
 
 
 @pytest.mark.slow

@@ -16,6 +16,7 @@ from collections import Counter
 from collections.abc import Iterator
 from contextlib import suppress
 from functools import partial
+from importlib.resources import files
 from pathlib import Path
 from random import Random
 
@@ -26,6 +27,7 @@ from beltdyn.model import Drive
 from beltdyn.transient.simulate import simulate
 from tools.campaign import damage, hostile, kills
 from tools.campaign.analyses import WORKS
+from tools.campaign.crossed_examples import crossed
 from tools.campaign.drive_mutations import bases
 from tools.campaign.mutants import try_mutant
 from tools.campaign.odd_drives import odd_drive
@@ -112,6 +114,7 @@ def main(words: list[str] | None = None) -> int:
             "damaged files": damaged(asked.seed, asked.damaged, folder) if asked.damaged else iter(()),
             "killed and resumed runs": killed(asked.seed, asked.kills, folder) if asked.kills else iter(()),
             "odd drives, analyses": odd(asked.seed, asked.odd, folder) if asked.odd else iter(()),
+            "results, consumers": crossed(asked.seed, examples(asked.examples), _emptied(folder / "crossed")),
         }
         ended = [report(name, trials) for name, trials in parts.items()]
         return max(ended)
@@ -128,10 +131,10 @@ def report(name: str, trials: Iterator[Trial]) -> int:
             wrong.append(f"{label}: {outcome.kind}: {outcome.text}")
     if not counts:
         return 0
-    silent = sum("silent" in one or "differs" in one for one in wrong)
+    silent = sum("silent" in one or "differs" in one or "no word" in one for one in wrong)
     print(
         f"{name}: {counts.total()} tried, {counts['fine']} taken, {counts['refused']} refused, "
-        f"{sum(counts[kind] for kind in FAULTS) - silent} tracebacks or faults, {silent} silently changed, "
+        f"{sum(counts[kind] for kind in FAULTS) - silent} tracebacks or faults, {silent} silent, "
         f"{counts['too long']} longer than {_LONGEST:g} s; the longest {slowest[0]:.2f} s ({slowest[1]}), "
         f"{total:.0f} s in all",
         flush=True,
@@ -139,6 +142,13 @@ def report(name: str, trials: Iterator[Trial]) -> int:
     for one in wrong[:_SHOWN]:
         print(f"    {one}", flush=True)
     return int(bool(wrong))
+
+
+def examples(names: str) -> list[str]:
+    """Names of examples, separated by commas, or all."""
+    if names == "all":
+        return sorted(one.name.removesuffix(".toml") for one in files("beltdyn").joinpath("examples").iterdir())
+    return [name.strip() for name in names.split(",") if name.strip()]
 
 
 def _usual() -> Drive:
@@ -162,6 +172,7 @@ def _parser() -> argparse.ArgumentParser:
     parser.add_argument("--damaged", type=int, default=140, help="damaged files")
     parser.add_argument("--odd", type=int, default=51, help="analyses of odd drives")
     parser.add_argument("--kills", type=int, default=4, help="runs that are killed")
+    parser.add_argument("--examples", default="", help="examples whose results all consumers read; all for every one")
     parser.add_argument("--hostile", action=argparse.BooleanOptionalAction, default=True, help="try hostile files")
     return parser
 

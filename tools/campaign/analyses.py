@@ -11,14 +11,15 @@ from beltdyn.model.parameter_study import CalibrationStudy, OptimizationStudy
 Work = Callable[[Drive, Path], object]
 
 
-def _table(folder: Path) -> Path:
+def table_in(folder: Path) -> Path:
+    """A duty table in a folder."""
     table = folder / "duty.csv"
     table.write_text("duration [s], load\n1, 0.5\n1, 0\n0, 2\n", encoding="utf-8")
     return table
 
 
 def _duty(drive: Drive, folder: Path) -> object:
-    return bd.duty(drive, table=_table(folder))
+    return bd.duty(drive, table=table_in(folder))
 
 
 def _optimized(drive: Drive, folder: Path) -> object:
@@ -46,12 +47,13 @@ def _studied(drive: Drive, folder: Path) -> object:
     return bd.study(points, drive, jobs=1, output=folder / "study.nc")
 
 
-def _driver(drive: Drive) -> str:
+def driver_name(drive: Drive) -> str:
+    """Name of the pulley with a prescribed speed, or of the first."""
     return next((one.name for one in drive.pulleys if one.prescribed), drive.pulleys[0].name)
 
 
 def _lives(drive: Drive, folder: Path) -> object:
-    return bd.life(drive, table=_table(folder))
+    return bd.life(drive, table=table_in(folder))
 
 
 def _as_it_is(analysis: Analysis) -> Work:
@@ -63,7 +65,7 @@ WORKS: dict[str, Work] = {one.command: _as_it_is(one) for one in ANALYSES.values
     "check by closed forms": lambda drive, _: str(bd.check(drive, equilibrium=False)),
     "simulate": lambda drive, folder: bd.simulate(drive, output=folder / "run.nc"),
     "sweep": lambda drive, _: bd.sweep(
-        drive, pulley=_driver(drive), from_="50 rad/s", to="100 rad/s", duration=0.02, settling=0.01
+        drive, pulley=driver_name(drive), from_="50 rad/s", to="100 rad/s", duration=0.02, settling=0.01
     ),
     "operating-map": lambda drive, folder: bd.operating_map(
         drive, speed="0, 500, 1e5 rpm", load="0, 1", output=folder / "map.nc"
@@ -71,7 +73,7 @@ WORKS: dict[str, Work] = {one.command: _as_it_is(one) for one in ANALYSES.values
     "traction": lambda drive, _: bd.traction(drive, pulley=drive.pulleys[-1].name, slip="0, 0.2, 5 %"),
     "duty": _duty,
     "life": _lives,
-    "sheet": lambda drive, folder: bd.sheet(drive, table=_table(folder), points=3),
+    "sheet": lambda drive, folder: bd.sheet(drive, table=table_in(folder), points=3),
     "sensitivity": lambda drive, _: bd.sensitivity(
         drive, numbers=f"belt.width, pulley[{drive.pulleys[0].name}].radius"
     ),

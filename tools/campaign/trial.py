@@ -11,7 +11,7 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
 
-from beltdyn.errors import BeltdynError
+from beltdyn.errors import BeltdynError, InternalError
 
 EXIT_CODES = frozenset({0, 2, 3, 4})
 """Those of the command line, in the end of an analysis and in refusals."""
@@ -83,6 +83,8 @@ def outcome(work: Callable[[], str]) -> tuple[str, str]:
     """Kind and text of what comes of some work."""
     try:
         fault = work()
+    except InternalError as error:
+        return "traceback", str(error)[:200]
     except BeltdynError as error:
         length = len(str(error))
         return ("refused", str(error)[:200]) if 0 < length < _LONGEST_MESSAGE else ("fault", f"a message of {length}")

@@ -13,7 +13,7 @@ from beltdyn.designs.named_results import need_bands
 from beltdyn.errors import ConvergenceError, ModelError, cause_of
 from beltdyn.model import Drive, prepare
 from beltdyn.model.parameter_study import FreeNumber, Points
-from beltdyn.parts.change import converted, require_distinct, unit_at, value_at
+from beltdyn.parts.change import converted, number_path, require_distinct, unit_at, value_at
 from beltdyn.state.search import go_on
 from beltdyn.state.staying import Standing, bring_to_stand, stand_like
 from beltdyn.state.steady import Beside, steady_beside, steady_from
@@ -92,7 +92,8 @@ def free_numbers(drive: Drive, given: Sequence[FreeNumber]) -> tuple[Free, ...]:
 
 def _free_number(drive: Drive, given: FreeNumber) -> Free:
     """A number of a study in SI units."""
-    path, start = given.path, value_at(drive, given.path)
+    path = number_path(drive, given.path)
+    start = value_at(drive, path)
     if isinstance(start, bool) or not isinstance(start, float):
         told = "is not given in the drive file" if start is None else f"= {start!r} is not a continuous number"
         raise ModelError(f"number {path} {told}. Give a number as the starting value.")

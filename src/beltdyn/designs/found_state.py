@@ -9,6 +9,7 @@ import numpy as np
 
 from beltdyn.arrays import ComplexArray, FloatArray
 from beltdyn.designs.named_results import MODES, OF_MODES, name_of, values_of, variable_and_label
+from beltdyn.errors import ModelError
 from beltdyn.model import Drive, prepare
 from beltdyn.points.operating_points import computed_with, labels_of
 from beltdyn.results import Run
@@ -338,6 +339,15 @@ class Running(FoundState):
     def of(self, found: Beside, near: FoundState | None) -> "Running":
         """Another state that was found on the same mesh; parameters as for this one."""
         return Running(found.run(bands=self._bands), near, bands=self._bands)
+
+
+def require_closed_at_rest(drive: Drive, analysis: str) -> None:
+    """Make sure that states at rest can be followed on a mesh that stays: the belt has no free ends."""
+    if drive.ends and not drive.is_web:
+        raise ModelError(
+            f"{analysis} needs a closed belt, whose mesh stays while numbers change; this belt is open. Use `beltdyn "
+            'study` with analysis = "equilibrium".'
+        )
 
 
 class Resting(FoundState):

@@ -10,6 +10,7 @@ import numpy as np
 from beltdyn.arrays import FloatArray
 from beltdyn.designs.batch import OperatingPoint, named
 from beltdyn.designs.designs import Design, Designs, Free
+from beltdyn.designs.found_state import require_closed_at_rest
 from beltdyn.designs.named_results import names_of, unit_of
 from beltdyn.errors import ConvergenceError, InternalError, ModelError, is_internal
 from beltdyn.model import Drive
@@ -53,7 +54,7 @@ class MeasuredTable(NamedTuple):
         return {one.path: one.values[row] for one in self.conditions}
 
 
-def read_measured(path: Path, drive: Drive) -> MeasuredTable:
+def read_measured(path: Path, drive: Drive, *, at_rest: bool = False) -> MeasuredTable:
     """Read a table of measured results.
 
     Headings are those of a duty table, paths of numbers, names of results, and results with ± before for standard
@@ -61,7 +62,7 @@ def read_measured(path: Path, drive: Drive) -> MeasuredTable:
     """
     table = MeasuredTable([], [], {}, {})
     for column in read_headed("table", path):
-        _take(table, column, drive)
+        _take(table, column, drive, names_of(drive, at_rest=at_rest))
     require_distinct(drive, [one.path for one in table.conditions], f"{path}: the heading")
     if not table.results:
         raise ModelError(
@@ -76,9 +77,9 @@ def read_measured(path: Path, drive: Drive) -> MeasuredTable:
     return table
 
 
-def _take(table: MeasuredTable, column: HeadedColumn, drive: Drive) -> None:
+def _take(table: MeasuredTable, column: HeadedColumn, drive: Drive, known: list[str]) -> None:
     """Take a column into a table."""
-    known, path = names_of(drive), column.path
+    path = column.path
     of_deviations, given = (
         column.what.startswith(_DEVIATION),
         column._replace(what=column.what.lstrip(f"{_DEVIATION} ")),
@@ -152,7 +153,11 @@ class Residuals:
         progress: Report | None,
     ) -> None:
         self._numbers, self._progress, self._count = numbers, progress, 0
-        tables = [(one, read_measured(base / one.table, drive)) for one in study.measurements]
+        if any(one.state == "rest" for one in study.measurements):
+            require_closed_at_rest(drive, "a calibration at rest")
+        tables = [
+            (one, read_measured(base / one.table, drive, at_rest=one.state == "rest")) for one in study.measurements
+        ]
         self.known = _deviations_are_known(study.measurements, [table for _, table in tables])
         self.series = [
             series

@@ -15,7 +15,7 @@ from beltdyn.arrays import FloatArray
 from beltdyn.errors import ModelError
 from beltdyn.model import Drive, ParameterStudy
 from beltdyn.model.parameter_study import SAMPLED, VariedNumber
-from beltdyn.parts.change import converted, require_distinct, unit_at, value_at
+from beltdyn.parts.change import converted, number_path, require_distinct, unit_at, value_at
 from beltdyn.parts.quantity import numbers_in
 from beltdyn.parts.table_file import HeadedColumn, read_headed
 
@@ -88,7 +88,10 @@ class Plan:
 
 def plan_of(study: ParameterStudy, drive: Drive, base: Path) -> Plan:
     """Lay out the points of a study."""
-    columns = read_headed("table", base / study.table) if study.table is not None else []
+    table = read_headed("table", base / study.table) if study.table is not None else []
+    columns = [column._replace(what=number_path(drive, column.what)) for column in table]
+    if study.numbers:
+        study = study.replace(number=[one.replace(path=number_path(drive, one.path)) for one in study.numbers])
     paths = tuple(column.what for column in columns) or tuple(one.path for one in study.numbers)
     require_distinct(drive, paths)
     units, given = tuple(_unit(drive, path) for path in paths), tuple(value_at(drive, path) for path in paths)

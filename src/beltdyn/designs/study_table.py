@@ -160,6 +160,8 @@ def _as_lines(rows: Sequence[Sequence[str]]) -> str:
 _POINT = ("point",)
 _OFTEN, _SHARE = 2.0, 20.0
 """Least time between two writings of the result file, s, and times that a writing takes."""
+_MOST_NAMES = 6
+"""Results without a value that are named."""
 _COMPUTING = "computing"
 """Attribute: what tells apart what is computed at a point."""
 
@@ -355,11 +357,20 @@ class StudyTable:
         said = _grouped(failed, lambda point: [str(self._texts["failure"][point]).splitlines()[0]])
         found = [f"{len(failed)} of {int(self.done.sum())} points failed."] if len(failed) else []
         found += [f"failed at {where}: {text}" for where, text in said]
+        found += self._unknown(len(failed))
         warned = np.flatnonzero(self._texts["warnings"] != "")
         return found + [
             f"at {where}: {text}"
             for where, text in _grouped(warned, lambda point: str(self._texts["warnings"][point]).splitlines())
         ]
+
+    def _unknown(self, failed: int) -> list[str]:
+        """Results without a value at any of the points that did not fail."""
+        names = [name for name, values in self._values.items() if np.isnan(values).all()]
+        if not names or failed == self.done.sum():
+            return []
+        more = f" and {len(names) - _MOST_NAMES} more" if len(names) > _MOST_NAMES else ""
+        return [f"no value at any point: {', '.join(names[:_MOST_NAMES])}{more}."]
 
     def _save(self) -> None:
         """Write the result file, if one is named."""

@@ -49,6 +49,18 @@ def unit_at(part: Part, path: str) -> str:
     return unit
 
 
+def number_path(part: Part, path: str) -> str:
+    """The path of a number that a study varies: that of a constant in place of a profile is the path of its value."""
+    value = value_at(part, path)
+    if not isinstance(value, Part):
+        return path
+    if getattr(value, "kind", "") == "constant":
+        return f"{path}.value"
+    numbers = [f"{path}.{key}" for key, one in value.arguments.items() if isinstance(one, float)]
+    remedy = f"Give the path of a number in it: {', '.join(numbers)}." if numbers else "Give the path of a number."
+    raise ModelError(f"{path} is a group of keys, not a number. {remedy}")
+
+
 def as_argument(part: Part, path: str, size: float) -> tuple[str, float]:
     """A toleranced number as the argument that replaces it: for a diameter, the radius with half the tolerance."""
     inner, steps = _innermost(part, path)

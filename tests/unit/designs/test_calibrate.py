@@ -1,5 +1,6 @@
 """Calibrations find the numbers with which measurements were made."""
 
+from importlib.resources import files
 from pathlib import Path
 from types import SimpleNamespace
 from typing import Any
@@ -15,6 +16,7 @@ from beltdyn.errors import ModelError
 from beltdyn.model import CalibrationStudy, Drive, loads, prepare
 from beltdyn.results import Result, open_result, summarize
 from beltdyn.solvers.run_progress import Progress
+from beltdyn.state.equilibrium import equilibrium
 from beltdyn.state.staying import bring_to_stand
 from beltdyn.state.steady import steady_state
 from validation.published.cases import better, loaded_two_pulley
@@ -201,3 +203,26 @@ def test_a_result_is_shown(drive: Drive, slips: FloatArray, tmp_path: Path) -> N
     found: Result = calibrate(drive, study=study_file(tmp_path))
     assert found.kind == "calibrate"
     assert "calibrated with 5 measured values, intervals of 95%" in str(found.dataset.attrs["title"])
+
+
+def test_tension_and_length_at_rest_are_fitted(tmp_path: Path, drive: Drive) -> None:
+    """The stiffness with which a belt of a length has a tension."""
+    given = drive.replace(belt=drive.belt.replace(length=None, installed_tension=600.0))
+    rest = equilibrium(given.with_({"belt.youngs_modulus": TRUE_MODULUS}))
+    length, tension = (float(rest.dataset[name]) for name in ("belt_length", "tension"))
+    (tmp_path / "rest.csv").write_text(f"tension [N], belt_length [m]\n{tension}, {length!r}\n", encoding="utf-8")
+    table = str(tmp_path / "rest.csv")
+    study = CalibrationStudy(number=[MODULUS], measurement=[{"table": table, "state": "rest"}])
+    found = calibrate(given, study=study)
+    assert float(found.dataset["fitted"][0]) == pytest.approx(TRUE_MODULUS, rel=1e-3)
+    with pytest.raises(ModelError, match='"tension" is not a result'):
+        calibrate(given, study=CalibrationStudy(number=[MODULUS], measurement=[{"table": table}]))
+
+
+def test_an_open_belt_is_not_calibrated_at_rest(tmp_path: Path) -> None:
+    text = files("beltdyn").joinpath("examples", "band_brake.toml").read_text(encoding="utf-8")
+    (tmp_path / "rest.csv").write_text("tension [N]\n100\n", encoding="utf-8")
+    width = {"path": "belt.width", "least": "10 mm", "largest": "100 mm"}
+    study = CalibrationStudy(number=[width], measurement=[{"table": str(tmp_path / "rest.csv"), "state": "rest"}])
+    with pytest.raises(ModelError, match="a calibration at rest needs a closed belt"):
+        calibrate(loads(text), study=study)

@@ -126,6 +126,17 @@ def test_spans_swing_with_the_root_of_the_tension(at_rest: Result) -> None:
         assert float(effect.sel(number="belt.installed_tension") / value) == pytest.approx(0.005, rel=0.1)
 
 
+def test_an_open_belt_at_rest_has_another_analysis() -> None:
+    text = files("beltdyn").joinpath("examples", "band_brake.toml").read_text(encoding="utf-8")
+    with pytest.raises(ModelError, match=r'a sensitivity at rest needs a closed belt.*analysis = "equilibrium"'):
+        sensitivity(loads(text), about="rest", of="tension")
+
+
+def test_the_speed_of_a_driver_is_a_number(loaded: Drive) -> None:
+    constant = loaded.with_({"pulley[driver].speed": 100.0})
+    assert [one.path for one in chosen_numbers(constant, "pulley[driver].speed", {})] == ["pulley[driver].speed.value"]
+
+
 def test_results_without_a_value_are_told(loaded: Drive) -> None:
     idle = loaded.with_({"pulley[driven].torque": 0.0})
     with pytest.raises(ModelError, match=r"slip_safety\[driven\] has no value"):

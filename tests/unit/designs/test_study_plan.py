@@ -27,6 +27,24 @@ def test_all_combinations_in_si_units(drive: Drive) -> None:
     assert found.base == (0.01, 12.0)
 
 
+def test_a_constant_in_place_of_a_profile_is_its_value(drive: Drive) -> None:
+    """The example has ramps, with several numbers each."""
+    constant = drive.with_({"pulley[driver].speed": 12.0, "pulley[driven].torque": -1.0})
+    found = plan(
+        constant,
+        {"path": "pulley[driver].speed", "values": "100..120 rpm", "steps": 2},
+        {"path": "pulley[2].torque", "values": ["-1 N m", -2.0]},
+    )
+    assert (found.paths, found.units) == (("pulley[driver].speed.value", "pulley[2].torque.value"), ("rad/s", "N*m"))
+    assert found.values[0].tolist() == pytest.approx([10.471976, -1.0])
+    assert found.base == (12.0, -1.0)
+    for values in ("100..120 rpm", [10.0, 12.0]):
+        with pytest.raises(
+            ModelError, match=r"driver\]\.speed is a group of keys.*: .*pulley\[driver\]\.speed\.value\.$"
+        ):
+            plan(drive, {"path": "pulley[driver].speed", "values": values})
+
+
 def test_values_of_a_list_stand_as_in_a_drive_file(drive: Drive) -> None:
     found = plan(
         drive,

@@ -114,9 +114,10 @@ _WARNED = {"slip_safety": 1.5, "jump_margin": LIFTS}
 
 
 def _all_panels(draw: Callable[..., Axes], result: Result, choice: Choice) -> Figure:
-    """Lay out a panel for each variable."""
-    there = [name for name in _UNITS if name in result.dataset and result.dataset[name].notnull().any()]
-    page = panels(rows([partial(draw, result, name) for name in there]), sharey=False)
+    """Lay out a panel for each variable with a value; the first one where there is none."""
+    drawn = [name for name in _UNITS if name in result.dataset]
+    known = [name for name in drawn if result.dataset[name].notnull().any()] or drawn[:1]
+    page = panels(rows([partial(draw, result, name) for name in known]), sharey=False)
     name_once(page)
     return page
 

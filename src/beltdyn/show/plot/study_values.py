@@ -103,10 +103,9 @@ def known_results(result: Result) -> list[str]:
     """Results that are known somewhere; an error where there are none."""
     names = results_of(result)
     if not names:
-        why = first_failure(result)
-        raise ModelError(
-            f"there is nothing to draw: no result has a value. {gaps(result)}{'. The first: ' if why else ''}{why}"
-        )
+        failed, why = gaps(result), first_failure(result)
+        first = f" The first: {why}" if why else ""
+        raise ModelError(f"there is nothing to draw: no result has a value.{f' {failed}.' if failed else ''}{first}")
     return names
 
 

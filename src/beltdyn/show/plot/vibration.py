@@ -282,7 +282,7 @@ def campbell(result: Result, ax: Axes | None = None) -> Axes:
     """
     dataset, ax = result.dataset, axes_or_new(ax)
     speed, frequency = RPM * dataset["speed"].values, dataset["frequency"].values
-    top = _ABOVE * float(np.nanmax(frequency))
+    top = _ABOVE * float(np.nanmax(frequency)) if np.isfinite(frequency).any() else 1.0
     for line, name in zip(dataset["excitation_frequency"].values.T, dataset["excitation"].values, strict=True):
         ax.plot(speed, line, color=_EXCITED, linewidth=0.8, zorder=1)
         _name_line(ax, speed, line, top, str(name))
@@ -330,9 +330,11 @@ def _draw_modes(ax: Axes, result: Result, speed: FloatArray, values: FloatArray)
     dataset = result.dataset
     for column, (mode, kind) in enumerate(zip(dataset["mode"].values, dataset["kind"].values, strict=True)):
         line, tint = values[:, column], color(KINDS.index(str(kind)))
-        alone = np.isfinite(line).sum() == 1
-        ax.plot(speed, line, color=tint, linewidth=1.5, marker="." if alone else None, zorder=2)
-        last = np.flatnonzero(np.isfinite(line))[-1]
+        known = np.flatnonzero(np.isfinite(line))
+        if not known.size:
+            continue
+        ax.plot(speed, line, color=tint, linewidth=1.5, marker="." if known.size == 1 else None, zorder=2)
+        last = known[-1]
         ax.annotate(str(mode), (speed[last], line[last]), (3, 0), textcoords="offset points", color=tint, fontsize=8)
         grows = dataset["growth_rate"].values[:, column] > 0.0
         ax.plot(speed[grows], line[grows], color=INK, linestyle="", marker="x", markersize=5, zorder=3)
@@ -341,6 +343,8 @@ def _draw_modes(ax: Axes, result: Result, speed: FloatArray, values: FloatArray)
 def _name_line(ax: Axes, speed: FloatArray, line: FloatArray, top: float, name: str) -> None:
     """Write the name of an excitation along its line, where it leaves the axes."""
     known = np.isfinite(line)
+    if not known.any():
+        return
     fine = np.linspace(speed[0], speed[-1], _FINE)
     along = np.interp(fine, speed[known], line[known])
     inside = np.flatnonzero(along <= top)

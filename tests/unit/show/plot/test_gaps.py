@@ -205,6 +205,14 @@ def test_nothing_known_says_why(make: Make, tmp_path: Path) -> None:
     assert "nothing to draw" in write_report(result, tmp_path / "report.html").read_text("utf-8")
 
 
+def test_results_without_a_value_at_any_point_are_named(make: Make, tmp_path: Path) -> None:
+    result = make(NUMBERS[0], unknown=1.0)
+    assert result.warnings == ["no value at any point: stiffness, speed, level."]
+    with pytest.raises(ModelError, match="nothing to draw"):
+        plot.study_lines(result)
+    assert make(NUMBERS[0]).warnings == []
+
+
 def test_a_study_of_one_point_names_its_figures(make: Make, tmp_path: Path) -> None:
     with pytest.raises(ModelError, match=r"no figure of study is drawn by default here. Choose some of"):
         plot.save_all(make({"path": "belt.width", "values": [0.01]}), tmp_path)
