@@ -1,6 +1,6 @@
 """Drives drawn at random: 2 to 9 pulleys, idlers of small wrap, spring tensioners, both senses."""
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from math import cos, pi, radians, sin
 from typing import Any, NamedTuple
 
@@ -11,7 +11,7 @@ from beltdyn.arrays import FloatArray
 from beltdyn.errors import BeltdynError
 from beltdyn.machines import Constant
 from beltdyn.model import Drive, Path
-from tests.lumped.lumped_balance import Limit, LumpedBalance
+from tests.lumped.lumped_balance import Limit, LumpedBalance, Route
 
 SEED = 34
 _MOST_SWING = 0.6
@@ -57,9 +57,19 @@ class Ring(NamedTuple):
 def drawn_drive(seed: int) -> Drawn:
     """The drive of a seed; draws that do not fit are thrown away."""
     rng, count = np.random.default_rng([SEED, seed]), 2 + seed % 8
+    return _first_that_fits(lambda: _draw(rng, count, None))
+
+
+def drawn_arm_drive(seed: int) -> Drawn:
+    """The drive of a seed whose tensioner moves far, up to where it loses its balance, with dry friction and stops."""
+    rng, count = np.random.default_rng([SEED, 3, seed]), 3 + seed % 6
+    return _first_that_fits(lambda: _draw(rng, count, _as_arm))
+
+
+def _first_that_fits(draw: Callable[[], Drawn | None]) -> Drawn:
     while True:
         try:
-            found = _draw(rng, count)
+            found = draw()
         except (BeltdynError, ValueError, ArithmeticError):
             continue
         if found is not None:
@@ -121,7 +131,11 @@ def _inserted(ring: Ring, span: int, radius: float, wrap: float, part: float) ->
     return at(brentq(missing, 0.0, 1.3 * about, xtol=1e-12))
 
 
-def _draw(rng: np.random.Generator, count: int) -> Drawn | None:
+Moved = Callable[[np.random.Generator, dict[str, Any], float], dict[str, Any]]
+"""From a tensioner, and the radius of its pulley (m), to one that moves far."""
+
+
+def _draw(rng: np.random.Generator, count: int, moved: Moved | None) -> Drawn | None:
     def between(low: float, high: float) -> float:
         return float(np.exp(rng.uniform(np.log(low), np.log(high))))
 
@@ -135,6 +149,8 @@ def _draw(rng: np.random.Generator, count: int) -> Drawn | None:
         return None
     tension = 300.0 * (small / 0.03) ** 1.5 * between(0.4, 2.5)
     strain, friction = between(1e-3, 8e-3), rng.uniform(0.25, 0.9)
+    if moved is not None:  # grooves that wedge the belt, and belts that stretch, let tensioners move far
+        strain, friction = 1.5 * strain, 2.0 * friction
     least = float(np.min(np.abs(ring.radii)))
     thickness = rng.uniform(0.03, 0.12) * least
     mass = 1200.0 * 5.0 * thickness**2
@@ -154,6 +170,10 @@ def _draw(rng: np.random.Generator, count: int) -> Drawn | None:
         "length": path.length / (1.0 + strain),
     }
     tensioner = [] if carried is None else [tensioner_for(rng, path, carried, tension)]
+    if moved is not None:
+        if carried is None:
+            return None
+        tensioner = [moved(rng, tensioner[0], abs(float(ring.radii[carried])))]
 
     def drive(force: float) -> Drive:
         pulleys: list[dict[str, Any]] = [
@@ -181,7 +201,7 @@ def _draw(rng: np.random.Generator, count: int) -> Drawn | None:
 
     once = drive(0.1 * tension)
     limit = LumpedBalance.of(once).limit()
-    if not _fits(limit, once):
+    if not (_fits(limit, once) if moved is None else _is_clear_up_to(limit, once)):
         return None
     found = drive(0.1 * tension * limit.factor)
     balance = LumpedBalance.of(found)
@@ -220,10 +240,61 @@ def tensioner_for(rng: np.random.Generator, path: Path, carried: int, tension: f
     }
 
 
+def _as_arm(rng: np.random.Generator, tensioner: dict[str, Any], reach: float) -> dict[str, Any]:
+    """A tensioner of a softer or stiffer spring, in three of five with dry friction, in two of five with stops."""
+    scale = reach if tensioner["kind"] == "sliding" else reach / np.sqrt(tensioner["inertia"] / 0.3)
+    arm = dict(tensioner, rate=tensioner["rate"] * float(np.exp(rng.uniform(np.log(0.3), np.log(3.0)))))
+    if rng.random() < 0.6:
+        arm["tensioning_friction"], arm["yielding_friction"] = (arm["preload"] * rng.uniform(0.0, 0.4, 2)).tolist()
+    if rng.random() < 0.4:
+        arm["stops"] = (scale * np.array([-rng.uniform(0.1, 0.8), rng.uniform(0.05, 0.8)])).tolist()
+        arm["stop_stiffness"] = 100.0 * arm["preload"] / scale
+    return arm
+
+
 def are_clear(centers: FloatArray, radii: FloatArray) -> bool:
     """Whether no two pulleys meet; radii may be signed."""
     between = np.linalg.norm(centers - centers[:, None], axis=-1) - np.abs(radii) - np.abs(radii)[:, None]
     return bool(np.all(between[~np.eye(radii.size, dtype=bool)] > 0.0))
+
+
+_LEAST_TENSION = 0.03
+"""T' of the slackest span at the limit, over that of the tightest: below it bending decides."""
+_CHECKED = 6
+"""Loads up to the limit at which the belt must be clear of other pulleys."""
+
+
+def _is_clear_up_to(limit: Limit, drive: Drive) -> bool:
+    """Whether pulleys and spans keep clear of each other up to the limit."""
+    balance, near = LumpedBalance.of(drive), None
+    pressed = limit.state.tensions - balance.lifted
+    if min(pressed) < _LEAST_TENSION * max(pressed):
+        return False
+    for factor in np.linspace(0.0, limit.factor, _CHECKED):
+        near = balance.at(float(factor), near) if factor < limit.factor else limit.state
+        centers = np.array(drive.centers)
+        for q, spring in zip(near.positions, balance.springs, strict=True):
+            centers[spring.pulley] = spring.place(float(q))
+        route = Route.around(centers, balance.radii)
+        small = radians(0.8)
+        if not (are_clear(centers, drive.radii) and small < min(near.wraps) and max(near.wraps) < 1.6 * pi):
+            return False
+        if not (min(route.spans) > 0.1 * min(drive.radii) and spans_clear(centers, route)):
+            return False
+    return True
+
+
+def spans_clear(centers: FloatArray, route: Route) -> bool:
+    """Whether no span of a route meets a pulley that is not at one of its ends."""
+    count, radii = len(centers), np.abs(route.radii)
+    left = np.stack([-route.directions[:, 1], route.directions[:, 0]], axis=1)
+    starts = centers - route.radii[:, None] * left
+    for k in range(count):
+        for p in set(range(count)) - {k, (k + 1) % count}:
+            along = float(np.clip((centers[p] - starts[k]) @ route.directions[k], 0.0, route.spans[k]))
+            if np.linalg.norm(starts[k] + along * route.directions[k] - centers[p]) < radii[p]:
+                return False
+    return True
 
 
 def _fits(limit: Limit, drive: Drive) -> bool:

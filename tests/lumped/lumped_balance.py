@@ -31,6 +31,8 @@ _STEP = 0.05
 _NEAR = 0.1
 """Longest movement of a tensioner in a step on the way to a load, over the radius of its pulley."""
 _ROUNDING = 1e-9
+_TURN = np.linspace(0.0, 2.0 * np.pi, 60, endpoint=False)
+"""Angles of a shaft over which a load is averaged, rad."""
 
 
 class Spring(NamedTuple):
@@ -61,14 +63,17 @@ class Balanced(NamedTuple):
 
 
 class Limit(NamedTuple):
-    """Where a pulley begins to slip as a whole."""
+    """Where a pulley begins to slip as a whole, a span has no more tension, or the arm does not balance the belt."""
 
     factor: float
     """On the torques of the drive."""
     pulley: int
+    """The one that slips, or else the one that uses most of its grip."""
     torque: float
     """That the pulley transmits there, N m, without sign."""
     state: Balanced
+    cause: str = "friction"
+    """"friction", "slack" or "arm"."""
 
 
 @dataclass(frozen=True)
@@ -101,9 +106,14 @@ class LumpedBalance:
     def of(cls, drive: Drive) -> "LumpedBalance":
         """A drive with constant torques, of which one pulley has a prescribed speed."""
         signs = np.sign(drive.path.radii)
-        torques = [0.0 if one.torque is None else float(one.torque.at([0.0])[0]) for one in drive.pulleys]
+        end = drive.simulation.end
         driver = next(k for k, one in enumerate(drive.pulleys) if one.speed is not None)
-        speed = float(drive.pulleys[driver].speed.at([0.0])[0]) * drive.path.radii[driver]  # type: ignore[union-attr]
+        speed = float(drive.pulleys[driver].speed.at([end])[0]) * drive.path.radii[driver]  # type: ignore[union-attr]
+        torques = [
+            (0.0 if one.torque is None else float(one.torque.at([end])[0]))
+            + sum(float(np.mean(load.torque_over(_TURN, speed / radius, end))) for load in one.load)
+            for one, radius in zip(drive.pulleys, drive.path.radii, strict=True)
+        ]
         return cls(
             centers=np.array(drive.centers),
             radii=drive.radii * signs,
@@ -133,14 +143,23 @@ class LumpedBalance:
         return self._solve(factor, near)
 
     def limit(self) -> Limit:
-        """Load at which the first pulley slips; `ArithmeticError` if the balance is lost before."""
+        """Load at which the first pulley slips, a span is slack, or no place of the tensioner is a balance."""
         here, factor = self._begin(), 0.0
         step = _STEP * float(here.tensions.min()) / float(np.max(np.abs(self._differences(1.0))))
+        smallest = _ROUNDING * step
         while True:
-            ahead = self._solve(factor + step, here)
-            if not ahead.use.max() < 1.0:
+            try:
+                ahead = self._solve(factor + step, here)
+            except ArithmeticError:
+                ahead = None
+            if ahead is None or self._is_far(here, ahead):
+                step *= 0.5
+                if step < smallest:
+                    return self._limit_at(factor, here, "arm")
+            elif ahead.use.max() < 1.0:
+                here, factor, step = ahead, factor + step, 1.1 * step
+            else:
                 break
-            here, factor, step = ahead, factor + step, 1.1 * step
 
         def beyond(part: float) -> float:
             return float(self._solve(factor + part * step, here).use.max()) - 1.0
@@ -148,10 +167,17 @@ class LumpedBalance:
         slack = not np.isfinite(ahead.use.max())
         part = self._bisect(beyond) if slack else brentq(beyond, 0.0, 1.0, xtol=1e-9)
         there = self._solve(factor + part * step, here)
-        pulley = int(np.argmax(there.use))
-        before = np.roll(there.tensions, 1)
-        torque = abs(float(there.tensions[pulley] - before[pulley]) * float(self.radii[pulley]))
-        return Limit(factor + part * step, pulley, torque, there)
+        return self._limit_at(factor + part * step, there, "slack" if slack else "friction")
+
+    def _limit_at(self, factor: float, state: Balanced, cause: str) -> Limit:
+        pulley = int(np.argmax(state.use))
+        before = np.roll(state.tensions, 1)
+        torque = abs(float(state.tensions[pulley] - before[pulley]) * float(self.radii[pulley]))
+        return Limit(factor, pulley, torque, state, cause)
+
+    def _is_far(self, here: Balanced, ahead: Balanced) -> bool:
+        """Whether a tensioner has moved so far that the balance may be another one."""
+        return any(np.abs(ahead.positions - here.positions) > [_NEAR * spring.scale for spring in self.springs])
 
     @staticmethod
     def _bisect(beyond: Callable[[float], float]) -> float:
@@ -186,7 +212,7 @@ class LumpedBalance:
             ahead = min(done + step, 1.0)
             try:
                 there = self._solve(ahead * factor, near)
-                if any(np.abs(there.positions - near.positions) > [_NEAR * spring.scale for spring in self.springs]):
+                if self._is_far(near, there):
                     raise ArithmeticError("another balance, far away")
                 near, done = there, ahead
             except ArithmeticError:
@@ -309,14 +335,17 @@ class Route(NamedTuple):
 
 
 def spring_of(drive: Drive, number: int) -> Spring:
-    """A spring tensioner of a drive, without stops."""
+    """A spring tensioner of a drive, with its stops, without dry friction."""
     one = drive.moving_tensioners[number]
     pulley = drive.carried(one)
     center = np.array(drive.centers[pulley])
     reach = float(drive.radii[pulley])
 
+    lower, upper = one.stops or (-np.inf, np.inf)
+    stiffness = one.stop_stiffness or 0.0
+
     def force(q: float) -> float:
-        return one.preload - one.rate * q
+        return one.preload - one.rate * q + stiffness * (max(lower - q, 0.0) - max(q - upper, 0.0))
 
     if isinstance(one, SlidingTensioner):
         along = np.array(one.direction)

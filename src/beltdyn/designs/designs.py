@@ -14,7 +14,7 @@ from beltdyn.errors import ConvergenceError, ModelError, cause_of
 from beltdyn.model import Drive, prepare
 from beltdyn.model.parameter_study import FreeNumber, Points
 from beltdyn.parts.change import converted, number_path, require_distinct, unit_at, value_at
-from beltdyn.state.search import go_on
+from beltdyn.solvers.continuation import Solution, follow
 from beltdyn.state.staying import Standing, bring_to_stand, stand_like
 from beltdyn.state.steady import Beside, steady_beside, steady_from
 
@@ -217,8 +217,8 @@ class Designs:
             return None if found is None else found.change
 
         ahead = near.ahead(number, changes)
-        known = [(place, place * ahead) for place in (-2.0 * _BEHIND, -_BEHIND, 0.0)]
-        return None if go_on(solve, *known) is None else start.of(last[0], None)
+        known = [Solution(place, place * ahead) for place in (-2.0 * _BEHIND, -_BEHIND, 0.0)]
+        return None if follow(solve, *known) is None else start.of(last[0], None)
 
     def _state(self, point: OperatingPoint, rest: Standing, before: Sequence[FoundState]) -> FoundState:
         """The state of a drive at an operating point, found from that before it, or from rest."""

@@ -109,8 +109,9 @@ def steady_from_rest(
             band = search.friction_band() if bands else {}
             errors, found = refine(search, given, tolerance)
             break
-        except ConvergenceError:  # what runs on one mesh is there; the search has lost its way on this one
-            if not (ran or rest.prepared.path.nips) or given.elements or trial == _MOST_STARTS:
+        except ConvergenceError:  # what runs on one mesh is there; or the search has lost its way on this one
+            has_limit = search.is_limited and not (ran or rest.prepared.path.nips)
+            if has_limit or given.elements or trial == _MOST_STARTS:
                 raise
             rest = stand(rest.prepared, fineness=FINER * rest.fineness)
     return Refined(search, rest, band, errors, found)

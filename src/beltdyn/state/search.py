@@ -1,10 +1,12 @@
-"""From a belt at rest to steady running: Newton's method along speed, steepness of friction and load.
+"""From a belt at rest to steady running: continuation in the loads, from a belt that runs without any.
 
-A belt of which every point slides leaves the speeds of pulleys open, so that friction rises gently with slip at first,
-under a small part of the loads.  Each way is gone in as long steps as Newton's method takes.
+Without loads all rims have the belt's speed, and a web the same tension at both ends: what is found at rest runs on as
+it is, but for its inertia and losses.  Torques, resistances, differences of prescribed speeds and of tensions grow from
+there in proportion (`solvers.continuation`).
 """
 
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
+from itertools import product
 
 import numpy as np
 
@@ -12,9 +14,11 @@ from beltdyn.arrays import FloatArray
 from beltdyn.errors import ConvergenceError, ModelError
 from beltdyn.model import Drive, Prepared
 from beltdyn.parts.messages import listing
+from beltdyn.solvers.continuation import Solution, extrapolated, follow, turn
 from beltdyn.state.newton import FOUND, SteadyWork, find_steady, make_step, steady_work
-from beltdyn.state.slip_limit import GROSS, Passed, Setting, gross_slip, slip_limit
+from beltdyn.state.slip_limit import GROSS, Passed, Setting, gross_slips, slip_limit
 from beltdyn.state.staying import TOLERANCE, Standing, transfer
+from beltdyn.state.way import Way
 from beltdyn.system.arc_mesh import fitted, shifts_of
 from beltdyn.system.arrays import System
 from beltdyn.system.build import loses_in_bending, on_other_mesh, with_bending_loss
@@ -37,67 +41,28 @@ from beltdyn.system.state import State
 from beltdyn.system.steady_assembly import anchor_at
 from beltdyn.system.web import content, rebased, set_content
 
-# Continuation: from a solution to that of another problem in steps, each from a guess by those before
-
-_KNOWN = 3
-"""Solutions through which a parabola is laid."""
-_SHORTEST = 1e-3
-"""Part of the way, below which there is no going on."""
-
-Solution = tuple[float, FloatArray]
-"""Where on the way, and the unknowns there."""
-
-
-def go_on(
-    solve: Callable[[float, FloatArray], FloatArray | None], *passed: Solution, step: float = 1.0
-) -> FloatArray | None:
-    """Go on from 0 to 1."""
-    known, reached = list(passed), 0.0
-    while reached < 1.0:
-        ahead = min(1.0, reached + step)
-        found = solve(ahead, extrapolated(known[-_KNOWN:], ahead) if len(known) >= _KNOWN else known[-1][1])
-        if found is not None:
-            known.append((ahead, found))
-            reached, step = ahead, 2.0 * step if len(known) >= _KNOWN else step
-            continue
-        step = 0.5 * (ahead - reached)
-        if step < _SHORTEST:
-            return None
-    return known[-1][1]
-
-
-def extrapolated(known: Sequence[Solution], place: float) -> FloatArray:
-    """Value of the polynomial through solutions."""
-    total = np.zeros_like(known[0][1])
-    for own, values in known:
-        others = [other for other, _ in known if other != own]
-        total += np.prod([(place - other) / (own - other) for other in others]) * values
-    return total
-
-
 _MOST = 25
 """Iterations of a step."""
 _ON_THE_WAY = 1e-6
 """Tolerance of solutions that only lead to others, over the smallest radius.  With 1e-5 Newton's method stops short of
 where no solution is any more, and what a drive transmits comes out 0.2 % too large."""
-_FIRST_LOAD = 0.05
-_FIRST_OF_TEETH = 1.0, 0.1, 0.01
-"""Of the first load, where teeth hold the belt: they do not give way to more than it bears."""
 _SOFT = 0.05
 """Length over which slow changes of the stretch are smoothed at first on another mesh, over that of the drive."""
 _SMOOTHINGS = 10.0, 100.0
 """Of friction at first on another mesh, where the search fails without."""
-_BISECTIONS = 8
-"""Between two solutions, to learn at which load a pulley begins to slip as a whole."""
-_SHARP = 1.6
-"""Slip over the least gross one, up to which that solution shows what a pulley transmits."""
-_FIRST_SPEEDS = (1.0, 0.3, 0.1, 0.03, 0.01)
+_FIRST_LOADS = 0.0, 0.05
+"""Parts of the loads with which a belt begins to run.  Without any, shafts behind open clutches turn along, which slip
+under the least of them."""
+_SLOW = 0.01
+"""Speed of a belt that begins to run where it does not at its full speed, over that."""
 _NEAR = 1e-3
 """Part of the way to another push at which the tangent still tells the solution."""
 _FIRST_CHANGE, _SAME_SPEED, _MOST_SPEEDS = 1e-4, 1e-11, 30
 """Of the speed of a motor that drives a belt with teeth, relative, and how often it is changed at most."""
 _MOST_PRESSES = 20
 """Of rollers of nips that are loaded by forces."""
+_LOST = 0.2
+"""Slip of a pulley, beside elastic creep, behind which a curve is not followed any more."""
 _GENTLE = 0.3
 """Slip velocity at which friction is fully used at first, over the belt's speed, at least."""
 
@@ -105,13 +70,14 @@ _GENTLE = 0.3
 class SteadySearch:
     """A drive on a staying mesh on its way to steady running; its state is changed in place.
 
-    `tolerance` is that of the last step of a search, over the smallest radius.
+    `tolerance` is that of the last step of a search, over the smallest radius; `is_limited` tells whether what ended it
+    is a limit of the drive.
     """
 
     def __init__(self, prepared: Prepared, system: System, state: State, time: float) -> None:
         self.prepared, self._time = prepared, time
         self.state, self.iterations, self.setting = state, 0, Setting()
-        self.tolerance = TOLERANCE
+        self.tolerance, self.is_limited = TOLERANCE, has_teeth(system)
         self._passed = list[Passed]()
         self._held: int | None = None
         self._motor: int | None = None
@@ -122,16 +88,17 @@ class SteadySearch:
         own = system._replace(rims=on_lengths(system.rims, system.length))
         self.constant, self._tensioners = with_own_rollers(constant_drive(own, time)), system.tensioners
         self._wanted = self.constant.profiles.segment.offset.copy()
+        self._uniform = self._wanted[: system.pulleys.size]
         self._prescribed = self.constant.bodies.unknown[self.constant.pulleys.shaft] < 0
         self._hold(None)
 
     def _hold(self, pulley: int | None) -> None:
         """Hold the shaft of a pulley at a speed, or none beyond those that are prescribed."""
         self._held = pulley
-        self._system = led_by(
+        self.system = led_by(
             with_speeds_unknown(self.constant, () if pulley is None else (pulley,)), self._leader(pulley)
         )
-        self._work = steady_work(self._system)
+        self.work = steady_work(self.system)
 
     def _leader(self, held: int | None) -> int:
         """The pulley whose known speed gives that of a belt with teeth, -1 without one."""
@@ -177,7 +144,7 @@ class SteadySearch:
         if has_teeth(self.constant) and not np.any(self._prescribed):
             return self._resume_with_motor()
         if tangent is not None:
-            self._work = tangent
+            self.work = tangent
         found = (tangent is not None and self._try(Setting(), factorised=True)) or self._try(Setting())
         found = found and self._press()
         if found:
@@ -195,16 +162,16 @@ class SteadySearch:
 
     def _speed_of(self, pulley: int) -> float:
         """Speed of the shaft of a pulley, rad/s."""
-        return float(self.state.velocity[self._system.first_body + self._system.pulleys.shaft[pulley]])
+        return float(self.state.velocity[self.system.first_body + self.system.pulleys.shaft[pulley]])
 
     def factorised(self) -> SteadyWork:
         """The factorized tangent at the state, for small changes of the drive."""
-        system = self._at(self.setting)
+        system = self.at(self.setting)
         drive_shafts(system, self.state.velocity)
         mesh_speeds(system, self.state.velocity)
         anchor = anchor_at(self.state, False)
-        find_steady(system, self.state.at(0.0), anchor, 0.0, 0, False, self._work)
-        return self._work
+        find_steady(system, self.state.at(0.0), anchor, 0.0, 0, False, self.work)
+        return self.work
 
     def run(self, rest: Standing) -> None:
         """Find steady running under the required loads."""
@@ -215,8 +182,8 @@ class SteadySearch:
         if driver is not None:
             self._held_speed = speed / float(self.prepared.path.radii[driver])
             self._hold(driver)
-        gentle = Setting(1.0, _FIRST_LOAD, self._gentle(speed, rest.tension))
-        if not self._run_up(rest.place, speed, gentle):
+        self._uniform = speed / self.prepared.path.radii
+        if not self._run_up(rest.place, speed, self._gentle(speed, rest.tension)):
             raise self._refusal()
         if driver is not None:
             self._release(driver)
@@ -236,33 +203,29 @@ class SteadySearch:
         """Move the rollers of nips until they press with their forces; False if that fails."""
         loads = nip_loads(self.prepared)
         for _ in range(_MOST_PRESSES):
-            moved = pressed_on(
-                self.constant, loads, self._work.equations.forces.hub, float(np.min(self.prepared.radii))
-            )
+            moved = pressed_on(self.constant, loads, self.work.equations.forces.hub, float(np.min(self.prepared.radii)))
             if not moved:
                 return True
             if not self._try(self.setting):
                 return False
         return not loads
 
-    def _run_up(self, place: FloatArray, speed: float, gentle: Setting) -> bool:
+    def _run_up(self, place: FloatArray, speed: float, gentle: float) -> bool:
         """Continue from rest to the required speeds and loads; if that fails, first without bending losses.
 
         Where the belt bends over an idler of small wrap, its curvature nowhere settles, and hysteresis that turns its
         sign there leaves Newton's method no way from a belt at rest.
         """
-        bends_with_loss, passed = loses_in_bending(self._system), list[Passed]()
-        loads = [factor * gentle.load for factor in (_FIRST_OF_TEETH if has_teeth(self.constant) else (1.0,))]
-        for bending_loss in (1.0, 0.0) if bends_with_loss else (1.0,):
-            first = gentle._replace(bending_loss=bending_loss)
-            targets = first, first._replace(smoothing=1.0), Setting(bending_loss=bending_loss), Setting()
-            starts = (first._replace(load=load, speed=part) for load in loads for part in _FIRST_SPEEDS)
-            if not any(self._start(place, speed, start) for start in starts):
+        passed = list[Passed]()
+        for bending_loss, load in product((1.0, 0.0) if loses_in_bending(self.system) else (1.0,), _FIRST_LOADS):
+            first = Setting(load=load, bending_loss=bending_loss)
+            starts = first, first._replace(smoothing=gentle), first._replace(smoothing=gentle, speed=_SLOW)
+            if not any(self._start(place, speed, start) and self._reach(first) for start in starts):
                 continue
             self._passed = []
-            if all(self.setting == target or self._reach(target) for target in targets):
+            if self._reach(first._replace(load=1.0)) and self._reach(Setting()):
                 return True
-            passed = passed or self._passed
+            passed = max(passed, self._passed, key=_largest_load)
         self._passed = passed
         return False
 
@@ -270,9 +233,9 @@ class SteadySearch:
         """Say why there is no steady running."""
         if has_teeth(self.constant):
             return ConvergenceError(f"no steady running found at t = {self._time:g} s: {self._jump()}")
-        passed = self._refined() or [self._here()]
-        reason = slip_limit(self.prepared, self.constant, self._at(Setting()), passed)
-        return ConvergenceError(f"no steady running found at t = {self._time:g} s: {reason}")
+        found = slip_limit(self.prepared, self.constant, self.at(Setting()), self._passed)
+        self.is_limited = found.is_limit
+        return ConvergenceError(f"no steady running found at t = {self._time:g} s: {found.reason}")
 
     def _jump(self) -> str:
         """Say which pulley is the first to lose a belt with teeth: that with the largest pull over an arc."""
@@ -287,39 +250,9 @@ class SteadySearch:
             "goes slack or jumps beyond that: raise its tension, reduce the loads, or use a wider belt."
         )
 
-    def _refined(self) -> list[Passed]:
-        """What was passed on the way to the loads, with more between where a pulley begins to slip as a whole."""
-        passed = self._confirmed()
-        for _ in range(_BISECTIONS):
-            at, slip = gross_slip(self.prepared, self.constant, passed)
-            if at == 0 or slip < _SHARP * GROSS:
-                break
-            before, after = passed[at - 1], passed[at]
-            middle, count = _between(before.setting, after.setting, 0.5), len(self._passed)
-            if not any(self._solve(middle, one.unknowns, 0.5) is not None for one in (before, after)):
-                break
-            passed[at:at] = self._passed[count:]
-        return passed
-
-    def _confirmed(self) -> list[Passed]:
-        """What was passed and is a solution by the tolerance of the search too, and further ones close to the last."""
-        passed, beyond = list(self._passed), list[Passed]()
-        while len(passed) > 1 and self._solve(passed[-1].setting, passed[-1].unknowns, 1.0) is None:
-            beyond.append(passed.pop())
-        if beyond and passed:
-            fails = beyond[-1].setting
-            for _ in range(_BISECTIONS):
-                middle = _between(passed[-1].setting, fails, 0.5)
-                if self._solve(middle, passed[-1].unknowns, 1.0) is None:
-                    fails = middle
-                else:
-                    passed.append(self._passed[-1])
-        return passed
-
     def _here(self) -> Passed:
         position, velocity = self.state.position.copy(), self.state.velocity.copy()
-        state = State(position, velocity, np.zeros_like(position))
-        return Passed(self.setting, state, self.belt_parameter, self.unknowns())
+        return Passed(self.setting, State(position, velocity, np.zeros_like(position)), self.belt_parameter)
 
     def move_to(self, lengths: FloatArray) -> None:
         """Go on to another mesh of the same drive, with elements of lengths (m).
@@ -385,11 +318,12 @@ class SteadySearch:
 
         def solve(part: float, guess: FloatArray) -> FloatArray | None:
             own[:] = given + part * push
-            return self._solve(self.setting, guess, part)
+            return self.solve(self.setting, guess, part)
 
         parts = [(float(other @ push) / float(push @ push), other, end) for other, end in ends]
-        known = [(part, end) for part, other, end in parts if np.allclose(other, part * push)]
-        end = go_on(solve, *known, (0.0, begin), (_NEAR, begin + _NEAR * way), step=0.5)
+        known = [Solution(part, end) for part, other, end in parts if np.allclose(other, part * push)]
+        nearest = Solution(_NEAR, begin + _NEAR * way)
+        end = follow(solve, *known, Solution(0.0, begin), nearest, step=0.5)
         own[:], self._moments = given, moments
         self.place(begin)
         return end
@@ -397,17 +331,17 @@ class SteadySearch:
     def _pushed_by_tangent(self, pushes: Iterable[FloatArray]) -> list[FloatArray]:
         """By how much unknowns change where tensioners are pushed, N or N m, to first order."""
         matrix, found, here = self.factorised().equations.matrix, list[FloatArray](), self.unknowns()
-        unknown = self._system.bodies.unknown[-self._system.tensioners.size :]
+        unknown = self.system.bodies.unknown[-self.system.tensioners.size :]
         for push in pushes:
             clear(matrix, False)
             matrix.border_side[unknown] = push
-            substitute(matrix, True, self._work.ahead_node, self._work.ahead_border)
-            make_step(self._system, self.state.at(0.0), False, 1.0, self._work.ahead_node, self._work.ahead_border)
+            substitute(matrix, True, self.work.ahead_node, self.work.ahead_border)
+            make_step(self.system, self.state.at(0.0), False, 1.0, self.work.ahead_node, self.work.ahead_border)
             found.append(self.unknowns() - here)
             self.place(here)
         return found
 
-    def _solve(self, setting: Setting, guess: FloatArray, part: float) -> FloatArray | None:
+    def solve(self, setting: Setting, guess: FloatArray, part: float) -> FloatArray | None:
         """Steady running at a part of a way, from a guess; None, and all as it was, if it is not found."""
         before = self.unknowns()
         self.place(guess)
@@ -418,8 +352,8 @@ class SteadySearch:
 
     def _gentle(self, speed: float, tension: float) -> float:
         """Smoothing with which friction is not fully used anywhere."""
-        pulleys = self._system.pulleys
-        limits = self._system.law.friction.saturation(tension / self.prepared.radii, pulleys.friction, speed)
+        pulleys = self.system.pulleys
+        limits = self.system.law.friction.saturation(tension / self.prepared.radii, pulleys.friction, speed)
         least = float(np.min(limits[pulleys.friction > 0.0], initial=np.inf))
         return max(1.0, _GENTLE * abs(speed) / least)
 
@@ -429,9 +363,9 @@ class SteadySearch:
         state.position[:] = place
         shifts_of(self.constant.frame)[:] = self._shifts_at_rest
         self.constant.frame.speed[0] = running * self.prepared.belt_length / path.length
-        state.velocity[self._system.first_body :][: path.count] = running / path.radii
-        guess_hubs(self._at(setting), state.velocity)
-        fit_phases(self._system, state)
+        state.velocity[self.system.first_body :][: path.count] = running / path.radii
+        guess_hubs(self.at(setting), state.velocity)
+        fit_phases(self.system, state)
         return self._try(setting)
 
     def _follow(self, target: Setting) -> None:
@@ -440,12 +374,44 @@ class SteadySearch:
             raise self._refusal()
 
     def _reach(self, target: Setting) -> bool:
-        """Go on to another setting; False if the way ends before."""
-        begin = self.setting
-        return (
-            go_on(lambda part, guess: self._solve(_between(begin, target, part), guess, part), (0.0, self.unknowns()))
-            is not None
-        )
+        """Go on to another setting, around limit points; False if the way ends before."""
+        if self.setting == target:
+            return True
+        way = Way(self, self.setting, target)
+        if follow(way.solve, *way.solutions, tangent=way.tangent) is not None:
+            return True
+        if has_teeth(self.constant) or self.setting.smoothing != 1.0 or target.smoothing != 1.0:
+            return False
+        return self._turn(way)
+
+    def _turn(self, way: Way) -> bool:
+        """Follow the curve around limit points, from the last solution without gross slip; False if it ends before 1.
+
+        Solutions are kept to tell what ends the way.
+        """
+        begin, here = self.setting, self.unknowns()
+        passed = [self._seen(way, solution) for solution in way.solutions]
+        sliding = np.max(gross_slips(self.prepared, self.constant, passed), axis=1) > GROSS
+        count = int(np.argmax(sliding)) if sliding.any() else len(passed)
+        self._passed, last = passed[:count], way.solutions[count - 1]
+        self.place(last.unknowns)
+        turned = turn(way, last.place, _ON_THE_WAY * float(np.min(self.prepared.radii)), self._is_lost)
+        self._passed += [self._seen(way, solution) for solution in turned[1:]]
+        if turned[-1].place >= 1.0 and way.solve(1.0, extrapolated(turned[-2:], 1.0)) is not None:
+            return True
+        self.setting = begin
+        self.place(here)
+        return False
+
+    def _seen(self, way: Way, solution: Solution) -> Passed:
+        """A solution on a way, in which the search is put."""
+        self.place(solution.unknowns)
+        self.setting = way.at(solution.place)
+        return self._here()
+
+    def _is_lost(self) -> bool:
+        """Whether a pulley slides so fast that a curve need not be followed any more."""
+        return bool(np.max(gross_slips(self.prepared, self.constant, [*self._passed[:1], self._here()])) > _LOST)
 
     def _release(self, driver: int) -> None:
         """Let a driver turn as its torque says."""
@@ -454,10 +420,10 @@ class SteadySearch:
             if not self._balance(driver):
                 raise self._refusal()
             return
-        speed = float(self.state.velocity[self._system.first_body + self._system.pulleys.shaft[driver]])
-        reaction = float(self._work.equations.forces.shaft[driver])
+        speed = float(self.state.velocity[self.system.first_body + self.system.pulleys.shaft[driver]])
+        reaction = float(self.work.equations.forces.shaft[driver])
         self._hold(None)
-        own = own_torque(self._at(Setting()), self.state, driver, speed)
+        own = own_torque(self.at(Setting()), self.state, driver, speed)
         self._supported, self._support, self.setting = driver, reaction - own, Setting(support=1.0)
         self._follow(Setting())
 
@@ -466,9 +432,9 @@ class SteadySearch:
 
         def lacking() -> float:
             self._held = None  # the profile of a held pulley is its speed, in place of its torque
-            free, self._held = self._at(Setting()), driver
+            free, self._held = self.at(Setting()), driver
             own = own_torque(free, self.state, driver, self._speed_of(driver))
-            return float(self._work.equations.forces.shaft[driver]) - own
+            return float(self.work.equations.forces.shaft[driver]) - own
 
         speed, missing = self._held_speed, lacking()
         self._held_speed = (1.0 - _FIRST_CHANGE) * speed
@@ -489,28 +455,27 @@ class SteadySearch:
         The first corrections are by the tangent that is factorized already, if it is.  The tolerance is that of the
         search by default.
         """
-        state, system = self.state, self._at(setting)
+        state, system = self.state, self.at(setting)
         before = self.unknowns()
         drive_shafts(system, state.velocity)
         mesh_speeds(system, state.velocity)
         allowed = (self.tolerance if tolerance is None else tolerance) * float(np.min(self.prepared.radii))
         anchor = anchor_at(state, False)
-        status, iterations = find_steady(system, state.at(0.0), anchor, allowed, _MOST, factorised, self._work)
+        status, iterations = find_steady(system, state.at(0.0), anchor, allowed, _MOST, factorised, self.work)
         self.iterations += iterations
         if status == FOUND:
             fitted(self.constant, self.state.position)
-            self.setting, self._moments = setting, self._work.equations.forces.moment.copy()
-            if setting.smoothing == 1.0:
-                self._passed.append(self._here())
+            self.setting, self._moments = setting, self.work.equations.forces.moment.copy()
             return True
         self.place(before)
         return False
 
-    def _at(self, setting: Setting) -> System:
+    def at(self, setting: Setting) -> System:
         """The system at a setting."""
-        system, segment = self._system, self._system.profiles.segment.copy()
+        system, segment = self.system, self.system.profiles.segment.copy()
         offset, count, driven = segment.offset, system.pulleys.size, self._prescribed.copy()
         offset[:] = self._wanted
+        offset[:count] += np.where(driven, (1.0 - setting.load) * (self._uniform - offset[:count]), 0.0)
         if self._held is not None:
             driven[self._held], offset[self._held] = True, self._held_speed
         offset[:count] *= np.where(driven, setting.speed, setting.load)
@@ -528,16 +493,9 @@ class SteadySearch:
         return system if setting.bending_loss == 1.0 else with_bending_loss(system, setting.bending_loss)
 
 
-def _between(begin: Setting, end: Setting, part: float) -> Setting:
-    """A setting on the way from one to another, on which what smoothes changes by equal factors."""
-    if part == 1.0:
-        return end
-    even = Setting(*(a + part * (b - a) for a, b in zip(begin, end, strict=True)))
-    smooth = {
-        name: getattr(begin, name) ** (1.0 - part) * getattr(end, name) ** part
-        for name in ("smoothing", "stretch_length")
-    }
-    return even._replace(**smooth)
+def _largest_load(passed: Sequence[Passed]) -> float:
+    """Largest part of the loads in solutions; -1 without any."""
+    return max((one.setting.load for one in passed), default=-1.0)
 
 
 def _without_machine(drive: Drive) -> ModelError | None:
