@@ -23,7 +23,7 @@ import numpy as np
 from scipy.optimize import brentq, root
 
 from beltdyn.arrays import FloatArray
-from beltdyn.machines import RotaryTensioner, SlidingTensioner
+from beltdyn.machines import Load, RotaryTensioner, SlidingTensioner
 from beltdyn.model import Drive
 
 _STEP = 0.05
@@ -33,6 +33,12 @@ _NEAR = 0.1
 _ROUNDING = 1e-9
 _TURN = np.linspace(0.0, 2.0 * np.pi, 60, endpoint=False)
 """Angles of a shaft over which a load is averaged, rad."""
+
+
+def mean_torque(load: Load, speed: float, time: float) -> float:
+    """Mean torque of a load over the angle at a speed (rad/s) and an instant (s), N m."""
+    factor = 1.0 if load.factor is None else float(load.factor.at([time])[0])
+    return factor * float(np.mean(load.torque_over(_TURN, speed, time)))
 
 
 class Spring(NamedTuple):
@@ -111,7 +117,7 @@ class LumpedBalance:
         speed = float(drive.pulleys[driver].speed.at([end])[0]) * drive.path.radii[driver]  # type: ignore[union-attr]
         torques = [
             (0.0 if one.torque is None else float(one.torque.at([end])[0]))
-            + sum(float(np.mean(load.torque_over(_TURN, speed / radius, end))) for load in one.load)
+            + sum(mean_torque(load, speed / radius, end) for load in one.load)
             for one, radius in zip(drive.pulleys, drive.path.radii, strict=True)
         ]
         return cls(
