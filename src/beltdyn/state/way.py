@@ -1,25 +1,44 @@
 """Steady running on the way from one setting of a drive to another one, as equations along a parameter from 0 to 1."""
 
-from typing import TYPE_CHECKING
+from typing import Protocol
 
 import numpy as np
 
 from beltdyn.arrays import FloatArray
 from beltdyn.solvers.continuation import Linearized, Solution
-from beltdyn.state.newton import SINGULAR, find_steady, make_step
+from beltdyn.state.newton import SINGULAR, SteadyWork, find_steady, make_step
 from beltdyn.state.slip_limit import Setting
 from beltdyn.system.arc_mesh import arc_count
+from beltdyn.system.arrays import System
 from beltdyn.system.constant_drive import controllers, drive_shafts
 from beltdyn.system.meshing import mesh_speeds
 from beltdyn.system.ring_matrix import substitute
+from beltdyn.system.state import State
 from beltdyn.system.steady_assembly import anchor_at, assemble_steady
 from beltdyn.system.web import content
 
-if TYPE_CHECKING:
-    from beltdyn.state.search import SteadySearch
-
 _DIFFERENCE = 1e-4
 """Change of the parameter by which the residual is differentiated."""
+
+
+class Search(Protocol):
+    """What a way needs of a search for steady running."""
+
+    state: State
+    system: System
+    work: SteadyWork
+
+    def unknowns(self) -> FloatArray:
+        """All that steady running consists of."""
+
+    def place(self, unknowns: FloatArray) -> None:
+        """Put the search in its place."""
+
+    def at(self, setting: Setting) -> System:
+        """The system at a setting."""
+
+    def solve(self, setting: Setting, guess: FloatArray, part: float) -> FloatArray | None:
+        """Steady running at a part of a way, from a guess; None, and all as it was, if it is not found."""
 
 
 class Way:
@@ -28,7 +47,7 @@ class Way:
     Increments are those of Newton's method: of the nodes, shape (N, n), then of the unknowns of the border.
     """
 
-    def __init__(self, search: "SteadySearch", begin: Setting, end: Setting) -> None:
+    def __init__(self, search: Search, begin: Setting, end: Setting) -> None:
         self._search, self._begin, self._end = search, begin, end
         self.solutions = [Solution(0.0, search.unknowns())]
 
