@@ -33,7 +33,8 @@ def driver_of(drive: Drive) -> int:
     """Number of the pulley that drives: the first whose speed is prescribed, or else the first with a motor."""
     if drive.driver is None:
         raise ModelError(
-            "nothing drives the belt: no pulley has a speed or a motor. Give the pulley whose speed to prescribe."
+            "nothing drives the belt: no pulley has a speed or a motor. Prescribe the speed of one in the drive file, "
+            "or name it in the option pulley of analyses that have one, such as an operating map."
         )
     return drive.driver
 
