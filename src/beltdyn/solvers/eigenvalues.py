@@ -5,6 +5,7 @@ anywhere, and turn on.  Its rate takes its place as the unknown, which leaves no
 """
 
 from collections.abc import Callable, Iterator
+from contextlib import suppress
 from math import sqrt
 from typing import TYPE_CHECKING, NamedTuple
 
@@ -32,30 +33,27 @@ class Ritz(NamedTuple):
     """Error of A v = value v for the unit vector v, over the magnitude of the value, shape (steps,)."""
     within: ComplexArray
     """Coordinates of the eigenvectors in the basis, shape (steps, steps)."""
-    basis: list[ComplexArray]
-    """Orthonormal vectors, one more than there are steps."""
+    basis: ComplexArray
+    """Orthonormal vectors in rows, shape (steps, size)."""
 
     def vectors(self, count: int) -> ComplexArray:
         """Eigenvectors of so many of the largest values, in columns."""
-        found = np.zeros((self.basis[0].size, count), complex)
-        for direction, parts in zip(self.basis, self.within[:, :count], strict=False):
-            found += np.multiply.outer(direction, parts)
-        return found
+        return np.asarray(self.basis.T @ self.within[:, :count])
 
 
 def arnoldi(apply: Callable[[ComplexArray], ComplexArray], size: int, most: int) -> Iterator[Ritz]:
     """Find eigenvalues of a map of vectors of shape (size,), better after each of at most `most` batches of steps."""
     most = min(most, -(-size // _BATCH))
     vector = np.random.default_rng(0).standard_normal(size).astype(complex)
-    basis = [vector / np.linalg.norm(vector)]
+    basis = np.zeros((most * _BATCH + 1, size), complex)
+    basis[0] = vector / np.linalg.norm(vector)
     projected = np.zeros((most * _BATCH + 1, most * _BATCH), complex)
     for steps in range(1, min(most * _BATCH, size) + 1):
-        vector = apply(basis[-1])
+        vector, known = apply(basis[steps - 1]), basis[:steps]
         for _ in range(2):  # once more, since what is found already comes back by rounding
-            for number, direction in enumerate(basis):
-                part = np.vdot(direction, vector)
-                projected[number, steps - 1] += part
-                vector -= part * direction
+            parts = (known @ vector.conj()).conj()
+            projected[:steps, steps - 1] += parts
+            vector -= parts @ known
         rest = float(np.linalg.norm(vector))
         if not np.isfinite(rest):
             return
@@ -65,9 +63,9 @@ def arnoldi(apply: Callable[[ComplexArray], ComplexArray], size: int, most: int)
             values, within = values[order], within[:, order]
             with np.errstate(divide="ignore", invalid="ignore"):
                 residuals = rest * np.abs(within[-1]) / np.abs(values)
-            yield Ritz(values, residuals, within, basis)
+            yield Ritz(values, residuals, within, known)
         projected[steps, steps - 1] = rest
-        basis.append(vector / rest if rest > 0.0 else vector)
+        basis[steps] = vector / rest if rest > 0.0 else vector
 
 
 _SMALL = 160
@@ -76,6 +74,9 @@ _AT_A_TIME, _MOST_AT_A_TIME = 24, 96
 """Eigenvalues that are found around a shift, at least."""
 _BATCHES, _TOLERANCE = 8, 1e-9
 """Batches of steps of the Arnoldi method, at most, and the residual of an eigenvalue that is found."""
+_LEAST_BATCHES = 3
+"""Batches after which the method ends with the eigenvalues that it has, if the last batch added none: near a cluster,
+such as the creep of a belt that hardly moves, more steps add none either."""
 _BAND = 0.5
 """Half of the band of frequencies around a shift whose lightly damped eigenvalues are known, over the radius within
 which all are."""
@@ -99,6 +100,13 @@ _INFINITE = 1e10
 """Magnitude from which on an eigenvalue is that of a constraint or of a coordinate without mass, 1/s."""
 
 
+MOST_HEAVY = 12
+"""Number of heavily damped modes above which they are left out, if they are more than the lightly damped ones: a belt
+near standstill has a continuum of creeping motions, of which a mesh shows as many as it has elements."""
+_MOST_CELLS = 200
+"""Number of disks for heavily damped modes, at most."""
+_LEAST_BAND = 1e-3
+"""Least width of a band over its frequency."""
 _SLIVER = 0.05
 """Size of a gap between disks, over their radius, that gets a disk of its own and is not divided further."""
 
@@ -178,19 +186,26 @@ def all_eigenvalues(given: Pencil) -> tuple[ComplexArray, ComplexArray]:
 
 
 def nearest(given: Pencil, shift: complex, count: int) -> tuple[ComplexArray, ComplexArray]:
-    """Eigenvalues nearest to a shift, and eigenvectors in columns, by the Arnoldi method on the shifted inverse."""
+    """Eigenvalues nearest to a shift, and eigenvectors in columns, by the Arnoldi method on the shifted inverse.
+
+    Fewer than `count` where others are so close together that they cannot be told apart.
+    """
+    known = 0
     try:
-        inverse = _inverse(given, shift)
-        for ritz in arnoldi(inverse, given.size, _BATCHES):
-            found = int(np.argmin(np.append(ritz.residuals < _TOLERANCE, False)))
-            if found >= min(count, given.size):
-                with np.errstate(divide="ignore", invalid="ignore"):
-                    return shift + 1.0 / ritz.values[:found], ritz.vectors(found)
+        for batch, ritz in enumerate(arnoldi(_inverse(given, shift), given.size, _BATCHES), 1):
+            before, known = known, int(np.argmin(np.append(ritz.residuals < _TOLERANCE, False)))
+            stagnates = batch >= _LEAST_BATCHES and 0 < known <= before
+            if known >= min(count, given.size) or stagnates:
+                break
     except RuntimeError as error:
         raise ConvergenceError(f"the modes cannot be computed: {error}. Check masses and inertias.") from error
-    raise ConvergenceError(
-        f"{count} vibrations near {abs(shift) / (2.0 * np.pi):.4g} Hz were not found. Reduce the number of modes."
-    )
+    if known == 0:
+        raise ConvergenceError(
+            f"no vibration near {abs(shift) / (2.0 * np.pi):.4g} Hz was found: motions there are too much alike. Give "
+            "another speed, or simulate the drive with `beltdyn simulate`."
+        )
+    with np.errstate(divide="ignore", invalid="ignore"):
+        return shift + 1.0 / ritz.values[:known], ritz.vectors(known)
 
 
 def _inverse(given: Pencil, shift: complex) -> Callable[[ComplexArray], ComplexArray]:
@@ -228,17 +243,30 @@ def swinging(
     """Oscillating eigenvalues from the slowest on, in columns their eigenvectors, of each conjugate pair one.
 
     At least `count` of those `counted`, if the pencil has as many, with those between them; `MOST_SWINGING` or `count`
-    at most, whichever is more. The search starts at `first` (rad/s).
+    at most, whichever is more. Heavily damped ones are left out where they are a continuum; see `MOST_HEAVY`. The
+    search starts at `first` (rad/s).
     """
     if given.size <= _SMALL:
-        found, shapes = all_eigenvalues(given)
+        values, vectors = all_eigenvalues(given)
     else:
-        found, shapes = _band_by_band(given, count, first, counted)
-    chosen = np.flatnonzero(swings(found))
-    chosen = chosen[np.argsort(found[chosen].imag)][: max(count, MOST_SWINGING)]
-    enough = int(np.searchsorted(np.cumsum(counted(found[chosen])), count))
+        values, vectors = _band_by_band(given, count, first)
+    chosen = np.flatnonzero(swings(values))
+    chosen = chosen[np.argsort(values[chosen].imag)]
+    light = chosen[lightly_damped(values[chosen])]
+    last = light[min(count, light.size) - 1] if light.size else chosen[-1] if chosen.size else 0
+    below = chosen[: int(np.flatnonzero(chosen == last)[0]) + 1] if chosen.size else chosen
+    if _is_continuum(values[below]):
+        chosen = light
+    chosen = chosen[: max(count, MOST_SWINGING)]
+    enough = int(np.searchsorted(np.cumsum(counted(values[chosen])), count))
     chosen = chosen[: enough + 1]
-    return found[chosen], shapes[:, chosen]
+    return values[chosen], vectors[:, chosen]
+
+
+def _is_continuum(values: ComplexArray) -> bool:
+    """Whether heavily damped ones of eigenvalues that swing are too many to be modes."""
+    light = int(np.count_nonzero(lightly_damped(values)))
+    return values.size - light > max(light, MOST_HEAVY)
 
 
 class _Disk(NamedTuple):
@@ -262,10 +290,9 @@ class _Cell(NamedTuple):
     def center(self) -> complex:
         return 0.5 * (self.low + self.high)
 
-    @property
-    def wanted(self) -> bool:
-        """Whether a mode in it may be damped by less than `MOST_DAMPED`: its upper right corner is the least damped."""
-        return -self.high.real < MOST_DAMPED * abs(self.high)
+    def may_hold(self, damped: float) -> bool:
+        """Whether a mode in it may have less than a damping ratio: its upper right corner is the least damped."""
+        return -self.high.real < damped * abs(self.high)
 
     def within(self, disk: _Disk) -> bool:
         """Whether all of it lies in a disk."""
@@ -284,10 +311,11 @@ class _Cell(NamedTuple):
 
 
 class _Known:
-    """Eigenvalues of disks that overlap, each but once."""
+    """Eigenvalues of disks that overlap, each but once; `is_full` once the last search for all modes has ended."""
 
     def __init__(self, given: Pencil) -> None:
         self._given, self.disks = given, list[_Disk]()
+        self.is_full = False
         self._values, self._vectors = list[ComplexArray](), list[ComplexArray]()
 
     @property
@@ -300,8 +328,8 @@ class _Known:
         """Their eigenvectors in columns."""
         return np.concatenate(self._vectors, axis=1)
 
-    def look(self, shift: complex, count: int) -> _Disk:
-        """Eigenvalues nearest to a shift, and the disk that holds all of them."""
+    def look(self, shift: complex, count: int) -> tuple[_Disk, bool]:
+        """The disk around a shift that holds the eigenvalues nearest to it, and whether these are as many as asked."""
         found, vectors = nearest(self._given, shift, count)
         disk = _Disk(shift, (1.0 - _ROUNDING) * float(np.max(np.abs(found - shift))))
         new = disk.holds(found) & (np.abs(found) < _INFINITE)
@@ -310,55 +338,70 @@ class _Known:
         self.disks.append(disk)
         self._values.append(found[new])
         self._vectors.append(vectors[:, new])
-        return disk
+        return disk, found.size >= min(count, self._given.size)
 
-    def fill(self, high: float) -> None:
-        """Look for all modes up to a frequency (rad/s), however much they are damped below `MOST_DAMPED`."""
-        widest = high * MOST_DAMPED / sqrt(1.0 - MOST_DAMPED**2)
-        cells = [_Cell(complex(-widest, 0.0), complex(0.0, high))]
-        while cells:
+    def fill(self, high: float, damped: float, goes_on: Callable[[], bool] = lambda: True) -> None:
+        """Look for all modes up to a frequency (rad/s), of less than a damping ratio, as long as that goes on."""
+        widest = high * damped / sqrt(1.0 - damped**2)
+        cells, self.is_full = [_Cell(complex(-widest, 0.0), complex(0.0, high))], False
+        while cells and goes_on():
             cell = cells.pop()
-            if not cell.wanted or any(cell.within(disk) for disk in self.disks):
+            if not cell.may_hold(damped) or any(cell.within(disk) for disk in self.disks):
                 continue
             around = [disk.radius for disk in self.disks if disk.holds(np.array([cell.center]))[0]]
             if not around or abs(cell.high - cell.low) < _SLIVER * max(around):
                 self.look(cell.center, _AT_A_TIME)
             if not any(cell.within(disk) for disk in self.disks):
                 cells += cell.quarters()
+        self.is_full = not cells
 
 
-def _band_by_band(
-    given: Pencil, count: int, first: float, counted: Callable[[ComplexArray], BoolArray]
-) -> tuple[ComplexArray, ComplexArray]:
-    """Eigenvalues in neighboring bands of frequencies, until enough of them swing and are counted.
+def _band_by_band(given: Pencil, count: int, first: float) -> tuple[ComplexArray, ComplexArray]:
+    """Eigenvalues in neighboring bands of frequencies, until enough of them are lightly damped.
 
     Disks along the imaginary axis leave out what is damped much between them: the rest of the wedge of modes below the
-    last band is filled up, so that which of them are listed depends neither on shifts nor on the Arnoldi method.
+    last band is filled up, so that which of them are listed depends neither on shifts nor on the Arnoldi method. Where
+    the heavily damped ones are a continuum, that is given up.
     """
     known, low, ahead = _Known(given), 0.0, first
     for _ in range(_MOST_SHIFTS):
         high = _band(known, low, ahead)
         if not np.isfinite(high):
             return known.values, known.vectors
-        below = known.values[(known.values.imag <= high) & swings(known.values)]
-        if np.count_nonzero(counted(below)) >= count or below.size >= max(count, MOST_SWINGING):
+        light = known.values[(known.values.imag <= high) & swings(known.values) & lightly_damped(known.values)]
+        if light.size >= max(count, 1):
             break
         low, ahead = high, 0.5 * (high - low)
-    known.fill(high)
+    known.fill(high, LIGHT)
+    most = len(known.disks) + _MOST_CELLS
+
+    def goes_on() -> bool:
+        modes = known.values[(known.values.imag <= high) & swings(known.values)]
+        return len(known.disks) < most and not _is_continuum(modes)
+
+    with suppress(ConvergenceError):  # of heavily damped modes that are too much alike
+        known.fill(high, MOST_DAMPED, goes_on)
     values = known.values
-    return values[values.imag <= high], known.vectors[:, values.imag <= high]
+    kept = values.imag <= high
+    if not (known.is_full and goes_on()):
+        kept &= lightly_damped(values)
+    return values[kept], known.vectors[:, kept]
 
 
 def _band(known: _Known, low: float, ahead: float) -> float:
     """Look around a shift above a frequency; up to which frequency (rad/s) the imaginary axis is known then."""
     count = _AT_A_TIME
-    while True:
-        disk = known.look(1j * (low + ahead), count)
+    while ahead > _LEAST_BAND * low:
+        disk, full = known.look(1j * (low + ahead), count)
         if disk.radius > _INFINITE:
             return np.inf
         if _BAND * disk.radius >= ahead:
             return low + ahead + _BAND * disk.radius
-        if count < _MOST_AT_A_TIME:
+        if full and count < _MOST_AT_A_TIME:
             count *= 2
         else:
             ahead *= 0.5
+    raise ConvergenceError(
+        f"vibrations near {low / (2.0 * np.pi):.4g} Hz are too much alike to be told apart. Reduce the number of "
+        "modes, or give another speed."
+    )

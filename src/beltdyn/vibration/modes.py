@@ -230,7 +230,8 @@ def modes(
         simulation. For a run over time an instant of its outputs along the belt, by default the last.
     count
         Number of lightly damped modes, from the lowest frequency, up to 99. Heavily damped modes in between are
-        included, up to 99 modes in total.
+        included, up to 99 modes in total, unless there are more than 12 and more than lightly damped ones: those are
+        creeping motions of a belt near standstill.
     force_tolerance
         Tolerance of contact forces, relative to the largest on each pulley, to which the mesh of steady running is
         refined; by default that of the drive, 0.01.

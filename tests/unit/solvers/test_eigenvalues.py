@@ -129,3 +129,17 @@ def test_a_search_that_begins_elsewhere_gives_the_same_modes() -> None:
     lists = [swinging(given, 20, first, counted=lightly_damped)[0] for first in (3.0, 200.0)]
     for other in lists[1:]:
         np.testing.assert_allclose(other, lists[0], rtol=1e-6)
+
+
+@pytest.mark.parametrize(("count", "heavy"), [(60, 100), (400, 100), (60, 12)])
+def test_a_continuum_of_heavily_damped_motions_is_left_out(count: int, heavy: int) -> None:
+    """And as many as a machine may have are not."""
+    slow = 30.0 * (-0.8 + 0.6j) * np.linspace(1.0, 1.05, heavy)
+    light = 2e3 * np.sin(0.5 * np.pi * np.arange(1, count + 1) / (count + 1)) * (-0.01 + 1j * np.sqrt(1.0 - 1e-4))
+    each = np.append(slow, light)
+    stiffness, damping = csc_array(np.diag(np.abs(each) ** 2)), csc_array(np.diag(-2.0 * each.real))
+    given = pencil(stiffness, damping, csc_array(np.eye(each.size)), none(each.size))
+    for wanted in (1, 5):
+        values = swinging(given, wanted, counted=lightly_damped)[0]
+        expected = np.append(slow if heavy == 12 else [], light[:wanted])
+        np.testing.assert_allclose(values, expected[np.argsort(expected.imag)], rtol=1e-6)

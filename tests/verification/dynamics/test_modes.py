@@ -11,11 +11,13 @@ from scipy import optimize
 import beltdyn as bd
 from beltdyn.arrays import FloatArray
 from beltdyn.model import Belt, Drive
-from beltdyn.solvers.eigenvalues import pencil, swinging
+from beltdyn.points.changed_drive import at_speed, driver_of, held_at
+from beltdyn.solvers.eigenvalues import all_eigenvalues, lightly_damped, pencil, swinging, swings
 from beltdyn.solvers.flutter import Vibrations
 from beltdyn.system.build import belt_system
 from beltdyn.system.state import straight
 from beltdyn.vibration.modes import modes
+from beltdyn.vibration.small_motions import about_steady
 from validation.published.cases import better, loaded_two_pulley
 
 TENSION, MASS, LENGTH, STIFFNESS = 200.0, 0.1, 0.4, 0.01
@@ -318,3 +320,19 @@ def test_rims_rotor_and_arm_of_a_lumped_model(direction: float, measured: Callab
     expected, _ = lumped(drive.belt.axial_stiffness, direction, ARM)
     for lone, found in zip(expected, require_modes(drive, expected), strict=True):
         measured(lumped=lone, found=found)
+
+
+@pytest.mark.parametrize("speed", [0.3, pytest.param(0.01, marks=pytest.mark.slow)])
+def test_near_standstill_modes_are_those_of_all_eigenvalues(speed: float) -> None:
+    """Among hundreds of creeping motions that do not swing, of an arc whose friction hardly lets it slip."""
+    drive = held_at(bd.example("flat_belt_idler"), None)
+    drive = at_speed(drive, driver_of(drive), speed)
+    motions = about_steady(bd.steady_state(drive, force_tolerance=0.5))
+    given = pencil(motions.stiffness, motions.damping, motions.mass, motions.free)
+    every = all_eigenvalues(given)[0]
+    assert np.count_nonzero((every.real < 0.0) & (every.imag == 0.0) & (every.real > -1e3)) > 50
+    light = np.sort_complex(1j * every[swings(every) & lightly_damped(every)].conj())[:8]
+    for count in (1, 8):
+        found = swinging(given, count, counted=lightly_damped)[0]
+        found = np.sort_complex(1j * found[lightly_damped(found)].conj())
+        np.testing.assert_allclose(found, light[:count], rtol=1e-6)
