@@ -4,11 +4,10 @@ import math
 import re
 from collections.abc import Callable
 from functools import cache, partial
-from inspect import Parameter, signature
+from inspect import Parameter
 from pathlib import Path
 from tempfile import mkdtemp
-from types import UnionType
-from typing import TYPE_CHECKING, Any, NamedTuple, get_args
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 from docstring_parser import parse
 from nicegui import app, ui
@@ -21,6 +20,7 @@ from beltdyn.app.scene import groups
 from beltdyn.app.session import Session
 from beltdyn.errors import BeltdynError, ModelError
 from beltdyn.model import Drive
+from beltdyn.parts import options
 from beltdyn.parts.quantity import RPM
 from beltdyn.parts.text_file import shorten
 
@@ -30,8 +30,8 @@ if TYPE_CHECKING:
 
 # Analyses offered by the page, with the options of their functions
 
-_SHARED = ("output", "progress", "overwrite", "start", "checkpoint")
-"""Options set by the page or not needed: its runs are not resumed."""
+_CHECKPOINT = "checkpoint"
+"""An option that is not needed: runs of the page are not resumed."""
 _SUFFIXES = {"table": (".csv",), "measured": (".csv",), "study": (".toml",), "compare": (".nc",)}
 """File option -> suffixes of its files; other file options offer all of these."""
 
@@ -134,26 +134,20 @@ def proposal(option: Option, drive: Drive | None) -> str:
 
 
 def _own(name: str) -> list[Parameter]:
-    parameters = signature(ANALYSES[name].function, eval_str=True).parameters.values()
-    return [one for one in parameters if one.kind is Parameter.KEYWORD_ONLY and one.name not in _SHARED]
+    return [one for one in options.options_of(ANALYSES[name].function).values() if one.name != _CHECKPOINT]
 
 
 def _kind(annotation: Any) -> type | None:
     """What an option takes as it is typed or chosen; None where it is neither file, text nor number."""
     if _takes_unit(annotation):
         return float
-    kinds = _kinds(annotation)
+    kinds = options.option_types(annotation)
     return next((kind for kind in (Path, str, float, int) if kind in kinds), None)
 
 
 def _takes_unit(annotation: Any) -> bool:
     """Whether an option is a number that may have a unit."""
-    return {float, str} <= set(_kinds(annotation))
-
-
-def _kinds(annotation: Any) -> tuple[Any, ...]:
-    """The types of an option."""
-    return get_args(annotation) if isinstance(annotation, UnionType) else (annotation,)
+    return {float, str} <= set(options.option_types(annotation))
 
 
 _OFTEN = 0.25

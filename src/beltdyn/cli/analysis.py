@@ -4,8 +4,8 @@ import re
 from collections.abc import Callable
 from inspect import Parameter, cleandoc, signature
 from pathlib import Path
-from types import NoneType, UnionType
-from typing import TYPE_CHECKING, Annotated, Any, Union, get_args
+from types import NoneType
+from typing import TYPE_CHECKING, Annotated, Any, Union
 
 from cyclopts import Parameter as Option
 from cyclopts.validators import Number
@@ -18,9 +18,6 @@ from beltdyn.errors import ModelError
 if TYPE_CHECKING:
     from beltdyn.model import Drive
     from beltdyn.results import Run
-
-SHARED = ("output", "progress", "overwrite", "start")
-"""Parameters of the functions that are no options of the command."""
 
 _TYPED = str, float, int, bool, Path, NoneType
 """Types that a word of a command line gives."""
@@ -48,6 +45,8 @@ force
 
 def analysis_command(analysis: Analysis) -> Callable[..., int]:
     """Make the command of an analysis: keyword arguments become options, the docstring its help."""
+    from beltdyn.parts.options import options_of
+
     function = analysis.function
 
     def command(
@@ -81,11 +80,7 @@ def analysis_command(analysis: Analysis) -> Callable[..., int]:
         result = analyse_to(analysis, drive, path, extras, force, **options)
         return ended(result) or (doubt(result.warnings) if strict else 0)
 
-    own = {
-        name: one.replace(kind=Parameter.KEYWORD_ONLY, annotation=_in_words(one.annotation))
-        for name, one in signature(function, eval_str=True).parameters.items()
-        if one.kind is Parameter.KEYWORD_ONLY and name not in SHARED
-    }
+    own = {name: one.replace(annotation=_in_words(one.annotation)) for name, one in options_of(function).items()}
     common = [one for one in signature(command).parameters.values() if one.kind is not Parameter.VAR_KEYWORD]
     parameters = [*common[:2], *own.values(), *common[2:]]
     command.__signature__ = signature(command).replace(parameters=parameters)  # type: ignore[attr-defined]
@@ -96,9 +91,13 @@ def analysis_command(analysis: Analysis) -> Callable[..., int]:
 
 
 def _in_words(annotation: Any) -> Any:
-    """The type of an option, without what no word of a command line gives: arrays, results and studies."""
-    kept = [one for one in get_args(annotation) if one in _TYPED]
-    return Union[tuple(kept)] if isinstance(annotation, UnionType) else annotation  # noqa: UP007
+    """The type of an option, without what no word of a command line gives: arrays, results and studies.
+
+    Numbers may be words with a unit, such as "1 %", which the schema of options reads.
+    """
+    from beltdyn.parts.options import option_types
+
+    return Union[tuple(one for one in option_types(annotation) if one in _TYPED)]  # noqa: UP007
 
 
 def _help(analysis: Analysis, own: dict[str, Parameter]) -> str:

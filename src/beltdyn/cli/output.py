@@ -4,7 +4,7 @@ from collections.abc import Iterable, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, NamedTuple
 
-from beltdyn.analyses import Analysis
+from beltdyn.analyses import RUN, Analysis
 from beltdyn.cli.console import show, show_error, show_facts, show_table, show_warnings
 from beltdyn.cli.progress import progress_bar
 from beltdyn.errors import InternalError, LostOutputError, ModelError, SimulationError, is_internal
@@ -147,5 +147,6 @@ def ended(result: "Result") -> int:
     """Exit code of an analysis that ended without an error, but perhaps with internal errors at some points."""
     if result.status == "interrupted":
         return exit_code()
-    failures = result.dataset["failure"].values.ravel() if "failure" in result.dataset else ()
+    has_points = result.kind != RUN and "failure" in result.dataset
+    failures = result.dataset["failure"].values.ravel() if has_points else ()
     return InternalError.exit_code if any(is_internal(str(one)) for one in (*failures, *result.warnings)) else 0

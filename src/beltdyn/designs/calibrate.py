@@ -16,6 +16,7 @@ from beltdyn.designs.residuals import MOST, Residuals
 from beltdyn.model import Drive
 from beltdyn.model.parameter_study import CalibrationStudy
 from beltdyn.model.toml import edited, loads, read_study
+from beltdyn.parts.options import ForceTolerance, takes_options
 from beltdyn.results import Result, Variable, build_result
 from beltdyn.results.atomic import locked_output
 from beltdyn.results.schema import VARIOUS
@@ -163,11 +164,12 @@ _COORDINATES = {
 }
 
 
+@takes_options
 def calibrate(
     drive: Drive,
     *,
     study: Path | str | CalibrationStudy,
-    force_tolerance: float | None = None,
+    force_tolerance: ForceTolerance | None = None,
     output: Path | str | None = None,
     progress: Report | None = None,
     overwrite: bool = False,

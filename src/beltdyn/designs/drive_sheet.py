@@ -7,10 +7,11 @@ All states are those of the balance of tensions about the equilibrium at rest, w
 from collections.abc import Iterator, Mapping
 from inspect import signature
 from pathlib import Path
-from typing import Any, NamedTuple
+from typing import Annotated, Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
+from pydantic import Field
 
 from beltdyn.arrays import FloatArray
 from beltdyn.designs.line_sheet import line_sheet
@@ -19,7 +20,8 @@ from beltdyn.model import Drive, FixedTensioner, Prepared, alignment, prepare
 from beltdyn.model.alignment import judge_alignment
 from beltdyn.model.installation import DEFLECTION, Installation, tension_checks
 from beltdyn.model.parameter_study import PASS
-from beltdyn.parts.quantity import Number, Numbers, number_in, numbers_in
+from beltdyn.parts.options import RangeCount, takes_options
+from beltdyn.parts.quantity import Flag, Number, Numbers, Ratio, number_in, numbers_in
 from beltdyn.points.changed_drive import at_instant, held_at
 from beltdyn.points.duty import Column, at_row, durations_of, duty, duty_of
 from beltdyn.points.quasi_steady import QuasiSteady, Running, Torques, torques_between, torques_of
@@ -52,18 +54,19 @@ _ROW, _SPEED, _PULLEY, _SPAN, _TENSIONER = "row", "speed", "pulley", "span", "te
 _STATE, _MODE, _STANDARD = ("state",), ("mode",), ("standard",)
 
 
+@takes_options
 def sheet(
     drive: Drive,
     *,
     table: Path | str | None = None,
     speed: Numbers | None = None,
-    points: int = 20,
+    points: RangeCount = 20,
     acceleration: Number = "0 rpm/s",
-    light_load: float = 0.1,
+    light_load: Annotated[Ratio, Field(ge=0, le=1)] = 0.1,
     friction: Numbers = "0.7, 1, 1.3",
     tolerance: Number | None = None,
     wear: Number | None = None,
-    full: bool = False,
+    full: Flag = False,
     at: float | str | None = None,
     progress: Report | None = None,
 ) -> Result:
@@ -144,7 +147,7 @@ def sheet(
     rest = bring_to_stand(prepare(averaged(given)))
     chosen = _Options(
         factors=numbers_in("friction", friction, "", 3),
-        light=_light(light_load),
+        light=light_load,
         acceleration=_acceleration(acceleration),
         lengths=lengths_of(rest.prepared, tolerance, wear),
     )
@@ -204,12 +207,6 @@ def _steepest(drive: Drive) -> float:
         return 0.0
     times = np.linspace(drive.simulation.begin, drive.simulation.end, _INSTANTS)
     return float(np.max(np.diff(np.abs(speed.at(times)))) / (times[1] - times[0]))
-
-
-def _light(given: float) -> float:
-    if not 0.0 <= given <= 1.0:
-        raise ModelError(f"light_load = {given:g} must be from 0 to 1: the factor on all loads, such as 0.1.")
-    return given
 
 
 class _DriveSheet:

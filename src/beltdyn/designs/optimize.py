@@ -2,18 +2,21 @@
 
 from collections.abc import Callable
 from pathlib import Path
-from typing import Any, NamedTuple
+from typing import Annotated, Any, NamedTuple
 
 import numpy as np
+from pydantic import Field
 
 from beltdyn.arrays import FloatArray
 from beltdyn.designs.batch import held, study_points
 from beltdyn.designs.designs import Design, Designs, free_numbers
 from beltdyn.designs.optimization_history import Aims, History, aims_of
-from beltdyn.errors import ConvergenceError, InternalError, ModelError, is_internal
+from beltdyn.errors import ConvergenceError, InternalError, is_internal
 from beltdyn.model import Drive
 from beltdyn.model.parameter_study import OptimizationStudy
 from beltdyn.model.toml import read_study
+from beltdyn.parts.options import ForceTolerance, takes_options
+from beltdyn.parts.quantity import Count
 from beltdyn.results import Result
 from beltdyn.solvers.run_progress import Progress, Report
 
@@ -131,12 +134,13 @@ class Descent:
         return step, float(here.merit - found.x[-2] - _PENALTY * found.x[-1])
 
 
+@takes_options
 def optimize(
     drive: Drive,
     *,
     study: Path | str | OptimizationStudy,
-    most: int = 60,
-    force_tolerance: float | None = None,
+    most: Annotated[Count, Field(ge=2)] = 60,
+    force_tolerance: ForceTolerance | None = None,
     output: Path | str | None = None,
     progress: Report | None = None,
     overwrite: bool = False,
@@ -193,8 +197,6 @@ def optimize(
     >>> bool(found.dataset.goal_found < found.dataset.goal_at_start)
     True
     """
-    if most < 2:
-        raise ModelError(f"most = {most} must be 2 or more designs.")
     given = study if isinstance(study, OptimizationStudy) else read_study(study, OptimizationStudy)
     base = Path() if isinstance(study, OptimizationStudy) else Path(study).parent
     numbers, there = free_numbers(drive, given.numbers), held(drive, given.points)

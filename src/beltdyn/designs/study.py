@@ -5,7 +5,6 @@ from collections import deque
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from concurrent.futures import FIRST_COMPLETED, Future, wait
 from contextlib import suppress
-from inspect import signature
 from math import ceil
 from pathlib import Path
 from typing import Any
@@ -23,7 +22,7 @@ from beltdyn.model import Drive, ParameterStudy, load
 from beltdyn.model.pulley import refuse_functions
 from beltdyn.model.toml import read_study
 from beltdyn.parts.kind_fields import refuse_kinds_of_scripts
-from beltdyn.parts.messages import suggest
+from beltdyn.parts.options import options_of, read_options, require_options
 from beltdyn.results import Result
 from beltdyn.results.atomic import make_folder, target_of
 from beltdyn.signals import uninterrupted
@@ -160,8 +159,8 @@ class Dispatch:
                     self._take_outcomes(future.result())
 
 
-_OWN = ("output", "progress", "overwrite", "start", "integrator", "resume")
-"""Parameters of analyses that a study fills in, or leaves alone."""
+_LEFT_OUT = ("resume",)
+"""Options of analyses that make no sense at points."""
 
 
 def study(
@@ -264,17 +263,14 @@ def _drive_of(study: ParameterStudy, base: Path) -> Drive:
 
 def _options(analysis: Analysis, given: Mapping[str, Any], base: Path) -> dict[str, Any]:
     """Options of the analysis, with files by their paths from here."""
-    parameters = dict(list(signature(analysis.function).parameters.items())[1:])
-    known = {name: one for name, one in parameters.items() if name not in _OWN}
-    for name in given:
-        if name not in known:
-            told = suggest(name, list(known)) if known else "It has no options"
-            raise ModelError(f'options: {name} is not an option of "{analysis.name}". {told}.'.replace("?.", "?"))
-    missing = [name for name, one in known.items() if one.default is one.empty and name not in given]
-    if missing:
-        raise ModelError(f'options: "{analysis.name}" needs {missing[0]}. Write it in [options].')
+    require_options(analysis.function, given, analysis.name, _LEFT_OUT)
+    try:
+        read_options(analysis.function, given)
+    except ModelError as error:
+        raise ModelError(f"options: {error}") from error
+    known = options_of(analysis.function)
     return {
-        name: base / value if isinstance(value, str) and "Path" in str(known[name].annotation) else value
+        name: (base / value).resolve() if isinstance(value, str) and "Path" in str(known[name].annotation) else value
         for name, value in given.items()
     }
 

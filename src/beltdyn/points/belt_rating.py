@@ -1,9 +1,10 @@
 """Power rating of the belt of a drive: rated power, utilization, and number or width of belts needed at each pulley."""
 
 from collections.abc import Iterator
-from typing import Any
+from typing import Annotated, Any
 
 import numpy as np
+from pydantic import Field
 
 from beltdyn.arrays import FloatArray
 from beltdyn.errors import ModelError
@@ -11,6 +12,8 @@ from beltdyn.model import Drive, prepare
 from beltdyn.model.rating import PowerRating, RatedBelt
 from beltdyn.model.toothing import MeshRating, RatedTeeth
 from beltdyn.parts.messages import listing
+from beltdyn.parts.options import takes_options
+from beltdyn.parts.quantity import Ratio
 from beltdyn.points.changed_drive import held_at
 from beltdyn.results import Result, Variable, build_result
 from beltdyn.results.means import rate, utilization
@@ -67,10 +70,11 @@ SCALARS = {
 }
 
 
+@takes_options
 def rating(
     drive: Drive,
     *,
-    service_factor: float | None = None,
+    service_factor: Annotated[Ratio, Field(gt=0)] | None = None,
     at: float | str | None = None,
     progress: Report | None = None,
 ) -> Result:

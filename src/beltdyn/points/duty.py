@@ -13,6 +13,7 @@ from beltdyn.errors import ModelError
 from beltdyn.model import Drive, Pulley
 from beltdyn.model.parameter_study import PASS, columns_of
 from beltdyn.parts.messages import suggest
+from beltdyn.parts.options import ForceTolerance, takes_options
 from beltdyn.parts.table_file import HeadedColumn, read_headed
 from beltdyn.points.changed_drive import (
     driver_of,
@@ -60,12 +61,13 @@ class Column(NamedTuple):
     """In SI units; None where a row leaves it open."""
 
 
+@takes_options
 def duty(
     drive: Drive,
     *,
     table: Path | str | None = None,
     at: float | str | None = None,
-    force_tolerance: float | None = None,
+    force_tolerance: ForceTolerance | None = None,
     output: Path | str | None = None,
     progress: Report | None = None,
     overwrite: bool = False,

@@ -3,14 +3,17 @@
 from collections.abc import Iterator, Mapping
 from functools import partial
 from pathlib import Path
-from typing import Any
+from typing import Annotated, Any
 
 import numpy as np
 from numpy.typing import NDArray
+from pydantic import Field
 
 from beltdyn.arrays import FloatArray
 from beltdyn.errors import ModelError
 from beltdyn.model import Drive, load
+from beltdyn.parts.options import ForceTolerance, takes_options
+from beltdyn.parts.quantity import Ratio
 from beltdyn.points.changed_drive import held_at, require_belt
 from beltdyn.points.duty import Column, at_row, durations_of, duty_of
 from beltdyn.points.operating_points import PULLEY, Axes, OperatingPoints
@@ -32,15 +35,16 @@ _OF_HISTORY = {
 }
 
 
+@takes_options
 def life(
     drive: Drive,
     *,
     table: Path | str | None = None,
     run: Run | Path | str | None = None,
-    repeats: float = 1.0,
+    repeats: Annotated[Ratio, Field(ge=0)] = 1.0,
     reference: Drive | Result | Path | str | None = None,
     at: float | str | None = None,
-    force_tolerance: float | None = None,
+    force_tolerance: ForceTolerance | None = None,
     output: Path | str | None = None,
     progress: Report | None = None,
     overwrite: bool = False,
@@ -105,7 +109,7 @@ def life(
         raise ModelError(f"repeats = {repeats:g} needs a run that occurs so often. Give run, or omit repeats.")
     columns = duty_of(drive, table) or [Column("duration", "", [HOUR])]
     held, durations = held_at(drive, at), durations_of(columns)
-    event = None if run is None else _repeated(damage_of_run(_run_of(drive, run)), repeats)
+    event = None if run is None else damage_of_run(_run_of(drive, run)).times(repeats)
     compared = None if reference is None else _reference(reference, partial(life, table=table, at=at))
     axes = {"row": (Variable(("row",), "1", "Row", "int64"), np.arange(1, durations.size + 1))}
     with OperatingPoints("life", held, axes, output, progress, overwrite, names=(*_KEPT, "failure")) as points:
@@ -118,13 +122,6 @@ def life(
         points.each(lambda row: at_row(held, columns, row - 1), force_tolerance, then=sums.take)
         points.notes = list(sums.warnings(points.arrays))
     return points.result()
-
-
-def _repeated(once: Damage, repeats: float) -> Damage:
-    """The damage of a run that occurs several times."""
-    if not repeats >= 0.0:
-        raise ModelError(f"repeats = {repeats:g} must be non-negative: occurrences of the run in a pass of the table.")
-    return once.times(repeats)
 
 
 class _Sums:

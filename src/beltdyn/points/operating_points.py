@@ -16,6 +16,7 @@ from numpy.typing import ArrayLike, NDArray
 from beltdyn.arrays import FloatArray
 from beltdyn.errors import BeltdynError, ConvergenceError, InternalError, ModelError, classified
 from beltdyn.model import Drive
+from beltdyn.parts.options import ForceTolerance, RangeCount, takes_options
 from beltdyn.parts.quantity import RPM, Numbers, numbers_in
 from beltdyn.points.changed_drive import at_speed_under, driver_of, held_at, sense_of, with_load
 from beltdyn.results import Result, Run, Variable, build_result
@@ -485,16 +486,17 @@ def serpentine(shape: Sequence[int]) -> Iterator[tuple[int, ...]]:
         yield from ((number, *rest) for rest in inner[:: 1 if number % 2 == 0 else -1])
 
 
+@takes_options
 def operating_map(
     drive: Drive,
     *,
     pulley: str | None = None,
     speed: Numbers | None = None,
     load: Numbers | None = None,
-    points: int = 40,
-    load_points: int = 10,
+    points: RangeCount = 40,
+    load_points: RangeCount = 10,
     at: float | str | None = None,
-    force_tolerance: float | None = None,
+    force_tolerance: ForceTolerance | None = None,
     output: Path | str | None = None,
     progress: Report | None = None,
     overwrite: bool = False,

@@ -3,15 +3,17 @@
 from collections.abc import Callable, Mapping
 from functools import partial
 from pathlib import Path
-from typing import Any, NamedTuple
+from typing import Annotated, Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
+from pydantic import Field
 
 from beltdyn.arrays import FloatArray
 from beltdyn.errors import BeltdynError, ConvergenceError, ModelError
 from beltdyn.model import Drive
 from beltdyn.model.pulley import flat_friction_on
+from beltdyn.parts.options import ForceTolerance, RangeCount, takes_options
 from beltdyn.parts.quantity import Numbers, numbers_in
 from beltdyn.points.changed_drive import (
     at_speed,
@@ -80,15 +82,16 @@ class _Curve(NamedTuple):
     then: Callable[[tuple[int, ...], Run | None], None] | None = None
 
 
+@takes_options
 def traction(
     drive: Drive,
     *,
     pulley: str | None = None,
     slip: Numbers | None = None,
     torque: Numbers | None = None,
-    points: int = 30,
+    points: Annotated[RangeCount, Field(ge=_FEWEST)] = 30,
     at: float | str | None = None,
-    force_tolerance: float | None = None,
+    force_tolerance: ForceTolerance | None = None,
     output: Path | str | None = None,
     progress: Report | None = None,
     overwrite: bool = False,
@@ -171,8 +174,6 @@ def traction(
             f"{one.name} has no teeth: its torque follows from its slip and stays the same beyond gross slip. Give "
             "slip, or omit both."
         )
-    if points < _FEWEST:
-        raise ModelError(f"points = {points} must be {_FEWEST} or more. Give more, or a list.")
     held = held.replace(pulley=[*held.pulleys[driver:], *held.pulleys[:driver]])  # slip is against the first
     number = (number - driver) % len(held.pulleys)
     if one.hub:

@@ -6,6 +6,7 @@ from typing import Any
 from beltdyn.errors import ModelError
 from beltdyn.model import Drive, Prepared, prepare
 from beltdyn.observation.recording import Recording
+from beltdyn.parts.options import ForceTolerance, takes_options
 from beltdyn.results import StaticResult, mesh_error_attribute, static_result
 from beltdyn.solvers.run_progress import Report
 from beltdyn.solvers.trajectory import Chunk
@@ -21,7 +22,10 @@ _TOLERANCE = 0.01
 """Default tolerance of contact forces of a belt that needs a graded mesh at rest."""
 
 
-def equilibrium(drive: Drive, *, force_tolerance: float | None = None, progress: Report | None = None) -> StaticResult:
+@takes_options
+def equilibrium(
+    drive: Drive, *, force_tolerance: ForceTolerance | None = None, progress: Report | None = None
+) -> StaticResult:
     """Compute the static equilibrium of a drive at rest.
 
     Parameters

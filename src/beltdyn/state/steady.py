@@ -2,9 +2,10 @@
 
 import time
 from collections.abc import Mapping
-from typing import NamedTuple
+from typing import Annotated, NamedTuple
 
 import numpy as np
+from pydantic import Field
 
 from beltdyn.arrays import FloatArray
 from beltdyn.errors import ConvergenceError, ModelError
@@ -12,7 +13,8 @@ from beltdyn.machines.loads.trim import Trim
 from beltdyn.model import Drive, Prepared, prepare
 from beltdyn.observation.recording import Recording
 from beltdyn.parts.messages import listing
-from beltdyn.parts.quantity import number_in
+from beltdyn.parts.options import ForceTolerance, takes_options
+from beltdyn.parts.quantity import Count, number_in
 from beltdyn.results import Run, mesh_error_attribute
 from beltdyn.results.checks.machines import GROWTH
 from beltdyn.results.provenance import STAYING, mesh_used
@@ -117,12 +119,13 @@ _TURNS = 2.2
 """Turns of the belt in the results; means are taken over the last one."""
 
 
+@takes_options
 def steady_state(
     drive: Drive,
     *,
     at: float | str | None = None,
-    force_tolerance: float | None = None,
-    elements: int | None = None,
+    force_tolerance: ForceTolerance | None = None,
+    elements: Annotated[Count, Field(ge=3)] | None = None,
     start: Run | None = None,
     progress: Report | None = None,
 ) -> Run:
@@ -418,8 +421,6 @@ def require_tolerance(force_tolerance: float) -> None:
 def _require_sense(force_tolerance: float, elements: int | None) -> None:
     """Make sure that the options make sense."""
     require_tolerance(force_tolerance)
-    if elements is not None and elements < 3:
-        raise ModelError(f"elements = {elements} must be 3 or more. Omit it for a graded mesh.")
 
 
 def _running(system: System, state: State, duration: float) -> Chunk:

@@ -12,7 +12,8 @@ from beltdyn.observation.compilation import compile_kernels
 from beltdyn.observation.observer import Arrays
 from beltdyn.observation.recording import Recording
 from beltdyn.parts.messages import listing
-from beltdyn.parts.quantity import number_in
+from beltdyn.parts.options import takes_options
+from beltdyn.parts.quantity import Flag, number_in
 from beltdyn.results import Run, require_room
 from beltdyn.results.checks.mesh import COARSE_SETTINGS
 from beltdyn.results.summary import FAILURE, VALUES, coarse_settings, ends_steadily, steady_losses, steady_values
@@ -29,6 +30,7 @@ CHECKPOINT = 60.0
 """Computing time between two checkpoints of a run, s."""
 
 
+@takes_options
 def simulate(
     drive: Drive,
     output: Path | str | None = None,
@@ -36,9 +38,9 @@ def simulate(
     overwrite: bool = False,
     integrator: Integrator | None = None,
     *,
-    compare_steady: bool = False,
+    compare_steady: Flag = False,
     checkpoint: float | str = CHECKPOINT,
-    resume: bool = False,
+    resume: Flag = False,
 ) -> Run:
     """Simulate a drive over time.
 

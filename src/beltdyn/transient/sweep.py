@@ -8,6 +8,7 @@ from beltdyn.errors import ModelError
 from beltdyn.machines import Constant, FunctionLoad, Load, Profile
 from beltdyn.model import Drive, prepare
 from beltdyn.observation.observer import SlipThrough
+from beltdyn.parts.options import takes_options
 from beltdyn.parts.part import Part
 from beltdyn.parts.quantity import number_in, with_other_sense
 from beltdyn.results import Run
@@ -22,6 +23,7 @@ _LATE = 1e9
 """An instant when nothing changes any more, s."""
 
 
+@takes_options
 def sweep(
     drive: Drive,
     *,

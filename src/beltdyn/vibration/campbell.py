@@ -8,15 +8,17 @@ assurance |a* b|^2 / (|a|^2 |b|^2) is 1 where the shapes agree, and 0 where they
 
 from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
-from typing import Any, NamedTuple
+from typing import Annotated, Any, NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike
+from pydantic import Field
 
 from beltdyn.arrays import ComplexArray, FloatArray, IntArray
 from beltdyn.errors import ModelError
 from beltdyn.model import Drive, prepare
-from beltdyn.parts.quantity import RPM, Numbers, numbers_in
+from beltdyn.parts.options import ForceTolerance, RangeCount, takes_options
+from beltdyn.parts.quantity import RPM, Count, Numbers, numbers_in
 from beltdyn.points.changed_drive import at_instant, at_speed, driver_of, held_at, sense_of
 from beltdyn.points.operating_points import Axes, OperatingPoints
 from beltdyn.results import Result, Run, Variable
@@ -413,17 +415,18 @@ _KEPT = (
 """Variables of operating points that are kept."""
 
 
+@takes_options
 def campbell(
     drive: Drive,
     *,
     speed: Numbers,
     pulley: str | None = None,
-    points: int = 40,
-    count: int = 8,
+    points: RangeCount = 40,
+    count: Annotated[Count, Field(ge=1)] = 8,
     orders: Numbers | None = None,
     dry_tensioners: str = SLIDING,
     at: float | str | None = None,
-    force_tolerance: float | None = None,
+    force_tolerance: ForceTolerance | None = None,
     output: Path | str | None = None,
     progress: Report | None = None,
     overwrite: bool = False,
@@ -485,8 +488,6 @@ def campbell(
     >>> found.dataset.frequency.dims
     ('speed', 'mode')
     """
-    if count < 1:
-        raise ModelError(f"count = {count} must be 1 or more.")
     if dry_tensioners not in (SLIDING, STUCK):
         raise ModelError(f'dry_tensioners = {dry_tensioners!r} must be "{SLIDING}" or "{STUCK}".')
     require_closed(drive, web=True)

@@ -1,15 +1,17 @@
 """Modes of a drive about rest, steady running or a state of a run: frequency, damping and shape."""
 
 from collections.abc import Callable, Iterator
-from typing import NamedTuple
+from typing import Annotated, NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike
+from pydantic import Field
 
 from beltdyn.arrays import BoolArray, ComplexArray, IntArray
 from beltdyn.errors import ConvergenceError, ModelError
 from beltdyn.model import Drive, prepare
-from beltdyn.parts.quantity import RPM, Number, numbers_in
+from beltdyn.parts.options import ForceTolerance, takes_options
+from beltdyn.parts.quantity import RPM, Count, Number, numbers_in
 from beltdyn.points.changed_drive import at_speed, driver_of, held_at, sense_of
 from beltdyn.results import Result, Run, Variable, build_result
 from beltdyn.results.schema import AXIS_NAMES, COORDINATES, runs_steadily
@@ -194,6 +196,7 @@ REST: str = "rest"
 STEADY: str = "steady"
 
 
+@takes_options
 def modes(
     drive: Drive | Run,
     *,
@@ -201,8 +204,8 @@ def modes(
     speed: Number | None = None,
     pulley: str | None = None,
     at: float | str | None = None,
-    count: int = 12,
-    force_tolerance: float | None = None,
+    count: Annotated[Count, Field(ge=1)] = 12,
+    force_tolerance: ForceTolerance | None = None,
     progress: Report | None = None,
 ) -> Result:
     """Compute the modes of a drive: frequency, damping ratio and shape.
@@ -288,8 +291,6 @@ def _require_sense(
     about: str | Run, speed: Number | None, pulley: str | None, at: float | str | None, count: int
 ) -> None:
     """Make sure that the options make sense."""
-    if count < 1:
-        raise ModelError(f"count = {count} must be 1 or more.")
     if count > MOST_SWINGING:
         raise ModelError(f"count = {count} exceeds the limit of {MOST_SWINGING} modes. Give fewer.")
     if not isinstance(about, Run) and about not in (REST, STEADY):

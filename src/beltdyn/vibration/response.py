@@ -11,6 +11,7 @@ from beltdyn.arrays import FloatArray
 from beltdyn.errors import ModelError
 from beltdyn.model import Drive
 from beltdyn.parts.messages import suggest
+from beltdyn.parts.options import ForceTolerance, RangeCount, takes_options
 from beltdyn.parts.quantity import Numbers, numbers_in
 from beltdyn.parts.table_file import HeadedColumn, read_headed
 from beltdyn.points.changed_drive import at_instant, at_speed, driver_of, held_at, sense_of
@@ -140,17 +141,18 @@ _KEPT = (
 """Variables of operating points that are kept: what responses swing about."""
 
 
+@takes_options
 def response(
     drive: Drive,
     *,
     speed: Numbers,
     pulley: str | None = None,
-    points: int = 40,
+    points: RangeCount = 40,
     dry_tensioners: str = SLIDING,
     compare: Path | str | Run | None = None,
     measured: Path | str | None = None,
     at: float | str | None = None,
-    force_tolerance: float | None = None,
+    force_tolerance: ForceTolerance | None = None,
     output: Path | str | None = None,
     progress: Report | None = None,
     overwrite: bool = False,

@@ -1,14 +1,16 @@
 """A linear axis over its stroke: stiffness at the carriage, and natural frequency, about rest."""
 
-from typing import Any
+from typing import Annotated, Any
 
 import numpy as np
+from pydantic import Field
 
 from beltdyn.arrays import FloatArray
 from beltdyn.errors import ModelError
 from beltdyn.model import Drive, Prepared, prepare
 from beltdyn.model.end import free_stroke
-from beltdyn.parts.quantity import Numbers, numbers_in
+from beltdyn.parts.options import RangeCount, takes_options
+from beltdyn.parts.quantity import Count, Numbers, numbers_in
 from beltdyn.results import Result, Variable, build_result
 from beltdyn.solvers.flutter import Vibrations
 from beltdyn.solvers.run_progress import Progress, Report
@@ -37,8 +39,14 @@ BELT = "belt"
 """Name of the belt among what moves in a mode."""
 
 
+@takes_options
 def stroke(
-    drive: Drive, *, places: Numbers | None = None, points: int = 9, count: int = 6, progress: Report | None = None
+    drive: Drive,
+    *,
+    places: Numbers | None = None,
+    points: RangeCount = 9,
+    count: Annotated[Count, Field(ge=1)] = 6,
+    progress: Report | None = None,
 ) -> Result:
     """Compute stiffness, natural frequency and modes of a linear axis over its stroke.
 
@@ -86,8 +94,6 @@ def stroke(
             "no pulley holds the belt: a stiffness at the carriage needs one with prescribed speed. Give the driver "
             "its speed in place of a motor."
         )
-    if count < 1:
-        raise ModelError(f"count = {count} must be 1 or more.")
     prepared = prepare(on_equal_elements(drive))
     ways = _ways(prepared, places, points)
     first = rest_of(prepared, progress).prepared.drive  # with the length, or the take-up, of the installed tension

@@ -113,7 +113,7 @@ def test_a_slipping_pulley_is_told_with_its_case() -> None:
 @pytest.mark.parametrize(
     ("options", "said"),
     [
-        ({"light_load": 1.5}, "light_load = 1.5 must be from 0 to 1"),
+        ({"light_load": 1.5}, "light_load = 1.5 must be at most 1"),
         ({"speed": "-100, 100 rpm"}, "must be positive"),
         ({"tolerance": "-1 mm"}, "tolerance = '-1 mm' must be non-negative"),
     ],

@@ -119,7 +119,7 @@ def test_runs_that_do_not_fit(fatigue_drive: Drive, run: Run, tmp_path: Path, fo
         life(fatigue_drive, reference=steady_state(fatigue_drive))
     with pytest.raises(ModelError, match=r"repeats = 200 needs a run"):
         life(fatigue_drive, repeats=200.0)
-    with pytest.raises(ModelError, match=r"repeats = -1 must be non-negative"):
+    with pytest.raises(ModelError, match=r"repeats = -1.0 must be at least 0"):
         life(fatigue_drive, run=steady_state(fatigue_drive), repeats=-1.0)
 
 

@@ -52,7 +52,7 @@ def test_where_steps_of_the_slip_are_too_long_shorter_ones_are_taken() -> None:
 def test_which_pulley(loaded: Drive) -> None:
     with pytest.raises(ModelError, match="pulley = 'driver' is the driver"):
         traction(loaded, pulley="driver")
-    with pytest.raises(ModelError, match="points = 2 must be 3 or more"):
+    with pytest.raises(ModelError, match="points = 2 must be at least 3"):
         traction(loaded, points=2)
 
 

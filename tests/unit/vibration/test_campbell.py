@@ -112,7 +112,7 @@ def test_a_speed_that_fails_is_marked_and_others_stay(loaded: Drive) -> None:
 @pytest.mark.parametrize(
     ("options", "said"),
     [
-        ({"count": 0}, "count = 0 must be 1 or more"),
+        ({"count": 0}, "count = 0 must be at least 1"),
         ({"dry_tensioners": "dry"}, "dry_tensioners = 'dry' must be"),
         ({"orders": "first"}, "orders = 'first' must be"),
         ({"speed": "-1..100 rpm"}, "must not be negative"),

@@ -112,7 +112,7 @@ def test_modes_with_stuck_tensioners_have_numbers_of_their_own(drive: Drive) -> 
 @pytest.mark.parametrize(
     ("options", "said"),
     [
-        ({"count": 0}, "count = 0 must be 1 or more"),
+        ({"count": 0}, "count = 0 must be at least 1"),
         ({"count": 100}, "count = 100 exceeds the limit of 99 modes"),
         ({"about": "standstill"}, "about = 'standstill' is not a state"),
         ({"about": "rest", "speed": "800 rpm"}, "speed, pulley and at require about"),

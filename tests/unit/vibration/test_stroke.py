@@ -35,7 +35,7 @@ def test_places_are_within_the_free_way() -> None:
 
 
 def test_it_needs_a_carriage_and_a_held_pulley_and_modes() -> None:
-    with pytest.raises(ModelError, match="count = 0 must be 1 or more"):
+    with pytest.raises(ModelError, match="count = 0 must be at least 1"):
         bd.stroke(AXIS, count=0)
     with pytest.raises(ModelError, match="a stroke needs a carriage"):
         bd.stroke(bd.example("two_pulley"))
