@@ -92,12 +92,13 @@ def _try_group(mutants: list[Mutant], asked: argparse.Namespace, name: str) -> N
     tests = asked.tests or [f"tests/unit/{folder.removesuffix('.py')}" for folder in asked.folders]
 
     def session() -> int:
-        in_session([*tests, "-k", asked.select], lambda items: _try_in_functions(items, mutants, asked, kept))
+        if not in_session([*tests, "-k", asked.select], lambda items: _try_in_functions(items, mutants, asked, kept)):
+            raise SystemExit("The tests cannot be collected.")
         answers.write_text(json.dumps([asdict(each) for each in mutants]), encoding="utf-8")
         return 0
 
-    answers.unlink(missing_ok=True)
-    os.waitpid(fork(session, math.inf), 0)
+    if os.waitstatus_to_exitcode(os.waitpid(fork(session, math.inf), 0)[1]):
+        raise SystemExit(1)
     tried = [Mutant(**each) for each in json.loads(answers.read_text(encoding="utf-8"))]
     answers.unlink()
     for mutant, result in zip(mutants, tried, strict=True):
