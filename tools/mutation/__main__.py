@@ -25,6 +25,7 @@ from functools import partial
 from importlib import import_module
 from itertools import count
 from pathlib import Path
+from pkgutil import walk_packages
 from types import CodeType
 
 import pytest
@@ -50,6 +51,8 @@ LIBRARIES = ["matplotlib.pyplot", "numba", "scipy.integrate", "scipy.optimize", 
 LIBRARIES += ["pydantic", "xarray", "h5py"]
 PATIENCE = 2.5
 """A mutant whose tests take longer than this many times their usual time runs without end."""
+NOT_TRIED = {"__main__", "app", "cosimulation"}
+"""Programs on top of the package, which are not imported for trials."""
 STARTING = 2.0
 """Time to start a session, s."""
 
@@ -109,11 +112,13 @@ def _try_group(mutants: list[Mutant], asked: argparse.Namespace, name: str) -> N
 def _try_in_functions(items: list[pytest.Item], mutants: list[Mutant], asked: argparse.Namespace, kept: Path) -> None:
     """Try the mutants inside functions, which replace those of the imported modules."""
     items = _first_cases(items, asked.cases)
-    if os.environ["NUMBA_DISABLE_JIT"] == "0":
-        _load_kernels()
+    _warm_up(os.environ["NUMBA_DISABLE_JIT"] == "0")
     functions = functions_of({mutant.file for mutant in mutants})
     known = traces(items, asked.folders, asked.slowest, kept)
     print(f"{len(mutants)} mutants, {len(known)} of {len(items)} tests", flush=True)
+    left_out = Counter(item.path.name for item in items if item.nodeid not in known)
+    if left_out:
+        print("left out: " + ", ".join(f"{number} of {name}" for name, number in left_out.items()), flush=True)
     by_id = {item.nodeid: item for item in items}
     lines = _tests_of_lines(known)
 
@@ -228,13 +233,21 @@ def _tests_of_lines(known: dict[str, Trace]) -> defaultdict[tuple[str, int], lis
     return lines
 
 
-def _load_kernels() -> None:
-    """Load the usual kernels once for all copies of this process."""
+def _warm_up(kernels: bool) -> None:
+    """Import the package, prepare a drive, and load the usual kernels if they are compiled, once for all copies."""
     import beltdyn
+    from beltdyn.system.build import drive_system
+    from beltdyn.system.state import laid
 
+    for module in walk_packages(beltdyn.__path__, "beltdyn."):
+        if module.name.split(".")[1] not in NOT_TRIED:
+            import_module(module.name)
     drive = beltdyn.example("two_pulley")
-    beltdyn.simulate(drive.replace(simulation=drive.simulation.replace(duration=1e-3, output_interval=1e-3)))
-    beltdyn.steady_state(drive)
+    prepared = beltdyn.model.prepare(drive)
+    laid(drive_system(prepared), prepared.path)
+    if kernels:
+        beltdyn.simulate(drive.replace(simulation=drive.simulation.replace(duration=1e-3, output_interval=1e-3)))
+        beltdyn.steady_state(drive)
 
 
 def _print_score(folder: str, mutants: list[Mutant]) -> None:
