@@ -18,6 +18,7 @@ import json
 import math
 import os
 import random
+import tempfile
 from collections import Counter, defaultdict
 from collections.abc import Callable, Iterable, Iterator
 from dataclasses import asdict
@@ -32,7 +33,7 @@ import pytest
 from hypothesis import Phase, settings
 
 from tools.mutation.mutants import Mutant, control, has_kernels, mutants_of
-from tools.mutation.traces import Trace, read_traces, traces
+from tools.mutation.traces import Trace, left_out, read_traces, traces
 from tools.mutation.trial import (
     FAULT,
     MAX_TESTS,
@@ -70,14 +71,21 @@ def main() -> None:
     for library in LIBRARIES:
         import_module(library)
     mutants = list(_sample(asked))
+    with tempfile.TemporaryDirectory() as folder:
+        tempfile.tempdir = folder
+        _try_all(mutants, asked)
+    asked.out.write_text(json.dumps([asdict(each) for each in mutants], indent=1), encoding="utf-8")
+    for folder in asked.folders:
+        _print_score(folder, [each for each in mutants if each.file.startswith(f"src/beltdyn/{folder}")])
+
+
+def _try_all(mutants: list[Mutant], asked: argparse.Namespace) -> None:
+    """Try mutants of files with kernels as plain Python, then those of other files with compiled kernels."""
     for kernels_interpreted in (True, False):
         group = [each for each in mutants if has_kernels(ROOT / each.file) is kernels_interpreted]
         if group:
             _interpret_kernels(kernels_interpreted)
             _try_group(group, asked, "plain" if kernels_interpreted else "compiled")
-    asked.out.write_text(json.dumps([asdict(each) for each in mutants], indent=1), encoding="utf-8")
-    for folder in asked.folders:
-        _print_score(folder, [each for each in mutants if each.file.startswith(f"src/beltdyn/{folder}")])
 
 
 def _interpret_kernels(interpreted: bool) -> None:
@@ -116,9 +124,8 @@ def _try_in_functions(items: list[pytest.Item], mutants: list[Mutant], asked: ar
     functions = functions_of({mutant.file for mutant in mutants})
     known = traces(items, asked.folders, asked.slowest, kept)
     print(f"{len(mutants)} mutants, {len(known)} of {len(items)} tests", flush=True)
-    left_out = Counter(item.path.name for item in items if item.nodeid not in known)
-    if left_out:
-        print("left out: " + ", ".join(f"{number} of {name}" for name, number in left_out.items()), flush=True)
+    for reason, tests in Counter(left_out(kept).values()).items():
+        print(f"{tests} left out: {reason}", flush=True)
     by_id = {item.nodeid: item for item in items}
     lines = _tests_of_lines(known)
 

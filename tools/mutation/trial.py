@@ -8,6 +8,7 @@ import os
 import resource
 import signal
 import sys
+import tempfile
 import traceback
 from collections import defaultdict
 from collections.abc import Callable, Iterable, Iterator
@@ -49,6 +50,11 @@ class _Loop:
         self.loop = loop
         self.has_run = False
         self.error: BaseException | None = None
+        self.reason = ""
+
+    def pytest_runtest_logreport(self, report: pytest.TestReport) -> None:
+        if report.failed:
+            self.reason = str(report.longrepr).splitlines()[-1]
 
     def pytest_runtestloop(self, session: pytest.Session) -> bool:
         session.config._tmp_path_factory.getbasetemp()  # type: ignore[attr-defined]  # one for all copies
@@ -79,11 +85,16 @@ def in_session(tests: Iterable[str], loop: Callable[[list[pytest.Item]], None]) 
     loop : Callable
         Takes the list of collected tests.
     """
-    plugin = _Loop(loop)
-    pytest.main([*OPTIONS, *tests], plugins=[plugin])
+    plugin, folder = _Loop(loop), tempfile.mkdtemp()  # that of other sessions may be removed by them
+    pytest.main([*OPTIONS, f"--basetemp={folder}/tests", *tests], plugins=[plugin])
     if plugin.error:
         raise plugin.error
     return plugin.has_run
+
+
+def reason_of_failure(item: pytest.Item) -> str:
+    """Last line of the report of the last test that failed in the session of a test."""
+    return next(each for each in item.config.pluginmanager.get_plugins() if isinstance(each, _Loop)).reason
 
 
 def first_failure(items: list[pytest.Item]) -> int:
