@@ -88,6 +88,12 @@ def _try_all(mutants: list[Mutant], asked: argparse.Namespace) -> None:
             _try_group(group, asked, "plain" if kernels_interpreted else "compiled")
 
 
+def _mirror(folder: str) -> list[Path]:
+    """Tests of a folder, or of a file, by their names."""
+    path = Path("tests/unit", folder)
+    return [path] if path.is_dir() else sorted(path.parent.glob(f"test_{path.stem}*.py"))
+
+
 def _interpret_kernels(interpreted: bool) -> None:
     """Let Python run kernels, or Numba compile them, in copies of this process, which has not imported the package."""
     import numba
@@ -100,7 +106,7 @@ def _try_group(mutants: list[Mutant], asked: argparse.Namespace, name: str) -> N
     """Try mutants in a copy of this process, which imports the package, and note what becomes of them."""
     answers = asked.out.with_suffix(f".{name}.json").absolute()
     kept = asked.out.with_suffix(f".{name}.traces.json").absolute()
-    tests = asked.tests or [f"tests/unit/{folder.removesuffix('.py')}" for folder in asked.folders]
+    tests = asked.tests or [str(test) for folder in asked.folders for test in _mirror(folder)]
 
     def session() -> int:
         if not in_session([*tests, "-k", asked.select], lambda items: _try_in_functions(items, mutants, asked, kept)):
