@@ -22,6 +22,7 @@ from beltdyn.results.tension_balance import WEB_LINE
 from beltdyn.solvers.run_progress import Progress, Report
 from beltdyn.solvers.trajectory import Chunk, Integrator, Statistics, Task, drive_task
 from beltdyn.state.installation import Rest, bring_to_rest
+from beltdyn.state.loaded_teeth import with_loads_on_teeth
 from beltdyn.state.refinement import MeshRule, errors_at_rest, errors_between, refine_at_rest, steady_from_rest
 from beltdyn.state.search import SteadySearch
 from beltdyn.state.static import find_equilibrium
@@ -214,6 +215,9 @@ def begin_flowing(prepared: Prepared, progress: Report | None) -> Beginning:
     meshed = _meshed(prepared) if prepared.carriage is None else _axis(prepared)
     if prepared.simulation.start == "steady":
         meshed = _running(meshed, prepared.simulation.force_tolerance)
+    elif prepared.belt.teeth and prepared.carriage is None:
+        loaded, state = with_loads_on_teeth(meshed.rest.prepared, meshed.system, meshed.state)
+        meshed = meshed._replace(system=loaded, state=state)
     system, direction = open_ended(meshed.rest.prepared, meshed.system), anchor_at(meshed.state, True).direction
     toothed = turning(system, meshed.state)
     flowing = with_angles(meshed.rest.prepared, flowing_system(toothed, direction))
@@ -280,8 +284,10 @@ def _axis_on(found: Rest, lengths: FloatArray, fineness: float) -> Standing:
     system = axis_system(own, lengths)
     state = on_nodes(found.system, found.state, system)
     balance = find_equilibrium(turned_as(system, found.system), state)
-    system = axis_by_arcs(own, at_phases(system, balance.phases) if has_teeth(system) else system)
-    return Standing(own, system, balance.state, balance.state.position.copy(), found.tension, own.layer, fineness)
+    state = balance.state
+    if has_teeth(system):
+        system, state = with_loads_on_teeth(own, at_phases(system, balance.phases), state)
+    return Standing(own, axis_by_arcs(own, system), state, state.position.copy(), found.tension, own.layer, fineness)
 
 
 def _running(meshed: _Meshed, force_tolerance: float | None) -> _Meshed:

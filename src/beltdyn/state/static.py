@@ -54,14 +54,15 @@ def find_equilibrium(
     *,
     method: Literal["globalized", "newton"] = "globalized",
     max_iterations: int = 500,
+    torque: FloatArray | None = None,
 ) -> Equilibrium:
     """Find a static equilibrium of a belt from a resting initial state; "newton" is the plain iteration of the paper.
 
     Pulleys do not turn: the belt slides on them without friction, unless `start` gives them speeds, with which they rub
-    on the resting belt. Grooves of toothed pulleys turn to where teeth do not turn the pulley. Tensioners move.
-    `tensioner_compliance` shows whether the equilibrium is stable.
+    on the resting belt. Grooves of toothed pulleys turn to where teeth do not turn the pulley, or hold its `torque`
+    (N m, shape (P,)). Tensioners move. `tensioner_compliance` shows whether the equilibrium is stable.
     """
-    search = _Search(system, start)
+    search = _Search(system, start, torque)
     shift = 0.0
     iterates, norms = [start.nodes(system).copy()], list[float]()
     while len(norms) < max_iterations and shift < _LARGEST_SHIFT:
@@ -111,8 +112,8 @@ def tensioner_compliance(system: System, state: State) -> FloatArray:
 class _Search:
     """Belt and tensioners on their way to equilibrium, with the linearized equations where they stand."""
 
-    def __init__(self, system: System, start: State) -> None:
-        self._system = unloaded(system._replace(bodies=only_tensioners(system)))
+    def __init__(self, system: System, start: State, torque: FloatArray | None = None) -> None:
+        self._system = unloaded(system._replace(bodies=only_tensioners(system)), torque)
         self._grooves = turning_grooves(system)
         self.position, self._velocity = start.position.copy(), start.velocity
         self._multipliers = no_multipliers(system)

@@ -21,7 +21,7 @@ from beltdyn.system.build import staying_system
 from beltdyn.system.build_machines import with_resistance
 from beltdyn.system.constant_drive import without_motion
 from beltdyn.system.frame import centreline_places, centreline_points
-from beltdyn.system.meshing import fit_phases, has_teeth, unloaded, with_softer_teeth
+from beltdyn.system.meshing import fit_phases, has_teeth, phases, unloaded, with_softer_teeth
 from beltdyn.system.observations import Observations
 from beltdyn.system.state import State, at_rest, nodal_coordinates, point_coordinates
 from beltdyn.system.steady_assembly import Anchor, anchor_at
@@ -238,14 +238,26 @@ def _found(prepared: Prepared, still: System, state: State, anchor: Anchor) -> b
     return found
 
 
-def without_friction(system: System) -> System:
+def under_torques(prepared: Prepared, system: System, state: State, torque: FloatArray) -> bool:
+    """Bring a toothed belt from equilibrium to that under torques on its pulleys (N m, shape (P,)), in place.
+
+    If that fails, False, and the state and its grooves as they were.
+    """
+    begun, phase = state.position.copy(), phases(system).copy()
+    if _found(prepared, without_friction(system, torque), state, anchor_at(state, True)):
+        return True
+    state.position[:], phases(system)[:] = begun, phase
+    return False
+
+
+def without_friction(system: System, torque: FloatArray | None = None) -> System:
     """The same system with a belt that slides without friction on pulleys that stand still, as do tensioners."""
     pulleys = system.pulleys.copy()
     pulleys["friction"] = 0.0
     tensioners = without_motion(system.tensioners)
     carrying = with_resistance(system.carrying, 0.0)
     still = system._replace(pulleys=pulleys, bodies=only_tensioners(system), tensioners=tensioners, carrying=carrying)
-    return unloaded(still)
+    return unloaded(still, torque)
 
 
 def _lying(prepared: Prepared, system: System, factor: float) -> State:

@@ -120,16 +120,22 @@ def mesh_speeds(system: System, velocity: FloatArray) -> None:
         velocity[first + np.flatnonzero(unknown == unknown[p])] = rims.table.rate[p] * speed
 
 
-def unloaded(system: System) -> System:
+def unloaded(system: System, torque: FloatArray | None = None) -> System:
     """The same system without loads, with grooves that turn to where teeth do not turn the pulley, if it has teeth.
 
-    On a mesh that travels, where no fixed end holds it along the belt, the grooves of the first pulley with teeth stay.
+    With torques on pulleys (N m, shape (P,)) that balance each other, grooves turn to where teeth hold these. On a mesh
+    that travels, where no fixed end holds it along the belt, the grooves of the first pulley with teeth stay.
     """
     rims = system.rims
     if not has_teeth(system):
         return system
     held = constant_drive(system, 0.0)
     without_actions(held)
+    if torque is not None:
+        held.profiles.segment.offset[: torque.size] = torque
+        pulleys = held.pulleys.copy()
+        pulleys["shaft"] = np.arange(torque.size)
+        held = held._replace(pulleys=pulleys)
     turning, bodies = turning_grooves(system), held.bodies.copy()
     if isinstance(rims, ToothedRims):
         held = held._replace(rims=rims._replace(table=rims.table.copy()))

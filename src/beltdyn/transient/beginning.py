@@ -24,6 +24,7 @@ from beltdyn.solvers.generalized_alpha import GeneralizedAlpha
 from beltdyn.solvers.run_progress import Report
 from beltdyn.solvers.trajectory import Integrator, Statistics, drive_task
 from beltdyn.state.installation import Rest, rest_of
+from beltdyn.state.loaded_teeth import with_loads_on_teeth
 from beltdyn.state.search import SteadySearch
 from beltdyn.state.settling import DIRECTION, Beginning, Start, begin_flowing, settle, with_angles
 from beltdyn.state.staying import stand
@@ -33,7 +34,7 @@ from beltdyn.system.arrays import System
 from beltdyn.system.build import drive_system, flowing_system, open_ended, staying_system
 from beltdyn.system.constant_drive import constant_drive
 from beltdyn.system.frame import centreline_points
-from beltdyn.system.meshing import TOOTH_PHASES, fit_phases, tooth_phases, turned_as, turned_by, turning
+from beltdyn.system.meshing import TOOTH_PHASES, fit_phases, has_teeth, tooth_phases, turned_as, turned_by, turning
 from beltdyn.system.state import State, at_rest, curve_lengths, laid, nodal_coordinates, point_coordinates
 from beltdyn.transient.checkpoint import is_checkpoint
 
@@ -351,6 +352,8 @@ def _travelling(mesh: Beginning, progress: Report | None) -> Beginning:
         system, state = steady_state_on(rest)
     elif start == "laid":
         state = _laid(rest.prepared, system)
+    elif has_teeth(system):
+        system, state = with_loads_on_teeth(rest.prepared, system, state)
     return Beginning(rest.prepared, system, state, rest.unstable, tooth_phases(system))
 
 

@@ -1,0 +1,58 @@
+"""Toothed drives that start in equilibrium, held by the teeth of their driver under the loads of the first instant."""
+
+from math import pi
+from typing import Any
+
+import numpy as np
+import pytest
+
+import beltdyn as bd
+
+RADIUS = 36 * 8e-3 / (2 * pi)
+
+
+def drive(frame: str, torque: float = -5.0, **driven: Any) -> bd.Drive:
+    ramp = {"kind": "cosine_ramp", "start": 4e-3, "end": 0.1, "value": 20.0}
+    return bd.Drive(
+        belt={"profile": "HTD 8M", "width": "20 mm", "teeth": 100, "installed_tension": 400.0},
+        pulley=[
+            {"name": "driver", "center": [0.0, 0.0], "teeth": 24, "speed": ramp},
+            {"name": "driven", "center": [0.28, 0.0], "teeth": 36, "inertia": 1e-3, "torque": torque} | driven,
+        ],
+        tensioner=[{"kind": "fixed", "pulley": "driven", "direction": [1.0, 0.0]}],
+        simulation={"duration": 4e-3, "output_interval": 1e-4, "frame": frame, "start": "equilibrium"},
+    )
+
+
+@pytest.mark.parametrize("frame", ["staying", "travelling"])
+def test_a_constant_torque_is_no_shock(frame: str) -> None:
+    tension = bd.simulate(drive(frame)).dataset.span_tension.values
+    assert np.abs(np.diff(tension[0])).item() == pytest.approx(5.0 / RADIUS, rel=5e-3)
+    assert np.ptp(tension, axis=0).max() < 1e-3 * 5.0 / RADIUS
+
+
+def test_torques_through_springs_of_a_hub() -> None:
+    hub = [{"kind": "isolator", "stiffness": 2000.0, "damping": 0.5, "inertia": 2e-4}]
+    run = bd.simulate(drive("staying", hub=hub, inertia=1e-4)).dataset
+    tension = run.span_tension.values
+    assert np.abs(np.diff(tension[0])).item() == pytest.approx(5.0 / RADIUS, rel=5e-3)
+    assert np.ptp(tension, axis=0).max() < 1e-3 * 5.0 / RADIUS
+
+
+def test_a_torque_that_teeth_do_not_hold_starts_unloaded() -> None:
+    """No equilibrium holds 3 kN m; the run starts as without it, and the belt jumps."""
+    tension = bd.simulate(drive("staying", torque=-3000.0).with_({"simulation.duration": 2e-4})).dataset.span_tension
+    assert np.ptp(tension.values[0]) < 1.0
+
+
+@pytest.mark.parametrize("frame", ["staying", "travelling"])
+def test_a_force_on_a_carriage_is_no_shock(frame: str) -> None:
+    axis = bd.example("printer_axis")
+    pushed = axis.replace(
+        carriage=axis.data["carriage"] | {"force": -8.0, "friction": 0.0},
+        simulation={"duration": 5e-3, "output_interval": 1e-4, "frame": frame},
+    )
+    run = bd.simulate(pushed).dataset
+    tension = run.span_tension.values
+    assert abs(tension[0, -1] - tension[0, 0]) == pytest.approx(8.0, rel=0.01)
+    assert np.ptp(tension, axis=0).max() < 0.01 * 8.0
