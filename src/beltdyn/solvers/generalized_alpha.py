@@ -8,6 +8,7 @@ from typing import Any, ClassVar
 import numpy as np
 
 from beltdyn.errors import ConvergenceError
+from beltdyn.parts.messages import listing
 from beltdyn.solvers.alpha_advance import REACHED, SMALLEST_STEP
 from beltdyn.solvers.engine import advance, restart
 from beltdyn.solvers.integrator_state import IntegratorState, Settings, Steps, empty_steps, new_state
@@ -173,10 +174,12 @@ def _message(task: Task, state: IntegratorState, method: GeneralizedAlpha) -> st
     worst = int(np.argmax(np.hypot(accelerations[:, 0], accelerations[:, 1])))
     x, y = places[worst]
     undamped = "a simulation.spectral_radius below 1, " if method.spectral_radius == 1.0 else ""
+    keys = [f"contact.{key}" for key in task.contact_keys]
+    omitted = f"; omit {listing(keys)}, so that the drive chooses {'it' if len(keys) == 1 else 'them'}" if keys else ""
     return (
         f"the simulation fails at t = {state.clock.time:.6g} s: a time step of "
         f"{min(SMALLEST_STEP, method.max_step or SMALLEST_STEP):g} s is still too long. The largest "
         f"acceleration is at node {worst}, x = {x:.4g} m, y = {y:.4g} m. Try {undamped}more elements, "
-        f"another simulation.rtol than {method.rtol:g}, or a gentler start; omit all keys of [contact] "
-        "except friction, so that they are chosen."
+        f"another simulation.rtol than {method.rtol:g}, or gentler changes of speeds and loads"
+        f"{omitted}."
     )

@@ -135,6 +135,8 @@ class Task:
     """Velocity that relative tolerances are relative to, m/s."""
     statistics: Statistics
     """Kept up to date by the solver."""
+    contact_keys: tuple[str, ...] = ()
+    """Keys of contact that the drive file gives, though the drive could choose them."""
 
     @property
     def stops(self) -> list[float]:
@@ -154,10 +156,16 @@ class Integrator(Protocol):
         """Integrate, handing out chunks as they come."""
 
 
+_CHOSEN = ("stiffness", "allowed_penetration", "damping", "creep_ratio", "standstill_creep")
+"""Keys of contact that a drive chooses where they are open."""
+
+
 def drive_task(prepared: Prepared, system: System, start: State, statistics: Statistics) -> Task:
     """The initial value problem that a drive file describes."""
-    settings = prepared.simulation
-    return Task(system, start, settings.instants, prepared.breakpoints, velocity_scale(prepared), statistics)
+    instants, scale = prepared.simulation.instants, velocity_scale(prepared)
+    chosen, contact = {choice.key for choice in prepared.choices}, prepared.contact
+    given = tuple(key for key in _CHOSEN if getattr(contact, key) is not None and f"contact.{key}" not in chosen)
+    return Task(system, start, instants, prepared.breakpoints, scale, statistics, given)
 
 
 def velocity_scale(prepared: Prepared) -> float:

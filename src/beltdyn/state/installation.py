@@ -22,6 +22,7 @@ from beltdyn.state.static import find_equilibrium, standing, tensioner_complianc
 from beltdyn.state.tightening import Tightening, begin
 from beltdyn.system.arrays import Motion, System
 from beltdyn.system.build import drive_system
+from beltdyn.system.build_machines import with_stiffer_supports
 from beltdyn.system.frame import StayingByArcs
 from beltdyn.system.meshing import at_phases, fit_phases, has_teeth, without_teeth
 from beltdyn.system.observations import Observations
@@ -208,9 +209,10 @@ def _lying(prepared: Prepared, system: System, factor: float) -> State:
 
 
 def with_stiffer_contact(system: System, factor: float) -> System:
-    """The same system with contact stiffer by a factor."""
-    normal = system.law.normal
-    return system._replace(law=system.law._replace(normal=normal._replace(stiffness=factor * normal.stiffness)))
+    """The same system with contact and supports stiffer by a factor."""
+    normal, carrying = system.law.normal, with_stiffer_supports(system.carrying, factor)
+    law = system.law._replace(normal=normal._replace(stiffness=factor * normal.stiffness))
+    return system._replace(law=law, carrying=carrying)
 
 
 def drawn_in(prepared: Prepared, factor: float) -> BeltPath:

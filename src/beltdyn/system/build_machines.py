@@ -230,6 +230,16 @@ def with_resistance(carrying: Bare | Carrying, factor: float) -> Bare | Carrying
     return carrying._replace(supports=supports)
 
 
+def with_stiffer_supports(carrying: Bare | Carrying, factor: float) -> Bare | Carrying:
+    """The same supports with a factor on their stiffness, in which the belt without goods lies as straight."""
+    if isinstance(carrying, Bare) or factor == 1.0:
+        return carrying
+    supports = carrying.supports.copy()
+    supports["stiffness"] *= factor
+    supports["raised"] /= factor
+    return carrying._replace(supports=supports)
+
+
 def _line(stretch: Stretch) -> dict[str, Any]:
     return {
         "origin": tuple(stretch.origin),
@@ -247,7 +257,7 @@ def _supports(prepared: Prepared) -> Records:
     for row, kind, one in zip(table, kinds, prepared.supports, strict=True):
         stretch = prepared.stretch(one)
         load = normal_load(one, prepared.goods, belt_mass, stretch.direction, prepared.gravity)
-        stiffness = stiffness_of(one, load)
+        stiffness = stiffness_of(one, load, prepared.installation.tension, stretch.length)
         for name, value in _line(stretch).items():
             row.line[name] = value
         row.normal = upper_side(stretch.direction, prepared.gravity)

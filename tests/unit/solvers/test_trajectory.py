@@ -6,7 +6,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from beltdyn.model import Drive, prepare
+from beltdyn.model import Contact, Drive, prepare
 from beltdyn.model.simulation import Instants
 from beltdyn.solvers.trajectory import Chunk, Statistics, Task, drive_task, velocity_scale
 from beltdyn.system.arrays import ENERGY_WORKS
@@ -83,3 +83,12 @@ def test_outputs_need_only_the_states_around_them(change: Change, interval: floa
     for found, expected in zip(chunk.only(around).at(wanted), chunk.at(wanted), strict=True):
         np.testing.assert_array_equal(found, expected)
     assert np.count_nonzero(around) < 2 * instants.count
+
+
+def test_only_keys_of_contact_that_are_given_are_advised_against(drive: Drive) -> None:
+    """A message that tells to omit keys names those of the drive file."""
+    prepared = prepare(drive)
+    open_keys = prepare(drive.replace(contact=Contact(friction=0.3)))
+    given = [drive_task(one, None, None, Statistics()).contact_keys for one in (prepared, open_keys)]  # type: ignore[arg-type]
+    assert "stiffness" in given[0]
+    assert given[1] == ()

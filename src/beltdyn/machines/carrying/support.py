@@ -92,7 +92,7 @@ class Support(OnSpan):
     stiffness: LineStiffness | None = Field(
         None,
         gt=0,
-        description="the normal stiffness, in N/m^2; by default belt and goods sink in by a millimeter",
+        description="the normal stiffness, in N/m^2; by default belt and goods sink in by at most a millimeter",
     )
     damping: LineDamping | None = Field(
         None, ge=0, description="the normal damping, in N*s/m^2; by default critical for the belt without goods"

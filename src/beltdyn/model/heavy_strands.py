@@ -1,0 +1,45 @@
+"""Strands that are heavier than their tension, which hang slack: the least tension that each needs."""
+
+import numpy as np
+
+from beltdyn.arrays import FloatArray
+from beltdyn.model.carrying import swinging_lengths
+from beltdyn.model.path import Path
+from beltdyn.model.prepared import Prepared
+from beltdyn.parts.messages import Finding, beyond, listing, plain
+
+
+def least_strand_tensions(prepared: Prepared, path: Path) -> FloatArray:
+    """Tension at mid-span below which each strand hangs slack, N, shape (s,).
+
+    A strand that hangs freely over the horizontal length a sags by w a^2 / 8 T, an eighth of a where it weighs as much
+    as it pulls; and where it rises by h, its lower end has w h / 2 less than its middle. Supported strands hang from
+    idler to idler. Goods on the strand count.
+    """
+    gravity = np.array(prepared.gravity, dtype=float)
+    loads = np.full(path.spans, prepared.belt.mass_per_length)
+    for one in prepared.goods:
+        loads[prepared.stretch(one).span] += one.mass_per_length
+    free = swinging_lengths(prepared.supports, prepared.spans, path)
+    along = np.abs(path.span_directions @ gravity)
+    across = np.abs(path.span_directions @ np.array([-gravity[1], gravity[0]]))
+    return np.asarray(loads * np.maximum(free * across, 0.5 * path.span_lengths * along))
+
+
+def slack_strands(prepared: Prepared, path: Path, tension: FloatArray) -> Finding | None:
+    """Strands that weigh more than their tension (N, shape (s,)), with the least tension that they need."""
+    needed = least_strand_tensions(prepared, path)
+    slack = np.flatnonzero(np.nan_to_num(tension, nan=np.inf) < needed).tolist()
+    if not slack:
+        return None
+    each = [
+        f"{prepared.spans[span][0]} to {prepared.spans[span][1]} with {plain(tension[span])} N, which needs "
+        f"{plain(needed[span])} N"
+        for span in slack
+    ]
+    return Finding(
+        f"strands are heavier than their tension and hang slack: {listing(each)}.",
+        "They sag by more than an eighth of their length, or have no tension at their lower end; tensions, wrap angles "
+        "and frequencies are not those of straight spans, and no equilibrium may be found.",
+        f"Increase their tension to {plain(beyond(0.0, needed[slack].max(), 3))} N or more, or support them.",
+    )

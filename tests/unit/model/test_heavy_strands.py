@@ -1,0 +1,62 @@
+"""Strands that are heavier than their tension."""
+
+import numpy as np
+import pytest
+
+import beltdyn as bd
+from beltdyn.model import advise, install, prepare
+from beltdyn.model.heavy_strands import least_strand_tensions, slack_strands
+
+G = 9.81
+
+
+def conveyor(tension: float, height: float = 0.0, **more: object) -> bd.Drive:
+    return bd.Drive(
+        gravity=[0.0, -G],
+        belt={
+            "installed_tension": tension,
+            "width": 0.4,
+            "thickness": 0.005,
+            "axial_stiffness": 1e6,
+            "bending_stiffness": 0.1,
+            "mass_per_length": 5.0,
+            "friction": 0.3,
+        },
+        pulley=[
+            {"name": "head", "center": [0.0, height], "radius": 0.2, "speed": 5.0},
+            {"name": "tail", "center": [0.0 if height else 10.0, 0.0], "radius": 0.2, "inertia": 1.0},
+        ],
+        simulation={"duration": 1.0},
+        **more,
+    )
+
+
+def test_a_level_strand_needs_its_weight() -> None:
+    drive = conveyor(2000.0)
+    needed = least_strand_tensions(prepare(drive), drive.path)
+    np.testing.assert_allclose(needed, 5.0 * G * 10.0, rtol=1e-12)
+
+
+def test_a_vertical_strand_needs_half_of_it() -> None:
+    """Its middle carries half of the strand below."""
+    drive = conveyor(2000.0, height=30.0)
+    np.testing.assert_allclose(least_strand_tensions(prepare(drive), drive.path), 0.5 * 5.0 * G * 30.0, rtol=1e-12)
+
+
+def test_idlers_and_goods_count() -> None:
+    carried = {"kind": "idlers", "span": ["tail", "head"], "spacing": 1.2}
+    drive = conveyor(2000.0, support=[carried], goods=[{"span": ["tail", "head"], "mass_per_length": 20.0}])
+    needed = dict(zip(drive.spans, least_strand_tensions(prepare(drive), drive.path), strict=True))
+    assert needed["tail", "head"] == pytest.approx(25.0 * G * 1.2)
+    assert needed["head", "tail"] == pytest.approx(5.0 * G * 10.0)
+
+
+def test_slack_strands_are_named_with_what_they_need() -> None:
+    drive = conveyor(400.0)
+    told = [text for text in advise(drive, install(drive)) if "heavier than their tension" in text]
+    assert len(told) == 1
+    assert "head to tail with 400 N, which needs 490.5 N" in told[0]
+    assert "Increase their tension to 491 N or more" in told[0]
+    taut = conveyor(600.0)
+    assert slack_strands(prepare(taut), taut.path, np.array([600.0, 600.0])) is None
+    assert slack_strands(prepare(taut), taut.path, np.array([600.0, np.nan])) is None
