@@ -294,6 +294,8 @@ def select(
         write_text(target, one.text)
     show_table("Drives, the narrowest first", _HEADINGS, [_row(one) for one in found])
     show()
+    for text in dict.fromkeys(one.doubt for one in found if one.doubt):
+        show(f"Note: {text}")
     show("\n".join(f"Written: {target}" for target in files))
     show(f"Next: beltdyn check {files[0]}; beltdyn rating {files[0]}")
 

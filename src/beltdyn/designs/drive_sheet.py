@@ -18,6 +18,7 @@ from beltdyn.designs.line_sheet import line_sheet
 from beltdyn.errors import ModelError
 from beltdyn.model import Drive, FixedTensioner, Prepared, alignment, prepare
 from beltdyn.model.alignment import judge_alignment
+from beltdyn.model.demand import required_tension
 from beltdyn.model.installation import DEFLECTION, Installation, tension_checks
 from beltdyn.model.parameter_study import PASS
 from beltdyn.parts.options import RangeCount, takes_options
@@ -406,9 +407,15 @@ class _DriveSheet:
 
     def add_tensioning(self) -> None:
         """Frequency and deflection force of each span, new, run in, and before the belt is tensioned again."""
-        checks = tension_checks(self._drive, self._rest)
+        needed = required_tension(self._drive, self._rest)
+        checks = tension_checks(self._drive, self._rest, least=None if needed is None else needed.tension)
         if not checks:
             return
+        if needed is not None:
+            formula = Variable(("tension_formula",), "1", "Formula of the least tension", "str")
+            self.coordinates["tension_formula"] = (formula, list(needed.by_formula))
+            required = Variable(("tension_formula",), "N", "Least tension at rest with the service factor")
+            self.variables["required_tension"] = (required, list(needed.by_formula.values()))
         deflection = DEFLECTION * self._rest.path.span_lengths
         self.coordinates["belt_state"] = (
             Variable(("belt_state",), "1", "State of the belt", "str"),

@@ -1,6 +1,7 @@
 """A drive that carries a power: what it has to do, what is proposed, and its drive file."""
 
-from dataclasses import dataclass
+from collections.abc import Mapping
+from dataclasses import dataclass, field
 from functools import cached_property
 from math import pi
 from pathlib import Path
@@ -9,6 +10,7 @@ from typing import NamedTuple
 import tomlkit
 
 from beltdyn.model import Drive, loads
+from beltdyn.parts.messages import listing
 from beltdyn.parts.quantity import RPM
 
 _RIM_DENSITY, _RIM_SHARE = 7200.0, 0.5
@@ -87,7 +89,7 @@ class Proposal:
     utilization: float
     """Design power over rated power."""
     tension: float
-    """At rest, of all belts, run in, N; `RUN_IN` times the least one."""
+    """At rest, of all belts, run in, N; `RUN_IN` times the least one by the formula that requires most."""
     hub_load: float
     """At rest, N."""
     frequency: float
@@ -98,6 +100,10 @@ class Proposal:
     catalogue: str | None = None
     teeth: tuple[int, int, int] | None = None
     """Of a toothed belt, its driver and its driven pulley."""
+    tensions: Mapping[str, float] = field(default_factory=dict)
+    """Tension at rest by the formulas of makers, N."""
+    doubt: str = ""
+    """What limits the rating, in words."""
 
     @property
     def text(self) -> str:
@@ -132,13 +138,14 @@ def _drive_file(one: Proposal) -> str:
         f"teeth = {count}" if count else f'diameter = "{1e3 * diameter:.6g} mm"'
         for count, diameter in zip(teeth[1:], (one.driver_diameter, one.driven_diameter), strict=True)
     ]
-    state = "" if one.teeth else " of a run-in belt;"
+    formulas = listing([f"{tension:.4g} N by {name}" for name, tension in one.tensions.items()])
+    state = f" {'' if one.teeth else 'of a run-in belt, '}{formulas};" if formulas else ""
     own = "" if one.catalogue is None else f"catalogue = {_quoted(Path(one.catalogue).as_posix())}"
     return f"""\
 # {1e-3 * task.power:.4g} kW at {RPM * task.speed:.4g} rpm, {RPM * one.driven_speed:.4g} rpm driven; service factor \
 {task.service_factor:.3g}.
 # Rated power {1e-3 * one.rated_power:.4g} kW, {one.utilization:.0%} used; belt speed {one.belt_speed:.3g} m/s.
-
+{f"# {one.doubt}" if one.doubt else ""}
 [belt]
 profile = {_quoted(one.profile)}
 {belt}

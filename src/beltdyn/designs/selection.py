@@ -14,10 +14,10 @@ from beltdyn.errors import ModelError
 from beltdyn.model import Entry, read_catalogue
 from beltdyn.model.catalogue import find_entry
 from beltdyn.model.installation import RUN_IN
-from beltdyn.model.rating import RatedBelt, Rating
+from beltdyn.model.rating import RatedBelt, Rating, lower_bound
 from beltdyn.parts.messages import reason
 from beltdyn.parts.quantity import RPM, number_in, numbers_in
-from beltdyn.theory.rating import least_tension
+from beltdyn.theory.rating import TENSION_FORMULAS, least_tension
 from beltdyn.theory.span import OpenBelt, center_distance, lowest_frequency, open_belt
 
 DIAMETERS = tuple(
@@ -276,9 +276,13 @@ def _fit(pair: _Pair, rating: Rating, length: float, speed: float, task: Task) -
 
 def _proposal(name: str, pair: _Pair, fit: _Fit, task: Task, catalogue: str | None) -> Proposal:
     """A belt on two pulleys as a proposal."""
-    entry, belts = pair.entry, fit.belts
+    entry, belts, rating = pair.entry, fit.belts, pair.entry.rating
     mass, pull = belts * entry.mass_per_length, task.design_power / fit.speed
-    tension = RUN_IN * least_tension(pull, min(fit.path.wrap), mass, fit.speed)
+    wrap = min(fit.path.wrap)
+    tensions = {
+        name: RUN_IN * least_tension(pull, wrap, mass, fit.speed, grip) for name, grip in TENSION_FORMULAS.items()
+    }
+    tension = max(tensions.values())
     driver, driven = (pair.small, pair.large) if task.slows else (pair.large, pair.small)
     offset = 2.0 * entry.pitch_offset
     return Proposal(
@@ -293,9 +297,11 @@ def _proposal(name: str, pair: _Pair, fit: _Fit, task: Task, catalogue: str | No
         rated_power=fit.power,
         utilization=task.design_power / fit.power,
         tension=tension,
-        hub_load=2.0 * tension * sin(0.5 * min(fit.path.wrap)),
+        hub_load=2.0 * tension * sin(0.5 * wrap),
         frequency=lowest_frequency(fit.path.span, tension, mass, bending=belts * entry.bending_stiffness),
         face_width=belts * entry.width,
         task=task,
         catalogue=catalogue,
+        tensions=tensions,
+        doubt="" if rating is None or rating.of_profile is None else lower_bound(rating.of_profile),
     )

@@ -9,12 +9,13 @@ from beltdyn.contact.friction import LAWS
 from beltdyn.model.contact import Contact
 from beltdyn.model.defaults import CREEP_LENGTHS, DAMPING_RATIO
 from beltdyn.model.drive import Drive
+from beltdyn.model.heavy_strands import slack_strands
 from beltdyn.model.installation import Installation
 from beltdyn.model.plausibility import judge_plausibility
 from beltdyn.model.prepared import Prepared, prepare, tensioner_balances
 from beltdyn.model.pulley import fastest_rim
 from beltdyn.model.resolution import Running, elements_needed, mesh_errors, unresolved
-from beltdyn.parts.messages import Finding, listing
+from beltdyn.parts.messages import Finding, beyond, listing
 from beltdyn.parts.quantity import RPM
 
 # Contact parameters set by hand that spoil results or cost time, compared with the default choice
@@ -176,6 +177,7 @@ def advise(drive: Drive, installation: Installation) -> list[str]:
     found = [
         *_strain(drive, installation),
         *_lift_off(drive, installation),
+        *_slack(drive, installation),
         *lost,
         *_stops(drive, installation),
         *_other_balances(drive, installation),
@@ -222,6 +224,12 @@ def _strain(drive: Drive, installation: Installation) -> list[Finding]:
         "belt.stretch_curve.",
     )
     return [finding] if strain > _LARGEST_STRAIN else []
+
+
+def _slack(drive: Drive, installation: Installation) -> list[Finding]:
+    """Strands heavier than their tension at rest."""
+    finding = slack_strands(prepare(drive), installation.path, installation.span_tensions)
+    return [] if finding is None else [finding]
 
 
 def _lift_off(drive: Drive, installation: Installation) -> list[Finding]:
@@ -367,7 +375,7 @@ def other_creep(prepared: Prepared, factor: float) -> str:
     if any(parameter.found for parameter in chosen.parameters):
         ratio = prepared.contact.given("creep_ratio")
         verb = "increase" if factor > 1.0 else "reduce"
-        return f"{verb} contact.creep_ratio from {ratio:.1e} to {factor * ratio:.0e}"
+        return f"{verb} contact.creep_ratio from {ratio:.1e} to {beyond(ratio, factor * ratio, 1):.0e}"
     keys = " and ".join(f"contact.{key}" for key in ("friction_law", *(one.name for one in chosen.parameters)))
     return f"omit {keys}: the default friction law scales its creep with the belt speed"
 

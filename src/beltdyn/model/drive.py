@@ -208,8 +208,7 @@ class Drive(Part):
 
     @model_validator(mode="after")
     def _teeth_fit_the_pulleys(self) -> Self:
-        length = None if self.moving_tensioners else self.path.length
-        check_teeth(self.belt, self.pulleys, length)
+        check_teeth(self.belt, self.pulleys, None if self.moving_tensioners else self.path)
         check_speeds(self.pulleys, self.path, self.simulation.end)
         return self
 

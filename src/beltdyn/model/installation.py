@@ -82,7 +82,8 @@ DEFLECTION = 0.016
 NEW, RUN_IN = 1.5, 1.3
 """Tension of a new and of a run-in belt over the least one that carries the load (GB/T 13575.1)."""
 STATES = MappingProxyType({"new": NEW / RUN_IN, "run in": 1.0, "least": 1.0 / RUN_IN})
-"""Tension over that of the drive, a run-in belt's: of a new belt, and the least before it is tensioned again."""
+"""Tension over that of the drive, a run-in belt's: of a new belt, and the least before it is tensioned again, where the
+load that requires it is unknown."""
 HELD = MappingProxyType({"at rest": 1.0})
 """The only state of a belt whose tension a spring-loaded tensioner or a pulled end holds."""
 
@@ -100,20 +101,22 @@ class TensionCheck(NamedTuple):
 
 
 def tension_checks(
-    drive: Drive, installation: Installation, specified: float | None = None
+    drive: Drive, installation: Installation, specified: float | None = None, least: float | None = None
 ) -> tuple[TensionCheck, ...]:
     """Frequencies and deflection forces of the spans of a belt at rest, new, run in, and before it is tensioned again.
 
-    The span is a string with the bending stiffness of the belt between hinges, and stretched by its deflection where
-    the pulleys are fixed; see `beltdyn.theory.span`.
+    `specified` is the tension of the drive, and `least` that which its load requires, N. The span is a string with the
+    bending stiffness of the belt between hinges, and stretched by its deflection where the pulleys are fixed; see
+    `beltdyn.theory.span`.
     """
     if not installation.span_tensions.min() > 0.0:
         return ()
     held = bool(drive.layout.given.springs) or any(not end.held for end in drive.ends)
     scale = 1.0 if specified is None else specified / installation.tension
-    return tuple(
-        _check(drive, installation, state, scale * factor, held) for state, factor in (HELD if held else STATES).items()
-    )
+    factors = {state: scale * factor for state, factor in (HELD if held else STATES).items()}
+    if least is not None and not held:
+        factors["least"] = least / installation.tension
+    return tuple(_check(drive, installation, state, factor, held) for state, factor in factors.items())
 
 
 def _check(drive: Drive, installation: Installation, state: str, factor: float, held: bool) -> TensionCheck:

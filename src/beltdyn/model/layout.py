@@ -5,7 +5,8 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from beltdyn.arrays import FloatArray
+from beltdyn.arrays import BoolArray, FloatArray
+from beltdyn.contact.teeth import CREST
 from beltdyn.errors import ModelError
 from beltdyn.kernel import interpreted
 from beltdyn.machines import FixedTensioner, MovingTensioner, Tensioner
@@ -26,6 +27,8 @@ from beltdyn.parts.quantity import RPM
 
 LARGEST_STRAIN = 0.5
 """Of a belt that is laid on its path."""
+MOST_OFF_GROOVE = 0.5 * (1.0 - CREST)
+"""Largest misfit of a tooth over the pitch: beyond it the law of teeth holds it less the farther it is off."""
 _MOST_STEPS = 90
 _FIRST, _LATER, _SHORTEST = 1.0, 0.3, 1e-9
 """Longest first step of a take-up, and the shortest, over the smallest radius; later ones over the way so far."""
@@ -301,21 +304,40 @@ def check_length(length: float, path: float, tensioned: bool = False) -> None:
         )
 
 
-def check_teeth(belt: Belt, pulleys: Sequence[Pulley], path_length: float | None) -> None:
-    """Refuse teeth that no groove holds, and a belt with teeth that is too short for its path, unless that moves."""
+def check_teeth(belt: Belt, pulleys: Sequence[Pulley], path: Path | None) -> None:
+    """Refuse teeth that no groove holds, and a belt whose teeth ride on the crests; None of a path that moves."""
     if belt.teeth is None or belt.toothing is None:
         return
-    if not any(pulley.teeth for pulley in pulleys):
+    toothed = np.array([pulley.teeth is not None for pulley in pulleys])
+    if not toothed.any():
         raise ValueError(
             f"the belt has {belt.teeth} teeth, but no pulley has any. Give pulleys their teeth, or omit belt.teeth and "
             "belt.toothing for a flat belt"
         )
-    pitches = 0.0 if path_length is None else path_length / belt.given_pitch
-    if pitches > belt.teeth + 1:
-        raise ValueError(
-            f"belt.teeth = {belt.teeth} is too short to mesh: the path around the pulleys has {pitches:.2f} pitches of "
-            f"{1e3 * belt.toothing.pitch:.5g} mm. Give {round(pitches)} teeth, or move the pulleys closer together"
-        )
+    pitch = belt.toothing.pitch
+    if path is None or mesh_misfit(belt, path, toothed) <= MOST_OFF_GROOVE * pitch:
+        return
+    pitches = path.length / belt.given_pitch
+    raise ValueError(
+        f"belt.teeth = {belt.teeth} is too short to mesh: the path around the pulleys has {pitches:.2f} pitches of "
+        f"{1e3 * pitch:.5g} mm, and a belt stretched to it has its teeth on the crests at the ends of arcs. Give "
+        f"{int(pitches)} teeth, or move the pulleys closer together"
+    )
+
+
+def mesh_misfit(belt: Belt, path: Path, toothed: BoolArray) -> float:
+    """Largest distance of a tooth from its groove, m, of a belt stretched to its path, without load or play.
+
+    At the end of an arc of length L it is the strain beyond that at which pitches agree, times lambda tanh(L / 2
+    lambda) with lambda^2 = p EA / k_t: teeth that share a load hold the belt within lambda of the ends.
+    """
+    if belt.teeth is None or belt.toothing is None:
+        return 0.0
+    pitch = belt.toothing.pitch
+    strain = path.length / (belt.teeth * pitch) - 1.0
+    decay = np.sqrt(pitch * belt.axial_stiffness / belt.toothing.tooth_stiffness)
+    arcs = (np.abs(path.radii) * path.wrap_angles)[toothed]
+    return float(strain * decay * np.tanh(0.5 * arcs / decay).max(initial=0.0))
 
 
 def check_speeds(pulleys: Sequence[Pulley], path: Path, duration: float) -> None:

@@ -5,17 +5,16 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from beltdyn.arrays import FloatArray
 from beltdyn.errors import BeltdynError
-from beltdyn.machines.loads.load import Load
 from beltdyn.model.alignment import judge_alignment
+from beltdyn.model.demand import MAKERS, powers_drawn, required_tension
 from beltdyn.model.drive import Drive
-from beltdyn.model.installation import Installation
-from beltdyn.model.layout import teeth_in_mesh
+from beltdyn.model.installation import RUN_IN, Installation
+from beltdyn.model.layout import mesh_misfit, teeth_in_mesh
 from beltdyn.model.prepared import install, prepare
 from beltdyn.model.pulley import Pulley, fastest_rim
 from beltdyn.model.toothing import RatedTeeth
-from beltdyn.parts.messages import Finding, listing
+from beltdyn.parts.messages import NOTABLE, Finding, listing, plain
 from beltdyn.parts.quantity import RPM
 from beltdyn.theory.rating import REST_SHARE
 
@@ -27,8 +26,6 @@ _MORE = 2.0
 """Least ratio of the wrap angles for that."""
 _BLOW = 0.05
 """Change of tension by a sudden start, over the tension at rest, that gives a warning."""
-_ANGLES = 64
-"""Angles over which the torque of a load is averaged."""
 _OFF_NOMINAL = 0.2
 """Change of a spring's force from its preload, over it, from which the given center is not the nominal position."""
 _LIGHT = 0.2
@@ -54,7 +51,9 @@ def judge_plausibility(drive: Drive, installation: Installation) -> Iterator[Fin
     yield from _massless(drive)
     yield from _sudden_start(drive, installation)
     yield from _few_teeth(drive, installation)
+    yield from _stretched_teeth(drive, installation)
     yield from _slack_teeth(drive, installation)
+    yield from _loose_belt(drive, installation)
     yield from _narrow_teeth(drive, installation)
     yield from _sliding_nips(drive)
     yield from judge_alignment(drive, installation.path)
@@ -83,7 +82,7 @@ def _tension(drive: Drive, installation: Installation) -> Iterator[Finding]:
     readings = _other_readings(drive) if belt.length is not None else []
     yield Finding(
         f"the tension at rest is {each(tension)}, but the belt is rated for {each(most)}.",
-        "The cords stretch permanently, and belt and bearings fail early.",
+        "The cords stretch permanently, belt and bearings fail early, and losses are extrapolated beyond their data.",
         f"{more} the tension, or correct its cause{f': {listing(readings)}' if readings else ''}.",
     )
 
@@ -180,7 +179,7 @@ def _tight_side(drive: Drive, installation: Installation) -> Iterator[Finding]:
     driver = drive.driver
     if driver is None or drive.ends or not drive.layout.given.springs:
         return
-    powers, speed = _powers(drive, driver, installation)
+    powers, speed = powers_drawn(drive, driver, installation)
     others, step = len(drive.pulleys) - 1, drive.running_sense
     behind = [(driver + step * place) % len(drive.pulleys) for place in range(1, 1 + others)]
     total = float(powers[behind].sum())
@@ -241,12 +240,29 @@ def _few_teeth(drive: Drive, installation: Installation) -> Iterator[Finding]:
         )
 
 
+def _stretched_teeth(drive: Drive, installation: Installation) -> Iterator[Finding]:
+    """Belts of a given number of teeth that are stretched by more than one of them to fixed centers."""
+    belt = drive.belt
+    if belt.teeth is None or belt.installed_tension is not None or drive.moving_tensioners:
+        return
+    pitches = installation.path.length / belt.given_pitch
+    if pitches <= belt.teeth + 1:
+        return
+    off = mesh_misfit(belt, installation.path, prepare(drive).toothed)
+    yield Finding(
+        f"the path has {pitches:.2f} pitches, but the belt {belt.teeth} teeth: it is stretched by "
+        f"{pitches / belt.teeth - 1.0:.2%}, to {plain(installation.tension)} N.",
+        f"At the ends of arcs its teeth are up to {1e3 * off:.2g} mm off their grooves.",
+        f"Give {int(pitches)} teeth, or move the pulleys closer together.",
+    )
+
+
 def _slack_teeth(drive: Drive, installation: Installation) -> Iterator[Finding]:
     """Belts with teeth whose slack side would be slack under the load."""
     driver = drive.driver
     if drive.belt.teeth is None or driver is None or drive.moving_tensioners:
         return
-    powers, speed = _powers(drive, driver, installation)
+    powers, speed = powers_drawn(drive, driver, installation)
     pull = float(powers[powers > 0.0].sum()) / speed if speed > 0.0 else 0.0
     least = REST_SHARE * pull
     if not installation.tension < least:
@@ -258,12 +274,26 @@ def _slack_teeth(drive: Drive, installation: Installation) -> Iterator[Finding]:
     )
 
 
+def _loose_belt(drive: Drive, installation: Installation) -> Iterator[Finding]:
+    """V- and V-ribbed belts between fixed centers with less tension than their load needs by the rules of makers."""
+    needed = None if drive.belt.teeth else required_tension(drive, installation)
+    if needed is None or not installation.tension < (1.0 - NOTABLE) * needed.tension:
+        return
+    low, high = needed.by_formula.values()
+    yield Finding(
+        f"the tension at rest is {plain(installation.tension)} N, but a pull of {plain(needed.pull)} N with the "
+        f"service factor needs {plain(low)} N ({MAKERS[0]}) to {plain(high)} N ({MAKERS[1]}).",
+        "A belt that is looser slips when it starts, wears and overheats; its rated power holds with that tension.",
+        f"Increase the tension to {plain(needed.tension)} N, of a run-in belt to {plain(RUN_IN * needed.tension)} N.",
+    )
+
+
 def _narrow_teeth(drive: Drive, installation: Installation) -> Iterator[Finding]:
     """Toothed belts whose teeth in mesh are not rated for the pull of a pulley."""
     driver, belt = drive.driver, drive.rated_belt
     if driver is None or not isinstance(belt, RatedTeeth):
         return
-    powers, speed = _powers(drive, driver, installation)
+    powers, speed = powers_drawn(drive, driver, installation)
     if not speed > 0.0:
         return
     powers[driver] = -powers.sum()
@@ -337,33 +367,6 @@ def _massless(drive: Drive) -> Iterator[Finding]:
             f"are up to {math.sqrt(whole / own) - 1.0:.0%} too high.",
             f"Give pulley[{one.pulley}].mass.",
         )
-
-
-def _powers(drive: Drive, driver: int, installation: Installation) -> tuple[FloatArray, float]:
-    """Power drawn from the belt by each pulley, W, and belt speed, m/s, at the highest speed of the driver."""
-    pulley, radii = drive.pulleys[driver], installation.path.radii
-    time = drive.simulation.end
-    if pulley.speed is None:
-        speed = pulley.driven_speed() * pulley.turning
-    else:
-        times = np.linspace(drive.simulation.begin, time, 1001)
-        values = pulley.speed.at(times)
-        time, speed = float(times[np.argmax(np.abs(values))]), float(values[np.argmax(np.abs(values))])
-    taken = np.zeros(len(drive.pulleys))
-    for number, one in enumerate(drive.pulleys):
-        if number == driver:
-            continue
-        turning = speed * float(radii[driver] / radii[number])
-        given = 0.0 if one.torque is None else float(one.torque.at([drive.simulation.end])[0])
-        loads = sum(_torque(load, turning, drive.simulation.end) for load in one.load if load.has_mean)
-        taken[number] = -(given + loads) * turning
-    return taken, abs(speed * float(radii[driver]))
-
-
-def _torque(load: Load, speed: float, time: float) -> float:
-    """Torque of a load at a speed and an instant, N m, averaged over its angle."""
-    factor = 1.0 if load.factor is None else float(load.factor.at([time])[0])
-    return factor * float(load.torque_over(np.linspace(0.0, 4.0 * math.pi, _ANGLES), speed, time).mean())
 
 
 def _sudden_start(drive: Drive, installation: Installation) -> Iterator[Finding]:

@@ -68,6 +68,9 @@ class Rating(Part):
         None, gt=0, description="the largest pulley of the source, whose rated pull larger ones have too, in m"
     )
     largest_speed: Speed = Field(gt=0, description="the belt speed up to which the rating holds, in m/s")
+    of_profile: Words | None = Field(
+        None, description="the profile from which the rating is taken, if it is a lower bound of that of the belt"
+    )
     source: str = Field(min_length=1, description="the source of the rating, as text")
 
     @model_validator(mode="after")
@@ -108,6 +111,14 @@ class Rating(Part):
         return float((nominal_length / self.reference_length) ** self.length_exponent)
 
 
+def lower_bound(profile: str) -> str:
+    """Say that a belt is rated as another profile, of which its rating is a lower bound."""
+    return (
+        f"The rating is that of the wrapped belt {profile}, a lower bound: cogged belts with raw edges carry more, on "
+        "small pulleys up to twice as much. Count the belts by the table of your supplier, in a catalogue of your own."
+    )
+
+
 class PowerRating(NamedTuple):
     """The rating of a belt on each of n pulleys, arrays of shape (n,)."""
 
@@ -126,6 +137,11 @@ class PowerRating(NamedTuple):
     def on(self, pulleys: BoolArray) -> "PowerRating":
         """That of some pulleys; NaN for others."""
         basic, ratio, power = (np.where(pulleys, one, np.nan) for one in (self.basic, self.ratio, self.power))
+        return self._replace(basic=basic, ratio=ratio, power=power)
+
+    def outside(self, pulleys: BoolArray) -> "PowerRating":
+        """The same with no power on some pulleys, which lie outside the rating."""
+        basic, ratio, power = (np.where(pulleys, 0.0, one) for one in (self.basic, self.ratio, self.power))
         return self._replace(basic=basic, ratio=ratio, power=power)
 
 

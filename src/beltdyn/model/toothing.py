@@ -170,6 +170,11 @@ class MeshRating(NamedTuple):
         kept = (np.where(pulleys, one, np.nan) for one in self[2:])
         return MeshRating(self.diameter, self.wrap, *kept)
 
+    def outside(self, pulleys: BoolArray) -> "MeshRating":
+        """The same with no load on some pulleys, which lie outside the rating."""
+        load, pull, power = (np.where(pulleys, 0.0, one) for one in (self.load, self.pull, self.power))
+        return self._replace(load=load, pull=pull, power=power)
+
 
 class RatedTeeth(NamedTuple):
     """A toothed belt as it is rated."""

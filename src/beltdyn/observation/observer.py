@@ -14,7 +14,7 @@ from beltdyn.results.belt_history import mid_span_displacements
 from beltdyn.results.checks.creep import SWEEP_REMEDY
 from beltdyn.results.friction_work import FrictionWork, MaterialWork, Touch
 from beltdyn.results.incidents import JUMPS
-from beltdyn.results.mechanics import across
+from beltdyn.results.mechanics import across, wraps_of_contact
 from beltdyn.results.schema import FILTERED
 from beltdyn.results.slip_safety import sliding_of_pulleys
 from beltdyn.solvers.flutter import Flutter, FlutterWatch
@@ -101,6 +101,7 @@ class Observer:
     def see(self, states: Chunk, shown: BoolArray) -> Seen:
         """Recorded variables of the shown states, except coordinates and their rates, and spectra of every state."""
         seen = observe_motion(self._system, states.position, states.velocity, states.forces, shown)
+        seen = seen._replace(wrap_angle=wraps_of_contact(self._prepared, seen.pulley_center, seen.wrap_angle))
         touched, centers, places = seen.contact_pulley, seen.pulley_center, seen.contact_position
         aside = mid_span_displacements(self._prepared, centers, places, touched)
         lost = np.abs(seen.friction_force * seen.slip_velocity)

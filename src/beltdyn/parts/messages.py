@@ -26,6 +26,24 @@ def aligned(values: Sequence[float], digits: int = 4) -> list[str]:
     return [f"{value:z.{decimals}f}" if math.isfinite(value) else "–" for value in values]
 
 
+NOTABLE = 0.01
+"""Relative distance beyond a limit from which a remedy is given: one that changes less changes nothing."""
+
+
+def plain(value: float, digits: int = 4) -> str:
+    """A number in so many digits without an exponent, such as 21970 for 21968.3."""
+    return f"{float(f'{value:.{digits}g}'):.15g}"
+
+
+def beyond(present: float, wanted: float, digits: int = 2) -> float:
+    """A wanted value in so many digits, rounded away from the present one, so that a change to it is one."""
+    if wanted == 0.0 or not math.isfinite(wanted):
+        return wanted
+    step = 10.0 ** (math.floor(math.log10(abs(wanted))) - digits + 1)
+    rounded = math.ceil if wanted > present else math.floor
+    return float(f"{step * rounded(round(wanted / step, 6)):.{digits}g}")
+
+
 # A problem of a drive or its results: what is wrong, what it affects, what to do
 
 

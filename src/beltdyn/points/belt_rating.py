@@ -9,14 +9,14 @@ from pydantic import Field
 from beltdyn.arrays import FloatArray
 from beltdyn.errors import ModelError
 from beltdyn.model import Drive, prepare
-from beltdyn.model.rating import PowerRating, RatedBelt
+from beltdyn.model.rating import PowerRating, RatedBelt, lower_bound
 from beltdyn.model.toothing import MeshRating, RatedTeeth
 from beltdyn.parts.messages import listing
 from beltdyn.parts.options import takes_options
 from beltdyn.parts.quantity import Ratio
 from beltdyn.points.changed_drive import held_at
 from beltdyn.results import Result, Variable, build_result
-from beltdyn.results.means import rate, utilization
+from beltdyn.results.means import ROUNDING, rate, smaller_than_rated, utilization
 from beltdyn.results.schema import COORDINATES
 from beltdyn.results.summary import means_of
 from beltdyn.solvers.run_progress import Report
@@ -160,8 +160,10 @@ def _belts_needed(belt: RatedBelt, used: FloatArray) -> list[float]:
 
 def _scalars_of_belts(belt: RatedBelt, used: FloatArray, speed: float, drive: Drive) -> Values:
     """Factors of V-belts or ribs, and the worst pulley."""
+    needed = np.array(_belts_needed(belt, used))
+    most_needed = np.nan if np.isinf(used).any() else float(np.nanmax(needed))
     scalars: tuple[Any, ...] = (
-        *(belt.belts, np.nanmax(used), np.nanmax(_belts_needed(belt, used)), speed, drive.limits.service_factor or 1.0),
+        *(belt.belts, np.nanmax(used), most_needed, speed, drive.limits.service_factor or 1.0),
         *(belt.rating.length_factor(belt.nominal_length), belts_factor(belt.belts) if belt.in_set else 1.0),
         pulleys_factor(used.size),
     )
@@ -208,25 +210,29 @@ def _rated(drive: Drive) -> RatedBelt | RatedTeeth:
 
 def _doubts(drive: Drive, belt: RatedBelt | RatedTeeth, found: PowerRating | MeshRating, speed: float) -> Iterator[str]:
     """What is outside the range of the rating."""
-    largest = belt.rating.largest_speed
-    if speed > largest:
+    largest, smallest = belt.rating.largest_speed, drive.belt.smallest_diameter
+    if speed > largest * (1.0 + ROUNDING):
         yield (
-            f"The belt runs at {speed:.3g} m/s, beyond the {largest:.3g} m/s up to which its rating holds: the rated "
-            "power is extrapolated. Use smaller pulleys, or ask the manufacturer."
+            f"Outside the rating: the belt runs at {speed:.3g} m/s, but its rating ends at {largest:.3g} m/s, beyond "
+            "which it has no rated power. Use smaller pulleys, or ask the manufacturer."
         )
-    smallest = drive.belt.smallest_diameter
-    grooved = [one for one in drive.pulleys if one.side == "inside" and (one.teeth or drive.belt.teeth is None)]
-    small = [one.name for one in grooved if smallest is not None and 2.0 * one.radius < smallest * (1.0 - 1e-9)]
+    too_small = smaller_than_rated(drive)
+    by_teeth = drive.belt.teeth is not None
+    grooved = np.array([one.side == "inside" and (bool(one.teeth) or not by_teeth) for one in drive.pulleys])
+    small = [one.name for one, counts in zip(drive.pulleys, too_small & grooved, strict=True) if counts]
     if small and smallest is not None:
         yield (
-            f"{listing(small)}: smaller than {1e3 * smallest:.3g} mm, the smallest pulley of the profile, from which "
-            "on its rating holds; life falls by about the sixth power of the diameter. Use larger pulleys."
+            f"Outside the rating: {listing(small)}, smaller than the smallest pulley of the profile, "
+            f"{1e3 * smallest:.3g} mm; life falls by about the sixth power of the diameter. Use larger pulleys."
         )
-    if np.any(found.power == 0.0):
-        none = [one.name for one, power in zip(drive.pulleys, found.power.tolist(), strict=True) if power == 0.0]
+    spent = (found.power == 0.0) & ~too_small & (speed <= largest)
+    if np.any(spent):
+        none = [one.name for one, is_spent in zip(drive.pulleys, spent, strict=True) if is_spent]
         causes = "no tooth is in mesh, or centrifugal force takes", "bending and centrifugal force take"
-        cause = causes[drive.belt.teeth is None]
+        cause = causes[not by_teeth]
         yield (
             f"{listing(none)}: the rated power is zero, since {cause} all of the rated "
             "pull. Use a larger pulley, a smaller speed or another profile."
         )
+    if isinstance(belt, RatedBelt) and belt.rating.of_profile is not None:
+        yield lower_bound(belt.rating.of_profile)

@@ -68,6 +68,8 @@ def key_numbers(result: Result) -> tuple[KeyNumber, ...]:
     return tuple(KeyNumber(*one, _limit(limits, *one)) for one in found(result)) if found else ()
 
 
+_UNBOUNDED = ("largest_utilization",)
+"""Keys of numbers that are infinite where a limit is exceeded: outside the rating."""
 Found = tuple[str, float, str, str]
 """Key, value, unit, and where."""
 _HOUR = 3600.0
@@ -176,7 +178,7 @@ def _places(dataset: "xr.Dataset") -> list[str]:
 
 def _worst(key: str, values: FloatArray, unit: str, places: Sequence[str], of: Sequence[str]) -> Found:
     """The worst of values of shape (places, names), and where it is."""
-    if not np.isfinite(values).any():
+    if np.isnan(values).all() or not (np.isfinite(values).any() or key in _UNBOUNDED):
         return key, np.nan, unit, ""
     flat = int(np.nanargmax(values) if key.startswith("largest") else np.nanargmin(values))
     place, name = np.unravel_index(flat, values.shape)

@@ -5,7 +5,7 @@ from functools import partial
 
 import numpy as np
 
-from beltdyn.arrays import FloatArray
+from beltdyn.arrays import BoolArray, FloatArray
 from beltdyn.model import Drive, Prepared
 from beltdyn.model.path import span_directions, wrap_angles
 from beltdyn.model.rating import PowerRating
@@ -17,6 +17,8 @@ from beltdyn.results.slip_safety import slip_parts, slip_safety_of
 
 _LOADED = 0.01
 """Share of the largest power from which a pulley transmits power; idlers take less by friction."""
+ROUNDING = 1e-9
+"""Relative, of speeds and diameters at the ends of a rating."""
 
 
 def rate(
@@ -25,7 +27,8 @@ def rate(
     """Rate the belt of a drive; None where its profile has no rating.
 
     Wrap angles are those of straight spans, as in catalogues. NaN for pulleys on the back of the belt, for which
-    catalogues have no rating, and of a toothed belt for those without teeth.
+    catalogues have no rating, and of a toothed belt for those without teeth. Zero outside the rating: beyond its
+    largest belt speed, and on pulleys smaller than the smallest one of the profile.
     """
     belt = prepared.drive.rated_belt
     if belt is None:
@@ -35,13 +38,21 @@ def rate(
     speed = float(abs(speeds[prepared.reference] * prepared.radii[prepared.reference]))
     wraps = wrap_angles(span_directions(centers, *prepared.path.shape), *prepared.path.shape)
     found = belt.on(2.0 * prepared.radii, wraps, speed, loaded)
+    fast = speed > belt.rating.largest_speed * (1.0 + ROUNDING)
+    found = found.outside(fast | smaller_than_rated(prepared.drive))
     by_teeth = prepared.belt.teeth is not None
     inside = np.array([one.side == "inside" for one in prepared.pulleys])
     return found.on(prepared.toothed if by_teeth else inside)
 
 
+def smaller_than_rated(drive: Drive) -> BoolArray:
+    """Which pulleys are smaller than the smallest one for which the profile of the belt is rated, shape (n,)."""
+    least = (drive.belt.smallest_diameter or 0.0) * (1.0 - ROUNDING)
+    return np.array([2.0 * one.radius < least for one in drive.pulleys])
+
+
 def utilization(drive: Drive, rated: FloatArray, powers: FloatArray) -> FloatArray:
-    """Design power over rated power at each pulley, with the drive's service factor; inf where the rated power is 0."""
+    """Design power over rated power at each pulley, with the drive's service factor; inf outside the rating."""
     with np.errstate(divide="ignore", invalid="ignore"):
         return np.asarray((drive.limits.service_factor or 1.0) * np.abs(powers) / rated)
 

@@ -31,6 +31,19 @@ def arc_ends(prepared: Prepared, centers: FloatArray) -> tuple[FloatArray, Float
     return np.arctan2(reached[..., 1], reached[..., 0]), wrap_angles(span_directions(centers, *shape), *shape)
 
 
+def wraps_of_contact(prepared: Prepared, centers: FloatArray, contact: FloatArray) -> FloatArray:
+    """Wrap angles from the angles of contact at centers, rad, shape (..., pulleys): at most those of straight spans.
+
+    A strand crosses the rim before it has sunk in, by acos(1 - d / R) at either end of the arc. In nips the angles of
+    contact stay.
+    """
+    shape, geometry = prepared.path.shape, np.array(contact, dtype=float)
+    on_path = np.setdiff1d(np.arange(geometry.shape[-1]), prepared.path.beside)
+    straight = wrap_angles(span_directions(centers, *shape), *shape)
+    geometry[..., on_path] = np.minimum(geometry, straight)[..., on_path]
+    return geometry
+
+
 def angle_from_inlet(place: FloatArray, inlet: ArrayLike, wrap: ArrayLike, turning: ArrayLike) -> FloatArray:
     """Angle of points around a pulley in the direction of ascending belt coordinate, rad; zero at the inlet.
 

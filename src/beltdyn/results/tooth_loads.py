@@ -23,6 +23,8 @@ if TYPE_CHECKING:
 
 _INSTANTS = 40
 """Largest number of outputs along the belt that are looked at for extremes."""
+_SLIVER = 1e-6
+"""Part of a pitch at the end of an arc that rounding leaves, and that is no tooth."""
 _LEAST = 1e-9
 """Traction of teeth over the largest one, below which nothing lifts them."""
 
@@ -49,7 +51,8 @@ class ToothLoads:
     """Least ratio of what presses a tooth on to what its flanks push it off; at 1 a tooth lifts. Infinite without a
     flank angle."""
     places: FloatArray
-    """Middles of teeth along the arc, pitches from the inlet, shape (n,); lifted teeth hold a little outside."""
+    """Middles of teeth along the arc, pitches from the inlet, shape (n,); lifted teeth hold a little outside, and the
+    last of spread teeth is the part of a pitch that the arc leaves."""
     loads: FloatArray
     """Forces on these teeth along the belt, N, shape (n,); positive where they push it on."""
 
@@ -175,13 +178,12 @@ class _Found(NamedTuple):
 
 
 def _spread(whole: _Arc, arc: _Arc, pitch: float, flank: float) -> _Found:
-    """Loads of spread teeth, a pitch of the belt that they hold each, of which an arc touches."""
+    """Loads of spread teeth: of each pitch of the belt that they hold, the last in part, of which an arc touches."""
     begin = float(whole.place[0] - 0.5 * whole.share[0])
     ends = begin + np.cumsum(np.append(0.0, whole.share))
     carried = np.cumsum(np.append(0.0, whole.share * whole.traction))
-    borders = begin + pitch * np.arange(max(1, round(whole.length / pitch)) + 1)
-    borders[-1] = max(borders[-1], ends[-1])
-    middles: FloatArray = np.asarray(borders[:-1] + 0.5 * pitch, dtype=float)
+    borders = np.append(np.arange(begin, ends[-1] - _SLIVER * pitch, pitch), ends[-1])
+    middles: FloatArray = np.asarray(0.5 * (borders[:-1] + borders[1:]), dtype=float)
     loads: FloatArray = np.diff(np.interp(borders, ends, carried))
     largest = pitch * float(np.max(np.abs(whole.traction)))
     if not arc.place.size:

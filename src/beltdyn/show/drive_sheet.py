@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from beltdyn.arrays import FloatArray
-from beltdyn.parts.messages import aligned
+from beltdyn.parts.messages import aligned, listing
 from beltdyn.parts.quantity import RPM
 from beltdyn.results import Result
 from beltdyn.show.line_sheet import line_sheet
@@ -61,6 +61,9 @@ def _facts(dataset: "xr.Dataset") -> Iterable[tuple[str, str]]:
             "tension check",
             "frequency of a plucked span at rest; force on one belt across the middle of a span",
         )
+    if "required_tension" in dataset:
+        least = zip(dataset["tension_formula"].values, dataset["required_tension"].values, strict=True)
+        yield "least tension", listing([f"{tension:.4g} N ({name})" for name, tension in least])
     yield "cases", ", ".join(map(str, dataset["case"].values))
     factors = ", ".join(f"{one:.3g}" for one in dataset["friction"].values)
     yield "friction", f"{factors} times the coefficients below; the least slip safety is over all cases and these"
@@ -168,7 +171,8 @@ def _points(dataset: "xr.Dataset") -> Table:
         headings = (*headings, f"tensioner\n{'°' if turns else 'mm'}")
     if "utilization" in dataset:
         used = np.fmax.reduce(dataset["utilization"].values, axis=1)
-        columns.append([f"{_whole(100.0 * one)}%".replace("–%", "–") for one in used])
+        shares = [f"{_whole(100.0 * one)}%".replace("–%", "–") for one in used]
+        columns.append(["outside" if np.isinf(one) else share for one, share in zip(used, shares, strict=True)])
         headings = (*headings, "rating\nused")
     return Table("Operating points", headings, tuple(zip(*columns, strict=True)))
 

@@ -23,13 +23,14 @@ from beltdyn.model import (
     unstable_balance,
 )
 from beltdyn.model.alignment import is_given
+from beltdyn.model.demand import RequiredTension, required_tension
 from beltdyn.model.hysteresis import bending_resistance, compression_losses
 from beltdyn.model.installation import DEFLECTION, TensionCheck, tension_checks
 from beltdyn.model.layout import teeth_in_mesh
 from beltdyn.model.plausibility import other_diameters
 from beltdyn.model.simulation import unused_settings
 from beltdyn.model.toothing import RatedTeeth
-from beltdyn.parts.messages import Finding, aligned
+from beltdyn.parts.messages import Finding, aligned, listing
 from beltdyn.results.layout import describe_size
 from beltdyn.show.notebook import picture, templates
 from beltdyn.show.sheet import Facts, Sheet, Table, as_text
@@ -168,10 +169,20 @@ def tensioning(drive: Drive, specified: float | None = None) -> Tensioning | Non
 
 def instruction(drive: Drive, installation: Installation, specified: float | None = None) -> Tensioning | None:
     """Say how to tension a belt with its state at rest; None if it is slack."""
-    checks = tension_checks(drive, installation, specified)
+    needed = required_tension(drive, installation)
+    checks = tension_checks(drive, installation, specified, None if needed is None else needed.tension)
     if not checks or not all(check.frequencies.min() > 0.0 for check in checks):
         return None
-    return Tensioning(tuple(_tension_facts(drive, checks)), _tension_table(drive, installation, checks))
+    facts = (*_least_facts(needed), *_tension_facts(drive, checks))
+    return Tensioning(facts, _tension_table(drive, installation, checks))
+
+
+def _least_facts(needed: RequiredTension | None) -> list[tuple[str, str]]:
+    """The least tension by each formula."""
+    if needed is None:
+        return []
+    by_formula = listing([f"{tension:.4g} N ({name})" for name, tension in needed.by_formula.items()])
+    return [("least tension", f"{by_formula}, for the pull of {needed.pull:.4g} N with the service factor")]
 
 
 def _tension_facts(drive: Drive, checks: tuple[TensionCheck, ...]) -> list[tuple[str, str]]:
@@ -263,6 +274,7 @@ def _facts(given: Drive, drive: Drive, installation: Installation) -> list[tuple
     return [
         *([("drive", drive.name)] if drive.name else []),
         ("tension at rest", f"{installation.tension:.4g} N{_origin(drive, installation, asked_for)}"),
+        *_least_facts(required_tension(drive, installation)),
         (
             "belt length",
             f"{length:.5g} m unstretched, stretched by {installation.strain:z.3%} on its path of {path:.5g} m",

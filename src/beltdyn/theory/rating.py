@@ -34,6 +34,7 @@ its values from 0 to 10 000 rpm within 2 %).
 """
 
 from math import pi
+from types import MappingProxyType
 from typing import NamedTuple
 
 import numpy as np
@@ -48,8 +49,9 @@ _BELTS, _OF_BELTS = (1.0, 3.0, 6.0, 999.0), (1.0, 0.95, 0.90, 0.85)
 """Number of V-belts side by side and its factor, by the help of a CAD system (Autodesk Inventor, V-belts)."""
 _PULLEYS, _OF_PULLEYS = (2.0, 3.0, 4.0, 5.0, 6.0, 7.0, 8.0, 100.0), (1.0, 0.91, 0.86, 0.81, 0.78, 0.76, 0.75, 0.70)
 """Number of pulleys, idlers among them, and its factor; source as of belts."""
-_GRIP = 2.5
-"""Of the tension at rest in GB/T 13575.1."""
+TENSION_FORMULAS = MappingProxyType({"Optibelt": 2.02, "GB/T 13575.1": 2.5})
+"""Constant k of the tension at rest (k / c - 1) F / 2 + m v^2, with the wrap factor c, ascending: Optibelt, Technical
+Manual V-Belt Drives, and the standard, which requires half as much again."""
 
 
 class RatingLaw(NamedTuple):
@@ -118,8 +120,10 @@ def pulleys_factor(pulleys: int) -> float:
     return float(np.interp(pulleys, _PULLEYS, _OF_PULLEYS))
 
 
-def least_tension(pull: float, wrap: float, mass: float, speed: float) -> float:
-    """Tension of a belt at rest that carries a pull, by GB/T 13575.1, N.
+def least_tension(
+    pull: float, wrap: float, mass: float, speed: float, grip: float = TENSION_FORMULAS["GB/T 13575.1"]
+) -> float:
+    """Tension of a belt at rest that carries a pull, by a formula of `TENSION_FORMULAS`, N.
 
     Parameters
     ----------
@@ -131,10 +135,20 @@ def least_tension(pull: float, wrap: float, mass: float, speed: float) -> float:
         Per length, kg/m.
     speed : float
         Of the belt, m/s.
+    grip : float, default 2.5
+        Constant of the formula, by default that of GB/T 13575.1.
+
+    Examples
+    --------
+    >>> from math import radians
+    >>> from beltdyn.theory.rating import TENSION_FORMULAS, least_tension
+    >>> pull = 1.3 * 132e3 / 21.76  # eight SPB, each of 0.19 kg/m; Optibelt prints 593 N a belt
+    >>> round(least_tension(pull, radians(180), 8 * 0.19, 21.76, TENSION_FORMULAS["Optibelt"]) / 8)
+    593
     """
     require_above(wrap=wrap)
     factor = float(wrap_factor(wrap))
-    return 0.5 * pull * (_GRIP / factor - 1.0) + mass * speed**2
+    return 0.5 * pull * (grip / factor - 1.0) + mass * speed**2
 
 
 REST_SHARE = 0.6

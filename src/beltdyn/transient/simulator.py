@@ -14,6 +14,7 @@ from beltdyn.kernel import interpreted
 from beltdyn.machines.profiles.functions import go_on, profile_integral, profile_value
 from beltdyn.model import Drive, Pulley, prepare
 from beltdyn.parts.quantity import number_in
+from beltdyn.results.mechanics import wraps_of_contact
 from beltdyn.results.tension_balance import STORED
 from beltdyn.solvers.generalized_alpha import GeneralizedAlpha
 from beltdyn.solvers.integrator_state import IntegratorState, grown
@@ -94,7 +95,7 @@ class Simulator:
                 f'a simulator supports only generalized_alpha, not "{integrator.name}". Omit simulation.integrator.'
             )
         begin = begin_on(mesh_of(prepare(settled(drive, integrator)[0]), integrator, progress), integrator, progress)
-        self.drive = begin.prepared.drive
+        self.drive, self._prepared = begin.prepared.drive, begin.prepared
         """With the length, or the take-up, that gives the installed tension."""
         self._integration = integrator.begin(drive_task(begin.prepared, begin.system, begin.state, Statistics()))
         self._pulleys: tuple[Pulley, ...] = begin.prepared.pulleys
@@ -282,7 +283,7 @@ class Simulator:
             "shaft_torque": seen.shaft_torque[0],
             "pulley_torque": seen.pulley_torque[0],
             "hub_load": np.hypot(*seen.hub_force[0].T),
-            "wrap_angle": seen.wrap_angle[0],
+            "wrap_angle": wraps_of_contact(self._prepared, seen.pulley_center[0], seen.wrap_angle[0]),
         }
         first = position.shape[1] - len(system.tensioners)
         tensioners = position[0, first : first + len(self.drive.moving_tensioners)]

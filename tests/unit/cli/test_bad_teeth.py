@@ -36,7 +36,7 @@ CASES: dict[str, tuple[str, str, tuple[str, ...]]] = {
     "too short to mesh": (
         "144.5 mm",
         "250 mm",
-        ("belt.teeth = 60 is too short to mesh", "86.55 pitches of 8 mm", "Give 87 teeth, or move the pulleys closer"),
+        ("belt.teeth = 60 is too short to mesh", "86.55 pitches of 8 mm", "Give 86 teeth, or move the pulleys closer"),
     ),
     "crossed": ("teeth = 60", "teeth = 60\ncrossed = true", ("crossed = true is incompatible with teeth", "Omit it")),
     "teeth on the back": (

@@ -9,6 +9,7 @@ import pytest
 import beltdyn as bd
 from beltdyn.errors import ModelError
 from beltdyn.model import example, install
+from beltdyn.model.demand import required_tension
 from beltdyn.model.installation import tension_checks
 
 ROWS = [
@@ -87,7 +88,11 @@ simulation = { duration = "1 s" }
 def test_spans_are_checked_as_in_the_workshop() -> None:
     """A new, a run-in and a loose belt between fixed centers as `check` tells; one state where a spring holds it."""
     drive = example("fan_direct_start")
-    dataset, checks = bd.sheet(drive, points=2).dataset, tension_checks(drive, install(drive))
+    needed = required_tension(drive, install(drive))
+    assert needed is not None
+    dataset, checks = bd.sheet(drive, points=2).dataset, tension_checks(drive, install(drive), least=needed.tension)
+    assert dataset.tension_formula.values.tolist() == list(needed.by_formula)
+    np.testing.assert_allclose(dataset.required_tension, list(needed.by_formula.values()), rtol=0.01)
     assert dataset.belt_state.values.tolist() == [one.state for one in checks] == ["new", "run in", "least"]
     for one in checks:
         at = dataset.sel(belt_state=one.state)

@@ -277,3 +277,65 @@ def test_a_measured_curve_takes_the_place_of_the_stiffness(tmp_path: Path) -> No
 def test_other_drives_are_answered_by_what_is_there(name: str, answer: str) -> None:
     with pytest.raises(LookupError, match=rf"is not in the catalogue\. {answer}"):
         find_entry(read_catalogue(None), name)
+
+
+SDP_SI = {
+    "MXL": 80,
+    "XL": 125,
+    "L": 218,
+    "H": 601,
+    "HTD 3M": 285,
+    "HTD 5M": 454,
+    "HTD 8M": 792,
+    "GT 2M": 111,
+    "GT 3M": 507,
+    "GT 5M": 712,
+    "GT 8M": 1690,
+    "T2.5": 312,
+    "T5": 930,
+    "T10": 1800,
+}
+"""Allowable working tensions, N on 25.4 mm of width: SDP/SI, D265 handbook, table 3 (T-15)."""
+
+
+@pytest.mark.parametrize("name", SDP_SI)
+def test_allowed_tensions_of_toothed_belts_are_published(name: str) -> None:
+    """T5 is Goodyear Elatech's, which is the smaller."""
+    entry = read_catalogue()[name]
+    assert entry.largest_tension is not None
+    assert entry.largest_tension / entry.width == pytest.approx(SDP_SI[name] / 25.4e-3, rel=0.02)
+    assert "SDP/SI D265" in entry.source or name == "T5"
+
+
+@pytest.mark.parametrize("name", TOOTHED)
+def test_rubber_teeth_carry_the_allowed_tension_by_six(name: str) -> None:
+    entry = read_catalogue()[name]
+    assert entry.toothing is not None
+    if not name.startswith(("T", "AT")):
+        assert 6.0 * (entry.toothing.largest_tooth_load or 0.0) == pytest.approx(entry.largest_tension, rel=0.05)
+
+
+@pytest.mark.parametrize("name", [*NARROW, *CLASSICAL])
+def test_v_belts_have_a_largest_tension(name: str) -> None:
+    """The tight span of a new belt under its largest rated pull at 1 m/s: 1.5 times 0.75 F, and F / 2."""
+    entry = read_catalogue()[name]
+    assert entry.rating is not None
+    pull = entry.rating.force - entry.rating.bending / (entry.rating.largest_diameter or 0.63)
+    assert entry.largest_tension == pytest.approx((1.5 * 0.75 + 0.5) * pull, rel=0.05)
+
+
+def test_three_kilonewtons_on_a_belt_spb_are_too_much() -> None:
+    assert (read_catalogue()["SPB"].largest_tension or np.inf) < 3e3
+
+
+@pytest.mark.parametrize("name", [*NARROW, *CLASSICAL])
+def test_cogged_belts_name_the_profile_by_which_they_are_rated(name: str) -> None:
+    entries = read_catalogue()
+    rating = entries[name].rating
+    assert rating is not None
+    cogged = name.startswith("XP") or name.endswith("X")
+    assert (rating.of_profile is not None) == cogged
+    if rating.of_profile is not None:
+        wrapped = entries[rating.of_profile].rating
+        assert wrapped is not None
+        assert rating.law == wrapped.law

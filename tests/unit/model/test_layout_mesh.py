@@ -2,18 +2,54 @@
 
 from typing import Any
 
+import numpy as np
 import pytest
 
 import beltdyn as bd
 from beltdyn.errors import ModelError
+from beltdyn.model import advise, install
+from beltdyn.model.layout import mesh_misfit
 from tests.unit.model.test_toothing import BELT, drive
 
 
 def test_a_belt_too_short_to_mesh() -> None:
+    """Stretched by a quarter, its teeth at the ends of arcs are off by more than 0.4 pitches."""
     with pytest.raises(
-        ModelError, match=r"belt.teeth = 97 is too short to mesh: .* has 100.16 pitches of 8 mm. Give 100"
+        ModelError, match=r"belt.teeth = 80 is too short to mesh: .* has 100.16 pitches of 8 mm, .*. Give 100"
     ):
-        drive({"teeth": 97})
+        drive({"teeth": 80})
+
+
+def test_a_belt_that_stretches_by_some_teeth_meshes_and_is_told() -> None:
+    made = drive({"teeth": 97})
+    (told,) = [text for text in advise(made, install(made)) if "the path has 100.16 pitches" in text]
+    assert "but the belt 97 teeth: it is stretched by 3.26%" in told
+    assert "Give 100 teeth" in told
+
+
+@pytest.mark.parametrize("tension", [20.0, 40.0, 80.0])
+def test_elastic_stretch_is_no_lack_of_teeth(tension: float) -> None:
+    """A long belt stretches by more than a tooth at ordinary tensions: 330 teeth of 2 mm by 0.6 teeth at 20 N."""
+    axis = bd.example("printer_axis")
+    made = axis.replace(belt=axis.belt.replace(installed_tension=tension))
+    assert install(made).tension == pytest.approx(tension, rel=1e-3)
+
+
+def test_the_misfit_of_teeth_on_long_and_short_arcs() -> None:
+    """Rigid teeth hold the belt within lambda of the ends, soft ones let it stretch over half of the arc."""
+    made = drive({"teeth": 99})
+    toothed, strain = np.array([True, True]), made.path.length / 0.792 - 1.0
+    toothing = made.belt.toothing
+    assert toothing is not None
+
+    def misfit(stiffness: float) -> float:
+        belt = made.belt.replace(toothing=toothing.replace(tooth_stiffness=stiffness))
+        return mesh_misfit(belt, made.path, toothed)
+
+    decay = (8e-3 * made.belt.axial_stiffness / 1e9) ** 0.5
+    assert misfit(1e9) == pytest.approx(strain * decay, rel=1e-6)
+    arc = float((np.abs(made.path.radii) * made.path.wrap_angles).max())
+    assert misfit(1.0) == pytest.approx(0.5 * strain * arc, rel=1e-3)
 
 
 def test_a_belt_whose_teeth_nothing_holds() -> None:

@@ -87,12 +87,12 @@ def test_a_belt_of_a_drive_is_rated_with_its_width() -> None:
 
 
 def test_check_names_the_width_that_carries_the_pull() -> None:
-    """Twenty teeth of 5 mm have 31.8 mm of diameter; 9 mm are rated for 225 N by the cords, 15 mm for 375 N."""
+    """Twenty teeth of 5 mm have 31.8 mm of diameter; 9 mm are rated for 161 N by the cords, 25 mm for 447 N."""
     drive = loads(TEXT.replace("TENSION", "150").replace("TORQUE", "5"))
     told = [one for one in advise(drive, install(drive)) if "teeth in mesh are rated" in one]
     assert len(told) == 1
-    assert "is 314.2 N with the service factor, but 10.0 teeth in mesh are rated for 224." in told[0]
-    assert "Use a belt of 15 mm, the next standard width" in told[0]
+    assert "is 314.2 N with the service factor, but 10.0 teeth in mesh are rated for 161 N" in told[0]
+    assert "Use a belt of 25 mm, the next standard width" in told[0]
     light = loads(TEXT.replace("TENSION", "150").replace("TORQUE", "1.5"))
     assert not [one for one in advise(light, install(light)) if "teeth in mesh are rated" in one]
 

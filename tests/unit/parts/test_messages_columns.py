@@ -1,8 +1,8 @@
-"""Columns of numbers."""
+"""Columns of numbers, and numbers in sentences."""
 
 import pytest
 
-from beltdyn.parts.messages import aligned
+from beltdyn.parts.messages import aligned, beyond, plain
 
 
 @pytest.mark.parametrize(
@@ -17,3 +17,20 @@ from beltdyn.parts.messages import aligned
 )
 def test_a_column_has_as_many_decimals_in_all_rows(values: list[float], written: list[str]) -> None:
     assert aligned(values) == written
+
+
+@pytest.mark.parametrize(
+    ("value", "written"), [(21968.3, "21970"), (0.0012345, "0.001234"), (105.0, "105"), (-2.0, "-2")]
+)
+def test_a_number_in_a_sentence_has_no_exponent(value: float, written: str) -> None:
+    assert plain(value) == written
+
+
+@pytest.mark.parametrize(
+    ("present", "wanted", "digits", "rounded"),
+    [(1.0, 1.004, 2, 1.1), (21968.0, 22005.0, 3, 22100.0), (1.1e-4, 1.04e-4, 1, 1e-4), (2.0, 2.0, 2, 2.0)],
+)
+def test_a_wanted_value_is_rounded_away_from_the_present_one(
+    present: float, wanted: float, digits: int, rounded: float
+) -> None:
+    assert beyond(present, wanted, digits) == pytest.approx(rounded, rel=1e-12)

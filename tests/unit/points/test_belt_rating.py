@@ -2,13 +2,15 @@
 
 from math import asin, log10, pi
 
+import numpy as np
 import pytest
 
 from beltdyn.designs.named_results import names_of
 from beltdyn.errors import ModelError
 from beltdyn.model import Drive, loads
 from beltdyn.points.belt_rating import rating
-from beltdyn.results import Result
+from beltdyn.results import Result, key_numbers
+from beltdyn.state.steady import steady_state
 
 RPM = 30.0 / pi
 POWER = 22e3
@@ -98,8 +100,29 @@ def test_what_has_no_rating_is_refused(fan: Drive, changes: dict[str, object], s
 
 def test_what_is_outside_the_range_is_said(fan: Drive) -> None:
     fast = fan.with_({"pulley[motor].speed": "5500 rpm", "pulley[fan].torque": {"kind": "constant", "value": -10.0}})
-    (warning,) = rating(fast).warnings
-    assert "46.1 m/s, beyond the 35 m/s" in warning
+    found = rating(fast)
+    (warning,) = found.warnings
+    assert "Outside the rating: the belt runs at 46.1 m/s, but its rating ends at 35 m/s" in warning
+    assert (found.dataset.rated_power == 0.0).all()
+    assert found.dataset.largest_utilization == np.inf
+    assert bool(found.dataset.most_belts_needed.isnull())
+
+
+def test_a_pulley_below_the_smallest_is_outside_the_rating(fan: Drive) -> None:
+    """And its limit is not met, whatever the other pulley says."""
+    small = fan.with_({"pulley[motor].diameter": "80 mm", "limits.largest_utilization": 5.0})
+    found = rating(small)
+    assert any("Outside the rating: motor, smaller than the smallest pulley" in text for text in found.warnings)
+    assert found.dataset.utilization.sel(pulley="motor") == np.inf
+    assert np.isfinite(float(found.dataset.utilization.sel(pulley="fan")))
+    numbers = {one.key: one for one in key_numbers(steady_state(small))}
+    assert numbers["largest_utilization"].value == np.inf
+    assert numbers["largest_utilization"].passes is False
+
+
+def test_cogged_belts_say_that_they_are_rated_as_wrapped_ones(fan: Drive) -> None:
+    (warning,) = rating(fan.with_({"belt.profile": "XPA"})).warnings
+    assert "The rating is that of the wrapped belt SPA, a lower bound" in warning
 
 
 TOOTHED = """

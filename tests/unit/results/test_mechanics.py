@@ -19,6 +19,7 @@ from beltdyn.results.mechanics import (
     rim_speeds,
     sliding_shares,
     sliding_velocity,
+    wraps_of_contact,
 )
 
 ROUNDING = 1e-9
@@ -44,6 +45,18 @@ def test_rims_run_with_the_belt_on_either_side() -> None:
     rim = rim_speeds(np.array([10.0, 20.0, -50.0]), serpentine())
     np.testing.assert_allclose(rim, 1.0)
     np.testing.assert_allclose(relative_loss(-rim, rim, 0), 0.0)
+
+
+def test_wraps_are_at_most_those_of_straight_spans() -> None:
+    """Penetration adds to angles of contact; a belt that has lifted off touches less, or nothing."""
+    drive = serpentine()
+    straight = drive.path.wrap_angles
+    wraps = wraps_of_contact(drive, CENTERS, straight + 0.05)
+    np.testing.assert_allclose(wraps, straight)
+    assert wraps @ np.sign(drive.path.radii) == pytest.approx(2.0 * np.pi)
+    lifted = np.stack([straight * [1.0, 0.5, 0.0], straight + 0.01])
+    found = wraps_of_contact(drive, np.stack([CENTERS, CENTERS]), lifted)
+    np.testing.assert_allclose(found, [straight * [1.0, 0.5, 0.0], straight])
 
 
 def test_slip_is_the_loss_against_the_driver_whichever_way_it_runs() -> None:

@@ -11,6 +11,7 @@ from beltdyn.errors import ConvergenceError, ModelError
 from beltdyn.results import Run, tooth_loads
 from beltdyn.results.checks import Evidence
 from beltdyn.results.checks.machines import lifted_teeth
+from beltdyn.results.tooth_loads import _Arc, _spread
 
 
 @pytest.fixture(scope="module")
@@ -37,6 +38,21 @@ def test_tooth_loads_make_the_torques(run: Run) -> None:
         pull = abs(float(torque[number])) / run.prepared.radii[number]
         assert sense * float(one.loads.sum()) == pytest.approx(pull, rel=0.01)
         assert one.largest >= np.abs(one.loads).max()
+
+
+def test_no_tooth_of_steady_running_carries_more_than_the_largest(run: Run) -> None:
+    """The last one is a part of a pitch, and carries a part."""
+    for pitches in np.linspace(6.0, 13.9, 17).tolist():
+        count = 400
+        place = np.linspace(0.0, 8e-3 * pitches, count)
+        share = np.full(count, 8e-3 * pitches / count)
+        traction = 1e4 * np.cosh(place / 0.03)
+        arc = _Arc(place, share, np.full(count, 1e4), traction)
+        found = _spread(arc, arc, 8e-3, 0.1)
+        assert found.loads.sum() == pytest.approx(float(share @ traction), rel=1e-9)
+        assert np.abs(found.loads).max() <= found.largest
+        assert found.loads.size == np.ceil(pitches - 1e-6)
+        assert np.all(np.diff(found.loads[:-1]) > 0.0)
 
 
 def test_teeth_in_mesh(run: Run) -> None:

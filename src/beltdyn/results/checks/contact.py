@@ -6,7 +6,7 @@ from collections.abc import Iterator
 import numpy as np
 
 from beltdyn.arrays import FloatArray
-from beltdyn.parts.messages import Finding, listing
+from beltdyn.parts.messages import NOTABLE, Finding, beyond, listing
 from beltdyn.results.checks.evidence import Evidence
 from beltdyn.results.mechanics import across
 from beltdyn.results.schema import names
@@ -103,15 +103,15 @@ def deep_penetration(evidence: Evidence) -> Iterator[Finding]:
         for pulley, radius, depth, time, limit in zip(
             prepared.pulleys, prepared.radii, depths, times, most, strict=True
         )
-        if depth > limit
+        if depth > (1.0 + NOTABLE) * limit
     ]
     if deep:
         yield Finding(
             f"the belt sinks {listing(deep)}.",
             "Torque arms, wrap angles and tensions are those of pulleys up to "
             f"{(depths / prepared.radii).max():.1%} smaller.",
-            f"Increase contact.stiffness from {prepared.contact_stiffness:g} N/m^2 to "
-            f"{prepared.contact_stiffness * (depths / most).max():.1e}.",
+            f"Increase contact.stiffness from {prepared.contact_stiffness:.3g} N/m^2 to "
+            f"{beyond(prepared.contact_stiffness, prepared.contact_stiffness * (depths / most).max()):.2g}.",
         )
 
 
@@ -137,7 +137,8 @@ def large_tension(evidence: Evidence) -> Iterator[Finding]:
         yield Finding(
             f"the span {names(evidence.recorded, 'span')[span]} carries {tension[row, span]:.4g} N at t = "
             f"{evidence.time[row]:.4g} s; the belt is rated for {most:.4g} N.",
-            "The cords stretch permanently, and belt and bearings fail early.",
+            "The cords stretch permanently, belt and bearings fail early, and losses are extrapolated beyond their "
+            "data.",
             f"Choose a belt at least {wider:.4g} times as wide, or reduce the tension or the load.",
         )
 

@@ -8,7 +8,7 @@ from beltdyn.arrays import BoolArray, FloatArray, IntArray
 from beltdyn.machines import Support
 from beltdyn.model import off_the_stop, unstable_balance
 from beltdyn.model.carrying import in_batch, lies_on, upper_side
-from beltdyn.parts.messages import Finding, listing
+from beltdyn.parts.messages import NOTABLE, Finding, beyond, listing, plain
 from beltdyn.results.checks.evidence import Evidence
 from beltdyn.results.incidents import jumps_in, on_stops
 from beltdyn.theory.span import sag_ratio
@@ -74,28 +74,29 @@ MOST_SAG = 0.01
 def sagging_belt(evidence: Evidence) -> Iterator[Finding]:
     """Supports between whose idlers the belt sags too far at any time, with the goods that are on it."""
     fields, tension = (np.asarray(evidence.recorded[name]) for name in ("field_time", "belt_tension"))
-    found, needed, closest = list[str](), 0.0, 1.0
+    found, needed, places = list[str](), 0.0, list[str]()
     for number, support in enumerate(evidence.prepared.supports, 1):
         if not support.free_length > 0.0:
             continue
         on, weight = _on_support(evidence, support, fields)
         taut = np.maximum(tension[:, on], np.finfo(float).tiny)
         sag = sag_ratio(1.0, support.free_length, 1.0) * weight / taut
-        if not sag.size or not sag.max() > MOST_SAG:
+        if not sag.size or not sag.max() > (1.0 + NOTABLE) * MOST_SAG:
             continue
         row, column = np.unravel_index(int(sag.argmax()), sag.shape)
         least = sag_ratio(float(weight[row, column]), support.free_length, MOST_SAG)
         found.append(
             f"{sag[row, column]:.2g} of the spacing of support[{number}], {'-'.join(support.span)}, at t = "
-            f"{fields[row]:.4g} s, where its tension is {tension[:, on][row, column]:.4g} N"
+            f"{fields[row]:.4g} s, where its tension is {plain(tension[:, on][row, column])} N"
         )
-        needed, closest = max(needed, least), min(closest, MOST_SAG / float(sag[row, column]))
+        needed, spacing = max(needed, least), support.free_length * MOST_SAG / float(sag[row, column])
+        places.append(f"{plain(beyond(support.free_length, spacing, 3))} m apart in support[{number}]")
     if found:
         yield Finding(
             f"the belt sags between idlers by {listing(found)}, more than {MOST_SAG:.0%}.",
             "Goods work on the belt and may spill; the idlers resist more than their friction coefficient says.",
-            f"Raise the least tension to {needed:.3g} N by a heavier take-up, or place idlers {1.0 / closest:.2g} "
-            "times as close.",
+            f"Raise the least tension to {plain(beyond(0.0, needed, 3))} N by a heavier take-up, or place idlers "
+            f"{listing(places)}.",
         )
 
 
@@ -158,10 +159,10 @@ def overloaded_teeth(evidence: Evidence) -> Iterator[Finding]:
     over = [one for one in evidence.tooth_loads if one.largest > one.allowed]
     if over:
         worst, allowed = {one.name: one.largest for one in over}, over[0].allowed
-        factor = max(worst.values()) / allowed
+        factor = beyond(1.0, max(worst.values()) / allowed, 3)
         yield Finding(
             f"a tooth carries {listing([f'{load:.4g} N on {name}' for name, load in worst.items()])}; the belt allows "
             f"{allowed:.4g} N.",
             "Teeth shear off early.",
-            f"Choose a belt {factor:.2g} times as wide, or a pulley with more teeth in mesh, or reduce the load.",
+            f"Choose a belt {factor:.3g} times as wide, or a pulley with more teeth in mesh, or reduce the load.",
         )

@@ -5,7 +5,7 @@ from collections.abc import Iterator
 
 from beltdyn.model import Prepared
 from beltdyn.model.defaults import DAMPING_RATIO
-from beltdyn.parts.messages import Finding, listing
+from beltdyn.parts.messages import Finding, beyond, listing
 from beltdyn.parts.quantity import RPM
 from beltdyn.results.checks.evidence import Evidence, shorter_steps
 from beltdyn.results.schema import attribute
@@ -71,8 +71,8 @@ def artificial_losses(evidence: Evidence) -> Iterator[Finding]:
             f"contact damping dissipates {power:.3g} W, {share:.1%} of the power input: it stabilizes the computation "
             "and is not a loss of a real belt.",
             _spoiled(balance, power),
-            f"Reduce contact.damping from {prepared.contact_damping:.2g} to {growing * _DAMPING_GOAL / share:.1g} "
-            "N s/m^2 or less.",
+            f"Reduce contact.damping from {prepared.contact_damping:.2g} to "
+            f"{beyond(prepared.contact_damping, growing * _DAMPING_GOAL / share, 1):.1g} N s/m^2 or less.",
         )
 
 
