@@ -13,11 +13,13 @@ Numba's own cache watches the file of the compiled function only.  A kernel that
 keep the old physics after that law was edited.  Here the cache lives in a folder named by a hash of every source
 file that takes part in compiled code, so that an edit anywhere in them starts an empty cache.
 
-What lies there is run as machine code.  So nobody else may write there, and `beltdyn.kernel.fingerprint` puts a
-checksum around every file.
+What lies there is run as machine code.  So nobody else may write there, nor to a folder on the way there, and every
+file has a checksum around it.
 """
 
 import atexit
+import dis
+import errno
 import hashlib
 import os
 import secrets
@@ -64,8 +66,6 @@ _SHIPPED = PACKAGE / "kernel" / "shipped"
 ENTRY, NUMBA_FILES = ".kernel", (".nbi", ".nbc")
 """Endings of the files of kernels: ours, and those of Numba's decorator."""
 
-_WRITABLE_BY_OTHERS = stat.S_IWGRP | stat.S_IWOTH
-
 
 class KernelCacheWarning(UserWarning):
     """Compiled kernels cannot be kept or reused."""
@@ -107,15 +107,62 @@ def _prepare(chosen: Path, name: str) -> str:
     folder.mkdir(mode=0o700, exist_ok=True)
     if hasattr(os, "getuid"):
         trusted = (os.getuid(), 0)
-        for path in (chosen, folder, *(Path(entry) for entry in os.scandir(folder) if entry.is_dir())):
-            status = path.stat()
-            if status.st_uid not in (trusted if path == chosen else trusted[:1]):
-                return f"{path} belongs to another user"
-            shared = path == chosen and status.st_mode & stat.S_ISVTX  # as /tmp: only owners move what is theirs
-            if status.st_mode & _WRITABLE_BY_OTHERS and not shared:
-                return f"other users can write to {path}"
+        fault = next(filter(None, (_fault(path, trusted, shared=True) for path in _way_to(folder))), "")
+        own = (folder, *(Path(entry) for entry in os.scandir(folder) if entry.is_dir()))
+        fault = fault or next(filter(None, (_fault(path, trusted[:1]) for path in own)), "")
+        if fault:
+            return fault
     with tempfile.TemporaryFile(dir=folder):
         return ""
+
+
+_MOST_LINKS = 40
+"""Links on the way to a folder, as Linux follows them."""
+
+
+def _way_to(path: Path) -> Iterator[Path]:
+    """Every folder and link on the way to a path, from the root on: who can change one of them leads it elsewhere."""
+    place, names, links = Path(path.anchor), list(reversed(path.absolute().parts)), 0
+    while names:
+        step = place / names.pop()
+        if step.name == "..":
+            place = place.parent
+        elif step.is_symlink():
+            yield step
+            links += 1
+            if links > _MOST_LINKS:
+                raise OSError(errno.ELOOP, os.strerror(errno.ELOOP))
+            names += reversed(step.readlink().parts)
+        else:
+            yield step
+            place = step
+
+
+def _fault(path: Path, owners: tuple[int, ...], *, shared: bool = False) -> str:
+    """Why others can change what a folder or a link is or holds; empty if they cannot.
+
+    In a `shared` folder, such as that of temporary files, everybody can make files, but only their owners move them.
+    """
+    status = path.lstat() if shared else path.stat()
+    if status.st_uid not in owners:
+        return f"{path} belongs to another user"
+    if stat.S_ISLNK(status.st_mode) or (shared and status.st_mode & stat.S_ISVTX):
+        return ""
+    by_group = status.st_mode & stat.S_IWGRP and not _is_of_one(status.st_gid)
+    return f"other users can write to {path}" if by_group or status.st_mode & stat.S_IWOTH else ""
+
+
+@cache
+def _is_of_one(group: int) -> bool:
+    """Whether a group is that of this user alone, named alike: Linux lets such groups write by default."""
+    import grp  # POSIX alone has them
+    import pwd
+
+    try:
+        entry, user = grp.getgrgid(group), pwd.getpwuid(os.getuid()).pw_name
+    except KeyError:
+        return False
+    return entry.gr_name == user and set(entry.gr_mem) <= {user}
 
 
 def _copy(source: Path, folder: Path) -> None:
@@ -197,12 +244,17 @@ def _add_function(digest: Any, function: FunctionType, seen: set[int]) -> None:
 
 
 def _add_code(digest: Any, code: CodeType) -> None:
-    digest.update(code.co_code + repr((code.co_names, code.co_varnames)).encode())
-    for constant in code.co_consts:
-        if isinstance(constant, CodeType):
-            _add_code(digest, constant)
+    """Add what code does: constants where they are used, so that documentation and `python -OO` make no difference."""
+    digest.update(repr((code.co_names, code.co_varnames)).encode())
+    for step in dis.get_instructions(code):
+        if step.opname == "NOP":  # in the place of documentation that was left out
+            continue
+        digest.update(step.opname.encode())
+        value = step.argval if step.opcode in dis.hasconst else step.arg
+        if isinstance(value, CodeType):
+            _add_code(digest, value)
         else:
-            digest.update(repr(constant).encode())
+            digest.update(repr(value).encode())
 
 
 def names_in(code: CodeType) -> set[str]:

@@ -475,11 +475,10 @@ def dumps(value: Any) -> bytes:
 
 
 def _fingerprint(function: Any) -> tuple[Any, ...]:
-    """What tells the code of a function from that of others, and from that of its file before an edit."""
-    code, closure = function.__code__, function.__closure__
-    cells = dumps(tuple(cell.cell_contents for cell in closure)) if closure else b""
-    parts = _content(code.co_filename), code.co_code, cells
-    return code.co_firstlineno, code.co_names, *(hashlib.sha256(part).hexdigest() for part in parts)
+    """What tells a function from others, and from what its file held before an edit, however Python compiles it."""
+    code, closure = function.__code__, function.__closure__ or ()
+    content = hashlib.sha256(_content(code.co_filename)).hexdigest()
+    return code.co_firstlineno, content, fingerprint(cell.cell_contents for cell in closure)
 
 
 @cache

@@ -190,3 +190,31 @@ def test_files_that_nobody_sealed_are_removed(tmp_path: Path) -> None:
     folder.seal()
     SealedFolder(tmp_path)
     assert (law / "new.nbc").read_bytes() == b"whole"
+
+
+_LAW = '''
+def law(x):
+    """Twice a number."""
+    def inner(y):
+        """As it is."""
+        return 2.0 * y
+    return inner(x)
+'''
+
+
+def test_fingerprints_do_not_depend_on_how_python_compiles(tmp_path: Path) -> None:
+    """Neither of users' laws, nor of kernels of the package: `python -O` and `-OO` compile nothing anew."""
+    from beltdyn.kernel.quick import _fingerprint
+
+    file = tmp_path / "law.py"
+    file.write_text(_LAW.replace("return inner", "assert x == x\n    return inner"), encoding="utf-8")
+    seen, of_package = set[str](), set[tuple[Any, ...]]()
+    for level in (0, 1, 2):
+        names: dict[str, Any] = {}
+        exec(compile(_LAW, str(file), "exec", optimize=level), names)
+        seen.add(fingerprint.fingerprint([names["law"]]))
+        exec(compile(file.read_text(encoding="utf-8"), str(file), "exec", optimize=level), names)
+        of_package.add(_fingerprint(names["law"]))
+    assert (len(seen), len(of_package)) == (1, 1)
+    exec(compile(_LAW.replace("2.0", "3.0"), str(file), "exec"), names)
+    assert fingerprint.fingerprint([names["law"]]) not in seen

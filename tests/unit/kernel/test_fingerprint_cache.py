@@ -107,6 +107,45 @@ def test_a_folder_that_others_can_write_to_is_not_used(
         assert tmp_path not in kernel_cache().parents
 
 
+@pytest.mark.skipif(os.name == "nt", reason="rights of files")
+@pytest.mark.parametrize("named", ["open/closed/cache", "link/cache", "loop/cache"])
+def test_every_folder_and_link_on_the_way_counts(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, named: str) -> None:
+    """Whoever can write to one of them can put another folder in the place of the next."""
+    (tmp_path / "open" / "closed").mkdir(parents=True)
+    (tmp_path / "open").chmod(0o777)
+    (tmp_path / "open" / "lead").symlink_to(tmp_path / "private")
+    (tmp_path / "private").mkdir()
+    (tmp_path / "link").symlink_to("open/lead")  # a link by way of a link
+    (tmp_path / "loop").symlink_to("loop")
+    monkeypatch.setenv(CACHE_VARIABLE, str(tmp_path / named))
+    fault = "cannot be written" if named.startswith("loop") else f"other users can write to {tmp_path / 'open'}"
+    with pytest.warns(KernelCacheWarning, match=re.escape(fault)):
+        assert tmp_path not in kernel_cache().parents
+    kernel_cache.cache_clear()
+    (tmp_path / "open").chmod(0o1777)  # as that of temporary files: others cannot move what lies there
+    monkeypatch.setenv(CACHE_VARIABLE, str(tmp_path / named))
+    if not named.startswith("loop"):
+        assert kernel_cache().parent == tmp_path / named
+
+
+@pytest.mark.skipif(not hasattr(os, "getuid"), reason="owners of files")
+@pytest.mark.parametrize("alone", [True, False])
+def test_groups_count_as_others_but_for_that_of_a_single_user(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, alone: bool
+) -> None:
+    """Many systems let the user's own group write to whatever the user makes."""
+    tmp_path.chmod(0o770)
+    monkeypatch.setenv(CACHE_VARIABLE, str(tmp_path / "cache"))
+    monkeypatch.setattr(
+        "beltdyn.kernel.fingerprint._is_of_one", lambda group: alone and group == tmp_path.stat().st_gid
+    )
+    if alone:
+        assert kernel_cache().parent == tmp_path / "cache"
+    else:
+        with pytest.warns(KernelCacheWarning, match="other users can write to"):
+            assert tmp_path not in kernel_cache().parents
+
+
 @pytest.mark.skipif(not hasattr(os, "getuid"), reason="owners of files")
 def test_a_folder_of_another_user_is_not_used(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setenv(CACHE_VARIABLE, str(tmp_path))
