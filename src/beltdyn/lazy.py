@@ -6,6 +6,7 @@ package `loads` imports in its ``__init__.py`` as ``from ... import Name as Name
 
 import ast
 from collections.abc import Iterator, Mapping
+from functools import cache
 from importlib import import_module
 from pathlib import Path
 from typing import Any
@@ -27,6 +28,12 @@ class LazyNames(Mapping[str, Any]):
 
     def __len__(self) -> int:
         return len(self._places)
+
+
+@cache
+def public_names() -> LazyNames:
+    """Those of the package."""
+    return LazyNames("beltdyn", Path(__file__).with_name("__init__.pyi"))
 
 
 def _imported(tree: ast.Module, package: str) -> Iterator[tuple[str, tuple[str, str]]]:

@@ -1,11 +1,24 @@
 """Signals that ask for the end are heeded in order, and not in the middle of what must be whole."""
 
 import signal
+import subprocess
+import sys
+import time
+from pathlib import Path
 from threading import Thread
 
 import pytest
 
-from beltdyn.signals import ENDING, closing, ending_in_order, exit_code, uninterrupted
+from beltdyn.signals import (
+    ENDING,
+    begin_program,
+    closing,
+    end_program,
+    ending_in_order,
+    exit_code,
+    interrupted,
+    uninterrupted,
+)
 
 pytestmark = pytest.mark.usefixtures("signal_defaults")
 
@@ -72,3 +85,79 @@ def test_what_is_closing_ends_as_it_is() -> None:
         signal.raise_signal(signal.SIGINT)
         done.append("closed")
     assert done == ["closed"]
+
+
+WAIT = 5.0
+"""Longer than a signal takes to come again, s."""
+
+
+def test_signals_wait_for_the_end_of_an_import(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Half an import would be taken for a module, or for one that is missing."""
+    (tmp_path / "interrupted_import.py").write_text(
+        "import signal, time\nsignal.raise_signal(signal.SIGTERM)\ntime.sleep(0.1)\nwhole = True\n", encoding="utf-8"
+    )
+    monkeypatch.syspath_prepend(tmp_path)
+    with ending_in_order(), pytest.raises(KeyboardInterrupt):  # noqa: PT012
+        import interrupted_import  # type: ignore[import-not-found]
+
+        assert interrupted_import.whole
+        time.sleep(WAIT)
+    assert exit_code() == 128 + signal.SIGTERM
+    del sys.modules["interrupted_import"]
+
+
+class Ends:
+    def __init__(self) -> None:
+        self.ended = list[bool]()
+
+    def __del__(self) -> None:
+        send(signal.SIGINT)
+        self.ended.append(True)
+
+
+def test_signals_wait_for_the_end_of_objects() -> None:
+    """Python reports what is raised there, and goes on."""
+    ended = (one := Ends()).ended
+    with ending_in_order(), pytest.raises(KeyboardInterrupt):  # noqa: PT012
+        del one
+        assert ended == [True]
+        time.sleep(WAIT)
+
+
+def test_an_interruption_that_a_callback_swallows_comes_again() -> None:
+    import ctypes
+
+    callback = ctypes.CFUNCTYPE(None)(lambda: send(signal.SIGINT))
+    with ending_in_order(), pytest.raises(KeyboardInterrupt):  # noqa: PT012
+        callback()
+        time.sleep(WAIT)
+    assert interrupted()
+
+
+PROGRAM = """
+import os, signal
+from beltdyn.signals import begin_program, end_program
+begin_program()
+{0}
+signal.raise_signal(signal.{1})
+print("end")
+"""
+
+
+@pytest.mark.parametrize("number", ["SIGINT", "SIGTERM"])
+def test_a_program_that_begins_ends_in_a_line_and_one_that_ends_goes_on(number: str) -> None:
+    words = [sys.executable, "-c", PROGRAM.format("", number)]
+    begun = subprocess.run(words, capture_output=True, text=True, check=False)
+    assert (begun.returncode, begun.stdout, begun.stderr) == (128 + signal.Signals[number], "", "error: interrupted\n")
+    words = [sys.executable, "-c", PROGRAM.format("end_program()", number)]
+    ended = subprocess.run(words, capture_output=True, text=True, check=False)
+    assert (ended.returncode, ended.stdout, ended.stderr) == (0, "end\n", "")
+
+
+def test_what_a_program_was_told_to_ignore_stays_so_from_its_beginning() -> None:
+    before = {one: signal.signal(one, signal.SIG_IGN) for one in ENDING}
+    begin_program()
+    assert {signal.getsignal(one) for one in ENDING} == {signal.SIG_IGN}
+    end_program()
+    for one, handler in before.items():
+        signal.signal(one, handler)

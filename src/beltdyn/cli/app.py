@@ -1,6 +1,5 @@
 """The command `beltdyn`, and how it reports errors."""
 
-import os
 import shlex
 import sys
 import warnings
@@ -21,7 +20,7 @@ from beltdyn.cli.services import compile_, fmu
 from beltdyn.cli.show import demo, export, plot, report
 from beltdyn.cli.study import study
 from beltdyn.errors import classified
-from beltdyn.signals import ending_in_order, exit_code
+from beltdyn.signals import ending_in_order, exit_code, interrupted
 
 _BAD_INPUT = 2
 
@@ -45,28 +44,24 @@ for position, one in enumerate(_COMMANDS):
         app.command(one, sort_key=position)
 
 
-def main(arguments: Sequence[str] | None = None) -> None:
-    """Run the command line and exit.
-
-    The exit code is 0 for success, 2 for bad input, 3 for a simulation that could not continue, 4 for warnings under
-    --strict, 5 for an internal error, and for an interruption 128 plus the number of the signal: 130 for Ctrl-C.
-    Linear algebra uses one thread unless OMP_NUM_THREADS says otherwise: the matrices are too small for more.
-    """
-    os.environ.setdefault("OMP_NUM_THREADS", "1")
+def run(arguments: Sequence[str] | None = None) -> int:
+    """Run the command line: its exit code, see `beltdyn.cli.main`."""
     warnings.formatwarning = _warning_line
     take_any_terminal()
     with ending_in_order():
-        code = _exit_code(arguments)
-    sys.exit(code)
+        try:
+            return _exit_code(arguments)
+        except KeyboardInterrupt:  # again, while it was reported
+            return exit_code()
 
 
 def _exit_code(arguments: Sequence[str] | None) -> int:
-    words = sys.argv[1:2] if arguments is None else arguments[:1]
-    for one in (one for one in ANALYSES.values() if one.command in words):
-        if app[one.command].default_command is None:  # its function is imported here, where it is used
-            app[one.command].default(analysis_command(one))
-            app[one.command].help = None  # that of the function says more
     try:
+        words = sys.argv[1:2] if arguments is None else arguments[:1]
+        for one in (one for one in ANALYSES.values() if one.command in words):
+            if app[one.command].default_command is None:  # its function is imported here, where it is used
+                app[one.command].default(analysis_command(one))
+                app[one.command].help = None  # that of the function says more
         action: Final = "return_int_as_exit_code_else_zero"
         return app(arguments, print_error=False, exit_on_error=False, result_action=action) or 0
     except CycloptsError as error:
@@ -76,12 +71,14 @@ def _exit_code(arguments: Sequence[str] | None) -> int:
         show_error(f"{error.filename or 'a file'} cannot be read or written: {error.strerror or error}.")
         return _BAD_INPUT
     except Exception as error:
-        told = classified(error, shlex.join(["beltdyn", *(sys.argv[1:] if arguments is None else arguments)]))
-        show_error(str(told))
-        return told.exit_code
+        if not interrupted():
+            told = classified(error, shlex.join(["beltdyn", *(sys.argv[1:] if arguments is None else arguments)]))
+            show_error(str(told))
+            return told.exit_code
     except KeyboardInterrupt:
-        show_error("interrupted")
-        return exit_code()
+        pass
+    show_error("interrupted")  # which other code may have taken for an error
+    return exit_code()
 
 
 _with_source = warnings.formatwarning

@@ -3,12 +3,15 @@
 import ctypes
 import time
 import warnings
+from _thread import interrupt_main, start_new_thread
 from collections.abc import Callable
 from functools import cache, cached_property
 from typing import Any
 
 _C_FUNCTION = ctypes.CFUNCTYPE(ctypes.c_double, ctypes.c_double, ctypes.c_double, ctypes.c_double)
 _TRIALS = 200
+_BACK = 0.01
+"""Time in which machine code comes back to Python, s; where it has not, Ctrl-C is repeated once more."""
 _kept: list[Any] = []
 """Machine code keeps its address while the process runs."""
 
@@ -36,8 +39,11 @@ def _address_of_python(function: Callable[[float, float, float], float], reason:
     def run(first: float, second: float, third: float) -> float:
         try:
             return float(function(first, second, third))
-        except Exception as error:  # it cannot pass through machine code: the solver stops at what is no number
-            warnings.warn(f"{_name(function)} failed: {error!r}", RuntimeWarning, stacklevel=2)
+        except BaseException as error:  # it cannot pass through machine code: the solver rejects what is no number
+            if isinstance(error, Exception):
+                warnings.warn(f"{_name(function)} failed: {error!r}", RuntimeWarning, stacklevel=2)
+            else:
+                start_new_thread(_interrupt_again, ())
             return float("nan")
 
     callback = _C_FUNCTION(run)
@@ -53,6 +59,12 @@ def _address_of_python(function: Callable[[float, float, float], float], reason:
     )
     _kept.append(callback)
     return int(ctypes.cast(callback, ctypes.c_void_p).value or 0)
+
+
+def _interrupt_again() -> None:
+    """Repeat Ctrl-C when machine code has come back to Python."""
+    time.sleep(_BACK)
+    interrupt_main()
 
 
 def _reason(error: Exception) -> str:

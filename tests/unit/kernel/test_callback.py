@@ -1,6 +1,7 @@
 """Kernels call functions of a user by their addresses."""
 
 import math
+import time
 import warnings
 
 import numpy as np
@@ -62,3 +63,24 @@ def test_a_function_that_fails_gives_no_number_and_says_why() -> None:
         address = address_of(failing)
     with pytest.warns(RuntimeWarning, match=r'the function "failing" failed: KeyError\(5.0\)'):
         assert np.isnan(twice(address, 0.0, 5.0, 0.0))
+
+
+def test_an_interruption_in_a_function_that_python_runs_comes_back() -> None:
+    """It cannot pass through machine code, which would go on with a force of zero."""
+    begun: list[float] = []
+    armed: list[bool] = []
+
+    def stopped(first: float, _second: float, _third: float) -> float:
+        if armed:
+            begun.append(first)
+            raise KeyboardInterrupt
+        return SCALE.value
+
+    with pytest.warns(SlowFunctionWarning):
+        address = address_of(stopped)
+    armed.append(True)
+    with pytest.raises(KeyboardInterrupt):  # noqa: PT012 (it comes a little later)
+        assert math.isnan(call_at(address, 0.5, 0.0, 0.0))
+        for _ in range(500):
+            time.sleep(0.01)
+    assert begun == [0.5]

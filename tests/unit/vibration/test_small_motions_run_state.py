@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 import beltdyn as bd
-from beltdyn.cli.app import main
+from beltdyn.cli import main
 from beltdyn.errors import ModelError
 from beltdyn.model import Drive, prepare
 from beltdyn.system.build import staying_system
