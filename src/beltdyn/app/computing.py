@@ -11,7 +11,7 @@ from pathlib import Path
 from typing import NamedTuple
 
 from beltdyn.app.findings import Findings, at_rest, in_running, of_modes
-from beltdyn.designs.processes import SPAWN, LocalProcesses, start_process, start_worker
+from beltdyn.designs.processes import SPAWN, LocalProcesses, new_event, start_process, start_worker
 from beltdyn.errors import BeltdynError, TimeLimitError
 from beltdyn.kernel import observe_compilation
 from beltdyn.model import Drive, loads
@@ -236,8 +236,8 @@ class Calculator:
     """A process that answers requests one after another, started with the first."""
 
     def __init__(self) -> None:
+        self._stop = new_event()
         self._compiles, self._compiles_ahead = Counter(), Counter()
-        self._stop = SPAWN.Event()
         self._pool: LocalProcesses | None = None
         self._ahead: SpawnProcess | None = None
         self._starting = threading.Lock()

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 from beltdyn.analyses import ANALYSES
 from beltdyn.app.computing import Counted, in_words, tell_of_compilation
 from beltdyn.app.findings import Findings, findings_of
-from beltdyn.designs.processes import SPAWN, heeding, start_process, start_worker, working
+from beltdyn.designs.processes import SPAWN, heeding, new_event, start_process, start_worker, working
 from beltdyn.errors import cause_of
 from beltdyn.model import loads
 from beltdyn.show.sheet import Facts, Table
@@ -73,7 +73,7 @@ class Job:
 
     def __init__(self, name: str, text: str, folder: Path, result: Path, options: Mapping[str, Any]) -> None:
         self._heard, told = SPAWN.Pipe(duplex=False)
-        self._stop = SPAWN.Event()
+        self._stop = new_event()
         self._process = start_process(_analyse, name, text, folder, result, dict(options), told, self._stop)
         self.name = name
         self.step = _STARTING

@@ -2,7 +2,7 @@
 
 import math
 from collections.abc import Callable, Mapping, Sequence
-from concurrent.futures import FIRST_COMPLETED, wait
+from concurrent.futures import FIRST_COMPLETED, Future, wait
 from dataclasses import dataclass
 from functools import partial
 from itertools import product
@@ -248,9 +248,10 @@ def _run_pool(
     """
     parts = SPAWN.RawArray("d", [math.nan] * len(drives))
     workers, going = LocalProcesses(jobs, begin_batch, (parts,)), True
-    with bare_workers():  # as a whole, so that Ctrl-C comes before or after
-        futures = [workers.submit(analyse, place, *one, work) for place, one in enumerate(drives)]
+    futures: list[Future[Ending]] = []
     try:
+        with bare_workers():  # as a whole, so that Ctrl-C comes before or after
+            futures += [workers.submit(analyse, place, *one, work) for place, one in enumerate(drives)]
         pending = set(futures)
         while pending:
             running = [place for place, future in enumerate(futures) if future in pending and parts[place] >= 0.0]
@@ -265,7 +266,7 @@ def _run_pool(
     begun = [part >= 0.0 for part in parts]
     endings = {
         file: _KILLED if gone else future.result()
-        for (file, _), future, gone in zip(drives, futures, lost, strict=True)
+        for (file, _), future, gone in zip(drives, futures, lost, strict=False)  # none before they were started
     }
     if any(begun) and any(lost):
         endings = {file: ending for (file, ending), it_began in zip(endings.items(), begun, strict=True) if it_began}

@@ -16,11 +16,12 @@ from concurrent.futures import CancelledError, Future, ProcessPoolExecutor
 from concurrent.futures.process import BrokenProcessPool
 from contextlib import closing, contextmanager
 from dataclasses import dataclass, replace
+from multiprocessing import resource_tracker
 from multiprocessing.context import SpawnContext, SpawnProcess
 from multiprocessing.process import BaseProcess
 from multiprocessing.synchronize import Event as SharedEvent
 from pathlib import Path
-from threading import Event, Lock, Thread, current_thread, main_thread
+from threading import Event, Lock, Thread
 from time import sleep
 from types import FrameType, ModuleType
 from typing import TYPE_CHECKING, Any, Protocol
@@ -31,7 +32,7 @@ from beltdyn.model import Drive
 from beltdyn.observation.compilation import usable_cores
 from beltdyn.results import Result, Run, Summary, open_result, summarize
 from beltdyn.results.atomic import locked_output, stamp
-from beltdyn.signals import ENDING
+from beltdyn.signals import ENDING, uninterrupted
 from beltdyn.solvers.run_progress import Progress
 
 if TYPE_CHECKING:
@@ -43,26 +44,53 @@ _THREADS = "OMP_NUM_THREADS"
 """What OpenBLAS and MKL ask for their number of threads."""
 
 
+_SAFE_PATH = "PYTHONSAFEPATH"
+"""What lets Python import nothing from the working folder, where modules of any names may lie."""
+
+
 @contextmanager
 def bare_workers() -> Iterator[None]:
     """Let processes that are started meanwhile inherit little.
 
-    They ignore Ctrl-C, of which the parent tells them; use one thread for linear algebra unless the user chose a
-    number; and see an empty script in place of the caller's, which each of them would run otherwise.
+    They import nothing from the working folder; hear no signals until they are prepared for them; use one thread for
+    linear algebra unless the user chose a number; and see an empty script in place of the caller's, which each of them
+    would run otherwise. Signals of this process wait.
     """
-    script, threads = sys.modules["__main__"], os.environ.get(_THREADS)
-    in_main_thread = current_thread() is main_thread()
-    handler = signal.signal(signal.SIGINT, signal.SIG_IGN) if in_main_thread else None
-    sys.modules["__main__"] = ModuleType("__main__")
-    os.environ.setdefault(_THREADS, "1")
+    script, before = sys.modules["__main__"], dict(os.environ)
+    with uninterrupted():
+        sys.modules["__main__"] = ModuleType("__main__")
+        os.environ |= {_SAFE_PATH: "1", _THREADS: before.get(_THREADS, "1")}
+        try:
+            if os.name == "posix":
+                resource_tracker.ensure_running()  # a process, too, which would start as it is first needed
+            with _deaf():
+                yield
+        finally:
+            sys.modules["__main__"] = script
+            for name in (_SAFE_PATH, _THREADS):
+                if name in before:
+                    os.environ[name] = before[name]
+                else:
+                    del os.environ[name]
+
+
+@contextmanager
+def _deaf() -> Iterator[None]:
+    """Block signals in this thread, which processes inherit."""
+    if not hasattr(signal, "pthread_sigmask"):
+        yield
+        return
+    before = signal.pthread_sigmask(signal.SIG_BLOCK, ENDING)
     try:
         yield
     finally:
-        sys.modules["__main__"] = script
-        if threads is None:
-            del os.environ[_THREADS]
-        if in_main_thread:
-            signal.signal(signal.SIGINT, handler)
+        signal.pthread_sigmask(signal.SIG_SETMASK, before)
+
+
+def new_event() -> SharedEvent:
+    """An event that processes share."""
+    with bare_workers():  # on POSIX a process keeps track of what is shared
+        return SPAWN.Event()
 
 
 _GRACE = 2.0  # s
@@ -79,6 +107,8 @@ def start_worker(stop: SharedEvent) -> None:
     for number in ENDING:
         signal.signal(number, signal.SIG_IGN)
     signal.signal(signal.SIGTERM, _leave)
+    if hasattr(signal, "pthread_sigmask"):
+        signal.pthread_sigmask(signal.SIG_UNBLOCK, ENDING)
     warnings.simplefilter("ignore")
     Thread(target=_follow_parent, daemon=True).start()
 
@@ -168,7 +198,7 @@ class LocalProcesses:
         self, jobs: int | None = None, begin: Callable[..., None] = start_worker, shared: tuple[Any, ...] = ()
     ) -> None:
         self.slots = jobs or usable_cores()
-        self._stop = SPAWN.Event()
+        self._stop = new_event()
         self._begin, self._shared = begin, shared
         self._pool = self._new()
 
@@ -206,7 +236,11 @@ class LocalProcesses:
         """
         if abandon or stop:
             self._stop.set()
-        self._pool.shutdown(wait=True, cancel_futures=abandon)
+        try:
+            self._pool.shutdown(wait=True, cancel_futures=abandon)
+        except KeyboardInterrupt:  # once more, as it takes long
+            self.kill()
+            raise
 
     def kill(self) -> None:
         """End the processes at once, whatever they do."""
@@ -268,7 +302,8 @@ def analyse(place: int, file: Path, drive: Drive | Run, work: Work) -> Ending:
     try:
         with working(), locked_output(file):
             result = work.analysis.write(drive, file, heeding(note), work.overwrite, **work.options)
-            ending = _ended(result) if stamp(file) != before else Ending(result.status)
+            kept = stamp(file) != before or result.status == "completed"
+            ending = _ended(result) if kept else Ending(result.status)
             if work.finish is not None and result.status == "completed":
                 work.finish(result)
             return ending

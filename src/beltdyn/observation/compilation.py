@@ -10,6 +10,7 @@ import subprocess
 import sys
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager, nullcontext
+from pathlib import Path
 from tempfile import TemporaryFile
 from threading import Thread
 from typing import BinaryIO
@@ -113,8 +114,9 @@ def _report(process: "subprocess.Popen[str]") -> None:
     total = 0
     with process.stdout as lines:
         for line in lines:
-            done, total = map(int, line.split())
-            report_compilation(process.pid, done, total)
+            if line.endswith("\n"):  # a killed process may leave half of one
+                done, total = map(int, line.split())
+                report_compilation(process.pid, done, total)
     report_compilation(process.pid, total, total)  # where it failed, this process compiles them
 
 
@@ -155,20 +157,25 @@ def _helped() -> Iterator[None]:
         _helps.pop()
 
 
+def _runs_python(executable: str) -> bool:
+    """Whether a program is an interpreter: one that embeds Python, as hosts of units do, would start itself again."""
+    return Path(executable or "").name.lower().startswith(("python", "pypy"))
+
+
 @contextmanager
 def beside(function: Callable[..., object], *arguments: object) -> Iterator[None]:
     """Call a function that compiles kernels in another process meanwhile, where there is a second core.
 
     If it fails, this process compiles them later. Arguments must be picklable.
     """
-    if usable_cores() < 2 or not sys.executable:
+    if usable_cores() < 2 or not _runs_python(sys.executable):
         yield
         return
     with TemporaryFile() as call:
         pickle.dump((function, *arguments), call)
         call.seek(0)
         process = subprocess.Popen(
-            [sys.executable, "-c", _SECOND],
+            [sys.executable, "-P", *["-O"] * sys.flags.optimize, "-c", _SECOND],
             env={
                 **os.environ,
                 CACHE_VARIABLE: str(kernel_cache().parent),

@@ -3,6 +3,7 @@
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from pathlib import Path
+from shutil import which
 
 import matplotlib as mpl
 import numpy as np
@@ -133,7 +134,7 @@ def _ffmpeg() -> str:
     try:
         from imageio_ffmpeg import get_ffmpeg_exe
     except ImportError:
-        return str(mpl.rcParams["animation.ffmpeg_path"])
+        return which("ffmpeg") or "ffmpeg"  # a folder's own matplotlibrc may name any program
     return str(get_ffmpeg_exe())
 
 
