@@ -116,8 +116,10 @@ def analyse_to(
         show(nothing_kept(path) if stamp(path) in (before, None) else f"The results computed so far are in {path}")
         raise
     show_result(result)
-    if stamp(path) == before:
-        show(f"\n{nothing_kept(path)}")
+    if stamp(path) == before and result.status == "completed":
+        show(f"\n{path} is complete: there was nothing left to compute.")
+    elif stamp(path) == before:
+        show(f"\nInterrupted. {nothing_kept(path)}")
         return result
     if result.status == "interrupted":
         from beltdyn.transient.checkpoint import checkpoint_file

@@ -20,6 +20,7 @@ if TYPE_CHECKING:
     from beltdyn.designs.processes import Ending
     from beltdyn.model import Drive
     from beltdyn.results import Run
+    from beltdyn.solvers.run_progress import Progress
 
 
 def study(
@@ -62,11 +63,21 @@ def study(
 
     path = output or file.with_suffix(".nc")
     before = stamp(path)
-    with progress_bar() as tell:
+    begun = False
+
+    with progress_bar() as bar:
+
+        def tell(progress: "Progress") -> None:
+            nonlocal begun
+            begun = True
+            bar(progress)
+
         result = compute(file, jobs=jobs, scheduler=scheduler, retry=retry, output=path, progress=tell, overwrite=force)
     show_result(result)
+    if not begun:
+        show(f"\n{path} is complete: there was nothing left to compute.")
     if stamp(path) == before:
-        show(f"\n{nothing_kept(path)}")
+        show(f"\nInterrupted. {nothing_kept(path)}")
         return exit_code()
     if result.status == "interrupted":
         show("\nInterrupted. The results computed so far are kept; the same command resumes the study.")

@@ -1,5 +1,6 @@
 """Simulation of a drive over time."""
 
+import warnings
 from collections.abc import Callable
 from pathlib import Path
 from typing import cast
@@ -14,8 +15,9 @@ from beltdyn.observation.recording import Recording
 from beltdyn.parts.messages import listing
 from beltdyn.parts.options import takes_options
 from beltdyn.parts.quantity import Flag, number_in
-from beltdyn.results import Run, require_room
+from beltdyn.results import Run, open_run, require_room
 from beltdyn.results.checks.mesh import COARSE_SETTINGS
+from beltdyn.results.dataset import is_result
 from beltdyn.results.summary import FAILURE, VALUES, coarse_settings, ends_steadily, steady_losses, steady_values
 from beltdyn.solvers.generalized_alpha import AlphaIntegration, GeneralizedAlpha
 from beltdyn.solvers.run_progress import Report
@@ -24,7 +26,7 @@ from beltdyn.solvers.trajectory import Integrator, drive_task
 from beltdyn.state.staying import on_quintics
 from beltdyn.state.steady import require_steady, steady_state
 from beltdyn.transient.beginning import Begin, begin_on, mesh_of, settled, with_instant
-from beltdyn.transient.checkpoint import Keeper, checkpoint_file, read_checkpoint
+from beltdyn.transient.checkpoint import CheckpointWarning, Keeper, checkpoint_file, read_checkpoint
 
 CHECKPOINT = 60.0
 """Computing time between two checkpoints of a run, s."""
@@ -63,8 +65,9 @@ def simulate(
         Computing time between two checkpoints, such as "10 min", or in s: an interrupted or killed run can resume from
         the last one. They are stored beside the result file with the ending ``.checkpoint``, and removed at the end.
     resume
-        Resume the run in the result file, with the same steps and results as without the interruption. On the command
-        line the result file may be given instead of the drive file.
+        Resume the run in the result file, with the same steps and results as without the interruption. A complete run
+        is returned as it is; one that has kept nothing begins anew. On the command line the result file may be given
+        instead of the drive file.
 
     Returns
     -------
@@ -92,7 +95,9 @@ def simulate(
     if not every > 0.0:
         raise ModelError(f"checkpoint = {every:g} s must be above zero. Increase it, or omit it.")
     if resume:
-        return _resume(drive, output, progress, every)
+        found = _resume(drive, output, progress, every)
+        if found is not None:
+            return found
     return record_run(drive, output, progress, overwrite, integrator, compare_steady=compare_steady, checkpoint=every)
 
 
@@ -155,21 +160,21 @@ def _end(recording: Recording, given: Drive, compare_steady: bool) -> None:
         recording.note(**_steady_losses(given), **{COARSE_SETTINGS: listing(coarse)})
 
 
-def _resume(drive: Drive, output: Path | str | None, progress: Report | None, checkpoint: float) -> Run:
-    """Go on with a run from its checkpoint."""
+def _resume(drive: Drive, output: Path | str | None, progress: Report | None, checkpoint: float) -> Run | None:
+    """Resume a run from its checkpoint; None, with a warning, where it has to begin anew."""
     if output is None:
         raise ModelError("resume continues a run in its result file, but none is given. Give it as output.")
     path = Path(output)
-    if drive.simulation.integrator != GeneralizedAlpha.name or has_functions(drive.pulleys):
-        why = (
-            'has a load of kind "function", which cannot be stored in a file'
-            if has_functions(drive.pulleys)
-            else f'has simulation.integrator = "{drive.simulation.integrator}", whose state is not stored'
-        )
-        raise ModelError(
-            f"this drive {why}, so its runs write no checkpoints and cannot be resumed. Start another run where "
-            f'this one ended with simulation.start = {{ file = "{path}" }}, or run it again.'
-        )
+    kept = _kept_run(drive, path)
+    if kept is not None and kept.status == "completed":
+        return kept
+    keeps_checkpoints = drive.simulation.integrator == GeneralizedAlpha.name and not has_functions(drive.pulleys)
+    if not checkpoint_file(path).exists() and (keeps_checkpoints or kept is None):
+        begun = "no run of this drive has begun there" if kept is None else "its run ended before its first checkpoint"
+        warnings.warn(f"{path} has nothing to resume: {begun}. It begins anew.", CheckpointWarning, stacklevel=3)
+        return None
+    if not keeps_checkpoints:
+        raise ModelError(_without_checkpoints(drive, path))
     point = read_checkpoint(checkpoint_file(path))
     if drive not in (point.drive, point.recording["_prepared"].drive):
         raise ModelError(
@@ -182,6 +187,37 @@ def _resume(drive: Drive, output: Path | str | None, progress: Report | None, ch
         _integrate(point.integration, recording, keeper)
         _end(recording, point.drive, point.compare_steady)
     return recording.run()
+
+
+def _kept_run(drive: Drive, path: Path) -> Run | None:
+    """The run of a drive in a result file; None without one."""
+    if not is_result(path):
+        return None
+    run = open_run(path)
+    told = run.dataset.attrs
+    if drive.text == told["drive"]:
+        return run
+    laid = prepare(settled(drive, choose_integrator(drive))[0]).drive
+    if laid.text != told.get("drive_as_given", told["drive"]):
+        run.dataset.close()
+        raise ModelError(
+            f"{path} holds the run of another drive, which would be lost. Give the drive file with which that run "
+            "started, or run this one from the beginning, without resume."
+        )
+    return run
+
+
+def _without_checkpoints(drive: Drive, path: Path) -> str:
+    """Why an interrupted run cannot be resumed."""
+    why = (
+        'has a load of kind "function", which cannot be stored in a file'
+        if has_functions(drive.pulleys)
+        else f'has simulation.integrator = "{drive.simulation.integrator}", whose state is not stored'
+    )
+    return (
+        f"this drive {why}, so its runs write no checkpoints and cannot be resumed. Start another run where "
+        f'this one ended with simulation.start = {{ file = "{path}" }}, or run it again.'
+    )
 
 
 def _steadily(drive: Drive) -> Run:

@@ -162,10 +162,26 @@ def test_what_is_in_the_place_of_a_checkpoint_stays(travelling: Drive, tmp_path:
     assert checkpoint_file(path).read_text() == "mine"
 
 
+def test_a_run_resumes_until_it_is_complete_and_then_changes_nothing(travelling: Drive, tmp_path: Path) -> None:
+    """Where nothing was kept it begins anew: a batch that resumes until all is well comes to its end."""
+    path = tmp_path / "run.nc"
+    with pytest.warns(CheckpointWarning, match=r"nothing to resume: no run of this drive has begun there. It begins"):
+        assert simulate(travelling, path, stopping_after(0.02), resume=True).status == "interrupted"
+    assert not checkpoint_file(path).exists()
+    with pytest.warns(CheckpointWarning, match=r"ended before its first checkpoint. It begins anew"):
+        whole = simulate(travelling, path, resume=True)
+    before = path.read_bytes()
+    for again in (travelling, whole.drive):
+        require_same(simulate(again, path, resume=True), whole)
+    assert path.read_bytes() == before
+    with pytest.raises(ModelError, match="holds the run of another drive, which would be lost"):
+        simulate(travelling.with_({"belt.width": 0.011}), path, resume=True)
+    assert path.read_bytes() == before
+
+
 def test_a_run_without_a_checkpoint_cannot_go_on(travelling: Drive, tmp_path: Path) -> None:
-    with pytest.raises(ModelError, match=r"the checkpoint .* does not exist.* with simulation\.start"):
-        simulate(travelling, tmp_path / "run.nc", resume=True)
     other = travelling.with_({"simulation.integrator": "bdf"})
+    simulate(other, tmp_path / "run.nc", stopping_after(0.02)).dataset.close()
     with pytest.raises(ModelError, match=r'"bdf", whose state is not stored.* cannot be resumed.*file = ".*run.nc"'):
         simulate(other, tmp_path / "run.nc", resume=True)
     with pytest.raises(ModelError, match="none is given"):
