@@ -325,10 +325,10 @@ class Component:
         if begun and (self._simulator is None or self.tolerance != state.tolerance):
             self.tolerance, self._simulator = state.tolerance, None
             self.begin()
-        self.tolerance, self._offset = state.tolerance, state.offset
-        self._wanted, self._applied = dict(state.wanted), dict(state.applied)
-        self._outputs = {}
+        wanted, applied = dict(state.wanted), dict(state.applied)
         if self._simulator is not None and state.simulator is not None:
             self._simulator.restore(state.simulator)
         else:
             self._simulator = None
+        self.tolerance, self._offset = state.tolerance, state.offset
+        self._wanted, self._applied, self._outputs = wanted, applied, {}

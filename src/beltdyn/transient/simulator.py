@@ -313,9 +313,9 @@ class Simulator:
         now = self._integration
         system = now.system._replace(**deepcopy(saved.changed))
         size = system.first_body + system.bodies.size
-        fits = _kinds(saved.integrator) == _kinds(now.state) and _kinds(saved.changed) == _kinds(
-            {name: getattr(now.system, name) for name in _CHANGED}
-        )
+        changed = {name: getattr(now.system, name) for name in _CHANGED}
+        fits = _kinds(saved.integrator) == _kinds(now.state) and _kinds(saved.changed) == _kinds(changed)
+        fits = fits and all(saved.changed[name].shape == one.shape for name, one in changed.items())
         if not fits or any(vector.shape[-1] != size for vector in _vectors(saved.integrator)):
             raise ModelError("the state belongs to another drive. Give a state of this drive.")
         self._integration.exchange(system, deepcopy(saved.integrator))

@@ -1,6 +1,8 @@
 """A drive in the hands of a host: its clock, inputs that change and that do not, steps that fail."""
 
 from collections.abc import Sequence
+from dataclasses import replace
+from typing import Any
 
 import numpy as np
 import pytest
@@ -9,7 +11,7 @@ from beltdyn.cosimulation.component import Component, ComponentState, Interface,
 from beltdyn.errors import ConvergenceError, ModelError
 from beltdyn.model import Drive
 from beltdyn.results.tension_balance import LOSSES, STORED
-from beltdyn.transient.simulator import Simulator
+from beltdyn.transient.simulator import Simulator, SimulatorState
 
 SPEED, TORQUE = "pulley[driver].speed", "pulley[driven].torque"
 X, Y = "pulley[driven].center[1]", "pulley[driven].center[2]"
@@ -93,6 +95,37 @@ def test_states_go_to_another_component(short: Drive, component: Component) -> N
     assert outputs(other) == outputs(component)
     other.restore(component_of(short).state())
     assert np.isnan(outputs(other)).all()
+
+
+def forged(state: SimulatorState, part: str) -> SimulatorState:
+    """A state of which a part has another size or type."""
+    integrator: Any = state.integrator
+    if part in state.changed:
+        return replace(state, changed=state.changed | {part: state.changed[part][:-1]})
+    wrong: Any = {
+        "nothing": {"changed": {}},
+        "record": {"integrator": integrator[:3]},
+        "position": {"integrator": integrator._replace(position=np.zeros(3))},
+        "text": {"integrator": integrator._replace(velocity="fast")},
+    }
+    return replace(state, **wrong[part])
+
+
+@pytest.mark.parametrize("part", ["pulleys", "bodies", "nothing", "record", "position", "text"])
+def test_forged_states_change_nothing(part: str, short: Drive, component: Component) -> None:
+    """Their checksum is right, but kernels would read beyond the ends of arrays."""
+    component.step(0.0, 0.002)
+    state = component.state()
+    assert state.simulator is not None
+    data = state._replace(simulator=forged(state.simulator, part), wanted={TORQUE: 5.0}).to_bytes()
+    with pytest.raises(ModelError, match="belongs to another drive"):
+        component.restore(ComponentState.from_bytes(data))
+    component.step(0.002, 0.001)
+    undisturbed = component_of(short)
+    undisturbed.begin()
+    undisturbed.step(0.0, 0.002)
+    undisturbed.step(0.002, 0.001)
+    assert outputs(component) == outputs(undisturbed)
 
 
 @pytest.mark.parametrize(
