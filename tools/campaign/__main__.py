@@ -1,6 +1,6 @@
 """Try beltdyn with random wrong, odd, damaged and hostile input and with kills, and print the figures.
 
-    python -m tools.campaign --seed 1 --mutants 20000 --damaged 2000 --odd 500 --kills 16
+    python -m tools.campaign --seed 1 --mutants 20000 --damaged 2000 --odd 500 --kills 16 --stops 20 --decoys
 
 The same numbers give the same trials. Ends with 1 if any ended in a traceback, took too long, or was silently changed.
 Needs an operating system that can fork.
@@ -25,7 +25,7 @@ os.environ.setdefault("OMP_NUM_THREADS", "1")
 from beltdyn.errors import BeltdynError
 from beltdyn.model import Drive
 from beltdyn.transient.simulate import simulate
-from tools.campaign import damage, hostile, kills
+from tools.campaign import damage, decoys, hostile, kills, stops
 from tools.campaign.analyses import WORKS
 from tools.campaign.crossed_examples import crossed
 from tools.campaign.drive_mutations import bases
@@ -38,6 +38,8 @@ _LONGEST = 10.0
 """Processor time of a trial, s."""
 _WAITING = 30.0
 """Time on the clock after which a hostile file counts as one that is waited for, s."""
+_PATIENT = 1800.0
+"""Time on the clock after which commands in processes of their own count as those that hang, s."""
 _SHOWN = 12
 """Faults of a part that are printed."""
 
@@ -101,6 +103,18 @@ def hostiles(folder: Path) -> Iterator[Trial]:
         yield case[0], attempt(partial(hostile.give, case, _emptied(folder / "hostile")), _LONGEST, _WAITING)
 
 
+def stopped(count: int, folder: Path) -> Iterator[Trial]:
+    """Commands that are told to end, and are begun again."""
+    for label, work in stops.trials(count, _emptied, folder / "stops"):
+        yield label, attempt(work, _PATIENT, _PATIENT)
+
+
+def decoyed(folder: Path) -> Iterator[Trial]:
+    """Commands in a folder with modules of other names, each with an empty cache of kernels."""
+    for route in decoys.ROUTES:
+        yield route, attempt(partial(decoys.trial, route, _emptied, folder / "decoys"), _PATIENT, _PATIENT)
+
+
 def main(words: list[str] | None = None) -> int:
     """Read the command line, try, and print what came of it."""
     asked = _parser().parse_args(words)
@@ -112,6 +126,8 @@ def main(words: list[str] | None = None) -> int:
         parts |= {
             "mutated drive files": mutants(asked.seed, asked.mutants, folder),
             "damaged files": damaged(asked.seed, asked.damaged, folder) if asked.damaged else iter(()),
+            "commands told to end": stopped(asked.stops, folder) if asked.stops else iter(()),
+            "folders of modules": decoyed(folder) if asked.decoys else iter(()),
             "killed and resumed runs": killed(asked.seed, asked.kills, folder) if asked.kills else iter(()),
             "odd drives, analyses": odd(asked.seed, asked.odd, folder) if asked.odd else iter(()),
             "results, consumers": crossed(asked.seed, examples(asked.examples), _emptied(folder / "crossed")),
@@ -173,6 +189,8 @@ def _parser() -> argparse.ArgumentParser:
     parser.add_argument("--odd", type=int, default=51, help="analyses of odd drives")
     parser.add_argument("--kills", type=int, default=4, help="runs that are killed")
     parser.add_argument("--examples", default="", help="examples whose results all consumers read; all for every one")
+    parser.add_argument("--stops", type=int, default=0, help="instants at which each of four commands is told to end")
+    parser.add_argument("--decoys", action="store_true", help="try folders of modules, and compile all for each route")
     parser.add_argument("--hostile", action=argparse.BooleanOptionalAction, default=True, help="try hostile files")
     return parser
 
