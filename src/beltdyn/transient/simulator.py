@@ -315,7 +315,7 @@ class Simulator:
         size = system.first_body + system.bodies.size
         changed = {name: getattr(now.system, name) for name in _CHANGED}
         fits = _kinds(saved.integrator) == _kinds(now.state) and _kinds(saved.changed) == _kinds(changed)
-        fits = fits and all(saved.changed[name].shape == one.shape for name, one in changed.items())
+        fits = fits and _same_sizes(saved.changed, changed)
         if not fits or any(vector.shape[-1] != size for vector in _vectors(saved.integrator)):
             raise ModelError("the state belongs to another drive. Give a state of this drive.")
         self._integration.exchange(system, deepcopy(saved.integrator))
@@ -329,6 +329,17 @@ def _kinds(value: Any) -> Any:
     if isinstance(value, dict):
         return {name: _kinds(one) for name, one in value.items()}
     return tuple(map(_kinds, value)) if isinstance(value, tuple) else (getattr(value, "dtype", None), np.ndim(value))
+
+
+def _same_sizes(saved: dict[str, Any], now: dict[str, Any]) -> bool:
+    """Whether arrays that inputs change have as many rows as those of now, and profiles the rows that they refer to."""
+    profiles, table = saved["profiles"], saved["profiles"].table
+    rows = ((table.segment, profiles.segment), (table.harmonic, profiles.harmonic))
+    return (
+        all(saved[name].shape == now[name].shape for name in _CHANGED[1:])
+        and table.shape == now["profiles"].table.shape
+        and all(first[-1] == len(those) and not np.any(np.diff(first, prepend=0) < 0) for first, those in rows)
+    )
 
 
 def _vectors(state: IntegratorState) -> list[FloatArray]:

@@ -100,6 +100,10 @@ def test_states_go_to_another_component(short: Drive, component: Component) -> N
 def forged(state: SimulatorState, part: str) -> SimulatorState:
     """A state of which a part has another size or type."""
     integrator: Any = state.integrator
+    profiles = state.changed["profiles"]
+    if part in profiles._fields:
+        fewer = profiles._replace(**{part: getattr(profiles, part)[:-1]})
+        return replace(state, changed=state.changed | {"profiles": fewer})
     if part in state.changed:
         return replace(state, changed=state.changed | {part: state.changed[part][:-1]})
     wrong: Any = {
@@ -111,7 +115,7 @@ def forged(state: SimulatorState, part: str) -> SimulatorState:
     return replace(state, **wrong[part])
 
 
-@pytest.mark.parametrize("part", ["pulleys", "bodies", "nothing", "record", "position", "text"])
+@pytest.mark.parametrize("part", ["pulleys", "bodies", "table", "segment", "nothing", "record", "position", "text"])
 def test_forged_states_change_nothing(part: str, short: Drive, component: Component) -> None:
     """Their checksum is right, but kernels would read beyond the ends of arrays."""
     component.step(0.0, 0.002)
