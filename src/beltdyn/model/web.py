@@ -79,7 +79,9 @@ class WebEnd(Part):
         if self.roll is None:
             raise ValueError("torque acts on a roll, which is missing. Give the group roll, or tension instead")
         starts = np.maximum(self.torque.segments().start, 0.0)  # within a piece all kinds are monotonic
-        least = float(np.min(self.torque.at([*starts, *np.nextafter(starts, np.inf)])))
+        with np.errstate(under="ignore"):  # just after zero
+            after = np.nextafter(starts, np.inf)
+        least = float(np.min(self.torque.at([*starts, *after])))
         if least <= 0.0:
             raise ValueError(
                 f"torque = {least:g} N m must be positive: it tightens the web, at the unwinder and at the winder. "

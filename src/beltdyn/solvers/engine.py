@@ -4,6 +4,7 @@ A kernel that Python calls is compiled whole, with all that it calls.  Linearizi
 stepping through time share most of their code; with a single entry point it is compiled once.
 """
 
+from math import inf, nextafter
 from typing import Final, NamedTuple
 
 import numpy as np
@@ -130,7 +131,7 @@ def _dispatch_at(
 
 def restart(system: System, state: IntegratorState, equations: Equations) -> None:
     """Take the accelerations from the equations of motion: at the start, and after a jump of what drives the system."""
-    after = motion_of(state)._replace(time=float(np.nextafter(state.clock.time, np.inf)))
+    after = motion_of(state)._replace(time=nextafter(state.clock.time, inf))
     speeds = state.velocity.copy()
     if not accelerate(system, after, state.multipliers, equations):
         raise ConvergenceError(

@@ -6,6 +6,7 @@ multipliers, the accelerations come from Eq. 26 with its constant matrices; with
 
 from collections.abc import Iterator
 from dataclasses import dataclass
+from math import inf, nextafter
 from typing import Any, Literal, NamedTuple, Protocol
 
 import numpy as np
@@ -170,7 +171,7 @@ class Stepwise:
         y, time = equations.pack(task.start), task.instants.begin
         yield Chunk.start(task.system, task.start, time)
         for stop in task.stops:
-            after = float(np.nextafter(time, np.inf))
+            after = nextafter(time, inf)
             equations.jump(after, y)
             bound.restart()
             length = self.control.first
@@ -260,7 +261,7 @@ class StandardIntegrator:
         written = 1
         for stop in task.stops:
             make = _Sundials if self.name in ("cvode", "ida") else _SciPy
-            equations.jump(float(np.nextafter(time, np.inf)), y)
+            equations.jump(nextafter(time, inf), y)
             solver: _Solver = make(_Leg(self, equations, tolerances, time, y, stop))
             bound.restart()
             while solver.time < stop:
@@ -302,7 +303,7 @@ class _Leg:
     @property
     def begin(self) -> float:
         """Instant just after the start, where profiles have jumped, s."""
-        return float(np.nextafter(self.start, np.inf))
+        return nextafter(self.start, inf)
 
 
 class _SolverError(Exception):

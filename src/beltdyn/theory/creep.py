@@ -221,7 +221,8 @@ def entry_creep(elastic: float, saturation: float, lengths: float) -> float:
     """
     from scipy.special import lambertw
 
-    require_above(saturation=saturation, lengths=lengths)
+    require_above(saturation=saturation)
+    require_at_least(lengths=lengths)
     creep = elastic / saturation
     if creep >= lengths:
         return saturation

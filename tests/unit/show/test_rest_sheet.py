@@ -5,6 +5,7 @@ import subprocess
 import sys
 from pathlib import Path
 
+import numpy as np
 import pytest
 
 import beltdyn as bd
@@ -103,3 +104,10 @@ def test_closed_forms_that_do_not_hold_are_named(drive: Drive) -> None:
     assert "closed forms with bending stiffness and weight do not hold" in str(checked)
     assert "without bending stiffness and weight" in str(checked.sheet)
     assert "do not hold" not in str(bd.check(drive, equilibrium=False))
+
+
+@pytest.mark.parametrize("name", ["alternator_drive", "washing_machine", "package_conveyor"])
+def test_a_script_in_which_numpy_raises_is_no_obstacle(name: str) -> None:
+    """Numbers that underflow, such as the instant after zero, are no errors."""
+    with np.errstate(all="raise"):
+        assert bd.check(bd.example(name), equilibrium=False).installation.tension > 0.0

@@ -116,6 +116,7 @@ class CrankSpeed(Part):
             if amplitude > max(_LEAST * amplitudes.max(), _NOISE)
         )
 
+    @np.errstate(under="ignore")  # far from a point splines of many points fall below the least number
     def _over_mean_angle(self) -> FloatArray:
         """Speed over its mean at equal steps of the angle of the mean speed, as many as there are points."""
         from scipy.interpolate import CubicSpline  # takes 0.3 s, and most drives have no such table

@@ -112,7 +112,8 @@ class Profile(Part, Generic[Value]):
         starts = self.segments().start
         end = min(duration, max(2.0 * starts[-1], 1.0))
         ends = np.concatenate([[0.0, end], starts[(starts > 0.0) & (starts < end)]])
-        after = np.nextafter(ends, np.inf)
+        with np.errstate(under="ignore"):  # just after zero
+            after = np.nextafter(ends, np.inf)
         return float(np.max(np.abs(self.at(np.concatenate([ends, after[after <= end]])))))
 
 
