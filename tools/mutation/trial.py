@@ -92,7 +92,7 @@ def fork(work: Callable[[], int], seconds: float) -> int:
     work : Callable
         What to do; returns 0 to `MAX_TESTS`.
     seconds : float
-        Processor time after which it is ended, as it is after ten times that time on the clock.  A copy with a limit
+        Processor time after which it is ended, as it is after 100 times that time on the clock.  A copy with a limit
         is silent.
 
     Returns
@@ -107,7 +107,7 @@ def fork(work: Callable[[], int], seconds: float) -> int:
             if math.isfinite(seconds):
                 limit = math.ceil(seconds)
                 resource.setrlimit(resource.RLIMIT_CPU, (limit, limit))
-                signal.alarm(10 * limit)
+                signal.alarm(100 * limit)
                 silence()
             status = work()
         except BaseException:
