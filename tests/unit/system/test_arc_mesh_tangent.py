@@ -129,6 +129,8 @@ def test_tangent_over_time(load: dict[str, Any], belt: dict[str, float]) -> None
         difference = 0.5 * (at(way) - at(-way))[rows]
         most = np.abs(difference).max()
         np.testing.assert_allclose((tangent @ way)[rows], difference, rtol=tolerance, atol=tolerance * most)
+        if isinstance(rows, slice):  # what holds arcs are accelerations; those by the velocity of an arm are left out
+            np.testing.assert_allclose((tangent @ way)[nodes:], difference[nodes:], rtol=0.05, atol=1e-7)
 
     scale = np.concatenate([np.tile([1.0, 1.0, 10.0, 10.0, 100.0, 100.0], system.nodes), np.ones(len(tangent) - nodes)])
     way = 1e-9 * scale * random.normal(size=len(tangent))
