@@ -5,8 +5,8 @@ from collections.abc import Iterator
 from pathlib import Path
 
 SOURCE = Path(__file__).parents[2] / "src" / "beltdyn"
-DOCUMENTED = {"_replace", "_asdict", "_fields", "_make", "_exit", "_getframe"}
-"""Public methods of named tuples, `os._exit`, and `sys._getframe`: each is in the documentation of Python."""
+DOCUMENTED = {"_replace", "_asdict", "_fields", "_make", "_exit", "_getframe", "_thread"}
+"""Public methods of named tuples, `os._exit`, `sys._getframe` and `_thread`: each is in the documentation of Python."""
 BARE_SCRIPTS = "designs/processes.py"
 """Processes of a batch see an empty script in place of a caller's, which each of them would run otherwise."""
 
