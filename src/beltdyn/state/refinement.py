@@ -55,7 +55,7 @@ class Solution:
     seen: Observations
     """Contact and tensions there, one instant."""
     slips: FloatArray
-    """Of the rims behind the first one, relative."""
+    """Of the rims behind the fastest one, relative."""
 
     @cached_property
     def places(self) -> Sampled:
@@ -202,7 +202,7 @@ def _solution(search: SteadySearch) -> Solution:
     """Steady running where the search is."""
     system, state = search.constant, search.state
     speeds = np.abs(state.velocity[system.first_body :][: system.pulleys.size] * system.rims.radius)
-    found = Solution(system, state, _seen(system, state), 1.0 - speeds / speeds[0])
+    found = Solution(system, state, _seen(system, state), 1.0 - speeds / np.max(speeds))
     require_one_pulley_at_a_time(search.prepared, system, found.places)
     return found
 

@@ -16,7 +16,7 @@ from beltdyn.model import Drive, Prepared
 from beltdyn.parts.messages import listing
 from beltdyn.solvers.continuation import Solution, extrapolated, follow, turn
 from beltdyn.state.newton import FOUND, SteadyWork, find_steady, make_step, steady_work
-from beltdyn.state.slip_limit import GROSS, Passed, Setting, gross_slips, slip_limit
+from beltdyn.state.slip_limit import GROSS, Passed, Refusal, Setting, gross_slips, slip_limit
 from beltdyn.state.staying import TOLERANCE, Standing, transfer
 from beltdyn.state.way import Way
 from beltdyn.system.arc_mesh import fitted, shifts_of
@@ -39,7 +39,7 @@ from beltdyn.system.observe import observe
 from beltdyn.system.ring_matrix import clear, substitute
 from beltdyn.system.state import State
 from beltdyn.system.steady_assembly import anchor_at
-from beltdyn.system.web import content, rebased, set_content
+from beltdyn.system.web import content, rebased, set_content, with_part_of_tensions
 
 _MOST = 25
 """Iterations of a step."""
@@ -50,9 +50,10 @@ _SOFT = 0.05
 """Length over which slow changes of the stretch are smoothed at first on another mesh, over that of the drive."""
 _SMOOTHINGS = 10.0, 100.0
 """Of friction at first on another mesh, where the search fails without."""
-_FIRST_LOADS = 0.0, 0.05
-"""Parts of the loads with which a belt begins to run.  Without any, shafts behind open clutches turn along, which slip
-under the least of them."""
+_FIRST_SETTINGS = (0.0, 1.0), (0.05, 1.0), (0.0, 30.0)
+"""Part of the loads with which a belt begins to run, and factor that smooths friction up to the full loads.  Without
+loads shafts behind open clutches turn along, which slip under the least of them; a web whose rollers begin to slide one
+after the other passes sharp corners, which smoothing rounds."""
 _SLOW = 0.01
 """Speed of a belt that begins to run where it does not at its full speed, over that."""
 _NEAR = 1e-3
@@ -61,6 +62,9 @@ _FIRST_CHANGE, _SAME_SPEED, _MOST_SPEEDS = 1e-4, 1e-11, 30
 """Of the speed of a motor that drives a belt with teeth, relative, and how often it is changed at most."""
 _MOST_PRESSES = 20
 """Of rollers of nips that are loaded by forces."""
+_SLIDES = 0.05
+"""Difference of a prescribed speed of a rim from that of the belt, relative, from which the belt slides on it: friction
+grows there with the loads, in place of the difference, which would be passed in a thousandth of the way."""
 _LOST = 0.2
 """Slip of a pulley, beside elastic creep, behind which a curve is not followed any more."""
 _GENTLE = 0.3
@@ -88,7 +92,7 @@ class SteadySearch:
         own = system._replace(rims=on_lengths(system.rims, system.length))
         self.constant, self._tensioners = with_own_rollers(constant_drive(own, time)), system.tensioners
         self._wanted = self.constant.profiles.segment.offset.copy()
-        self._uniform = self._wanted[: system.pulleys.size]
+        self._uniform, self._tension = self._wanted[: system.pulleys.size], 0.0
         self._prescribed = self.constant.bodies.unknown[self.constant.pulleys.shaft] < 0
         self._hold(None)
 
@@ -182,7 +186,7 @@ class SteadySearch:
         if driver is not None:
             self._held_speed = speed / float(self.prepared.path.radii[driver])
             self._hold(driver)
-        self._uniform = speed / self.prepared.path.radii
+        self._uniform, self._tension = speed / self.prepared.path.radii, rest.tension
         if not self._run_up(rest.place, speed, self._gentle(speed, rest.tension)):
             raise self._refusal()
         if driver is not None:
@@ -211,14 +215,16 @@ class SteadySearch:
         return not loads
 
     def _run_up(self, place: FloatArray, speed: float, gentle: float) -> bool:
-        """Continue from rest to the required speeds and loads; if that fails, first without bending losses.
+        """Continue from rest to the required speeds and loads; if that ends without a limit, on other ways.
 
         Where the belt bends over an idler of small wrap, its curvature nowhere settles, and hysteresis that turns its
         sign there leaves Newton's method no way from a belt at rest.
         """
         passed = list[Passed]()
-        for bending_loss, load in product((1.0, 0.0) if loses_in_bending(self.system) else (1.0,), _FIRST_LOADS):
-            first = Setting(load=load, bending_loss=bending_loss)
+        for bending_loss, (load, smoothing) in product(
+            (1.0, 0.0) if loses_in_bending(self.system) else (1.0,), _FIRST_SETTINGS
+        ):
+            first = Setting(load=load, smoothing=smoothing, bending_loss=bending_loss)
             starts = first, first._replace(smoothing=gentle), first._replace(smoothing=gentle, speed=_SLOW)
             if not any(self._start(place, speed, start) and self._reach(first) for start in starts):
                 continue
@@ -226,14 +232,20 @@ class SteadySearch:
             if self._reach(first._replace(load=1.0)) and self._reach(Setting()):
                 return True
             passed = max(passed, self._passed, key=_largest_load)
+            if self._passed and not has_teeth(self.constant) and self._limit().is_limit:
+                break
         self._passed = passed
         return False
+
+    def _limit(self) -> Refusal:
+        """What ends the increase of the loads."""
+        return slip_limit(self.prepared, self.constant, self.at(Setting()), self._passed)
 
     def _refusal(self) -> ConvergenceError:
         """Say why there is no steady running."""
         if has_teeth(self.constant):
             return ConvergenceError(f"no steady running found at t = {self._time:g} s: {self._jump()}")
-        found = slip_limit(self.prepared, self.constant, self.at(Setting()), self._passed)
+        found = self._limit()
         self.is_limited = found.is_limit
         return ConvergenceError(f"no steady running found at t = {self._time:g} s: {found.reason}")
 
@@ -393,12 +405,16 @@ class SteadySearch:
         passed = [self._seen(way, solution) for solution in way.solutions]
         sliding = np.max(gross_slips(self.prepared, self.constant, passed), axis=1) > GROSS
         count = int(np.argmax(sliding)) if sliding.any() else len(passed)
-        self._passed, last = passed[:count], way.solutions[count - 1]
-        self.place(last.unknowns)
-        turned = turn(way, last.place, _ON_THE_WAY * float(np.min(self.prepared.radii)), self._is_lost)
-        self._passed += [self._seen(way, solution) for solution in turned[1:]]
-        if turned[-1].place >= 1.0 and way.solve(1.0, extrapolated(turned[-2:], 1.0)) is not None:
-            return True
+        for start, is_lost in ((count, self._is_lost), (len(passed), lambda: False)):
+            self._seen(way, way.solutions[start - 1])
+            place, allowed = way.solutions[start - 1].place, _ON_THE_WAY * float(np.min(self.prepared.radii))
+            turned = turn(way, place, allowed, is_lost)
+            if turned[-1].place >= 1.0 and way.solve(1.0, extrapolated(turned[-2:], 1.0)) is not None:
+                return True
+            if start == count:
+                self._passed = passed[:count] + [self._seen(way, solution) for solution in turned[1:]]
+            if count == len(passed):
+                break
         self.setting = begin
         self.place(here)
         return False
@@ -463,19 +479,31 @@ class SteadySearch:
         anchor = anchor_at(state, False)
         status, iterations = find_steady(system, state.at(0.0), anchor, allowed, _MOST, factorised, self.work)
         self.iterations += iterations
-        if status == FOUND:
+        if status == FOUND and not self._runs_away():
             fitted(self.constant, self.state.position)
             self.setting, self._moments = setting, self.work.equations.forces.moment.copy()
             return True
         self.place(before)
         return False
 
+    def _runs_away(self) -> bool:
+        """Whether a web runs backwards, or faster than all rims that drive it, lifted off by its own inertia."""
+        rims = (self._wanted[: self._prescribed.size] * self.prepared.path.radii)[self._prescribed]
+        if not self.prepared.drive.is_web or not np.any(rims):
+            return False
+        ratio = self.belt_parameter / float(rims[np.argmax(np.abs(rims))])
+        return not 0.0 < ratio < 1.0 + _SLIDES
+
     def at(self, setting: Setting) -> System:
         """The system at a setting."""
         system, segment = self.system, self.system.profiles.segment.copy()
         offset, count, driven = segment.offset, system.pulleys.size, self._prescribed.copy()
         offset[:] = self._wanted
-        offset[:count] += np.where(driven, (1.0 - setting.load) * (self._uniform - offset[:count]), 0.0)
+        away = self._uniform - offset[:count]
+        sliding = driven & (np.abs(away) > _SLIDES * np.abs(self._uniform))
+        pulleys = system.pulleys.copy()
+        pulleys["friction"][sliding] *= setting.load
+        offset[:count] += np.where(driven & ~sliding, (1.0 - setting.load) * away, 0.0)
         if self._held is not None:
             driven[self._held], offset[self._held] = True, self._held_speed
         offset[:count] *= np.where(driven, setting.speed, setting.load)
@@ -485,10 +513,12 @@ class SteadySearch:
         friction, hysteresis = system.law.friction.smoothed(setting.smoothing), system.hysteresis.copy()
         hysteresis["stretch_length"] *= setting.stretch_length
         system = system._replace(
+            pulleys=pulleys,
             law=system.law._replace(friction=friction),
             hysteresis=hysteresis,
             profiles=system.profiles._replace(segment=segment),
             carrying=with_resistance(system.carrying, setting.load),
+            carriage=with_part_of_tensions(system.carriage, self._tension, setting.load),
         )
         return system if setting.bending_loss == 1.0 else with_bending_loss(system, setting.bending_loss)
 

@@ -60,7 +60,7 @@ class Refusal(NamedTuple):
 
     reason: str
     is_limit: bool
-    """Whether it is a limit of the drive, and not one of the search."""
+    """Whether it is a limit of the drive, and not one of the search; a web may slide on some rollers and run."""
 
 
 def slip_limit(prepared: Prepared, system: System, asked: System, passed: Sequence[Passed]) -> Refusal:
@@ -87,7 +87,7 @@ def slip_limit(prepared: Prepared, system: System, asked: System, passed: Sequen
         before, slip = _transmitted(system, passed[at - 1])[0], slips[at - 1 : at + 1, worst]
         part = (min(GROSS, slip[1]) - slip[0]) / (slip[1] - slip[0]) if slip[1] > slip[0] else 1.0
         torque = abs(float(before[worst] + part * (torques[worst] - before[worst])))
-    return Refusal(_slipping(prepared, asked, passed[at], worst, torque, slips[at]), True)
+    return Refusal(_slipping(prepared, asked, passed[at], worst, torque, slips[at]), not prepared.drive.is_web)
 
 
 def _slipping(prepared: Prepared, asked: System, here: Passed, pulley: int, torque: float, slips: FloatArray) -> str:

@@ -68,6 +68,14 @@ def ends_at(ends: WebEnds, time: float) -> WebEnds:
     return ends._replace(tensions=tensions)
 
 
+def with_part_of_tensions(carriage: Any, tension: float, part: float) -> Any:
+    """A web line with tensions at its ends on the way from a common one (N) to its own; any other carriage as it is."""
+    if not isinstance(carriage, WebLine):
+        return carriage
+    ends = carriage.ends._replace(tensions=tension + part * (carriage.ends.tensions - tension))
+    return carriage._replace(ends=ends)
+
+
 class RollSize(NamedTuple):
     """What follows from the length that is wound."""
 

@@ -1,0 +1,147 @@
+"""Tensions of a web line by a chain of capstans, and lines drawn at random.
+
+The same unstretched length c passes every place in a unit of time.  A driven roller of rim speed v that grips has the
+web arrive at its speed, so that the tension before it is W = N(v / c); it grips as long as T' = T - m v^2 changes by no
+more than the factor exp(mu theta).  Otherwise it slides, and the tension before it is that behind it times or over this
+factor, whichever is nearer to W:
+
+    T_before = clip(W, T_behind exp(-mu theta), T_behind exp(mu theta)).
+
+From the winder backwards the tension at the unwinder follows, which falls as c grows; c is where it is the one given.
+A held roller has W = 0, an idle one T_before = T_behind.
+"""
+
+from collections.abc import Sequence
+from typing import Any, NamedTuple
+
+import numpy as np
+from scipy.optimize import brentq
+
+from beltdyn.model import Drive
+
+SEED = 57
+AXIAL, MASS = 2e4, 0.05
+_GRIPPING = 0.97
+"""Used part of the grip up to which a roller is taken to grip for sure, and over which to slide for sure, inverse."""
+
+
+class Roller(NamedTuple):
+    """A roller of a line."""
+
+    speed: float | None
+    """Of its rim, m/s; zero where it is held, None where it is idle."""
+    grip: float
+    """mu theta."""
+
+
+class Chain(NamedTuple):
+    """A line in steady running."""
+
+    passed: float
+    """Unstretched length that passes in a unit of time, m/s."""
+    tensions: list[float]
+    """From the unwinder to the winder, N."""
+
+
+def chain(rollers: Sequence[Roller], unwinder: float, winder: float) -> Chain | None:
+    """Tensions of a line; None where no speed of the web gives both tensions (N)."""
+
+    def backwards(passed: float) -> list[float]:
+        tensions = [winder]
+        for roller in reversed(rollers):
+            behind = tensions[0]
+            lifted = MASS * (passed * (1.0 + behind / AXIAL)) ** 2
+            wanted = behind if roller.speed is None else AXIAL * (roller.speed / passed - 1.0)
+            least, most = ((behind - lifted) * np.exp(sense * roller.grip) + lifted for sense in (-1.0, 1.0))
+            tensions.insert(0, float(np.clip(wanted, least, most)))
+        return tensions
+
+    fastest = max(roller.speed or 0.0 for roller in rollers)
+    slowest = min(roller.speed for roller in rollers if roller.speed)
+
+    def missing(passed: float) -> float:
+        return backwards(passed)[0] - unwinder
+
+    low, high = 0.9 * slowest, fastest
+    if not (missing(low) > 0.0 > missing(high)):
+        return None
+    passed = brentq(missing, low, high, xtol=1e-14, rtol=1e-14)
+    return Chain(passed, backwards(passed))
+
+
+class DrawnLine(NamedTuple):
+    """A web line, and what the chain of capstans says of it."""
+
+    drive: Drive
+    chain: Chain
+
+
+def drawn_line(seed: int) -> DrawnLine:
+    """The line of a seed: two to five rollers, at least one of them driven, in a third of the lines one held."""
+    rng = np.random.default_rng([SEED, seed])
+    while True:
+        found = _draw(rng)
+        if found is not None:
+            return found
+
+
+def _draw(rng: np.random.Generator) -> DrawnLine | None:
+    count, speed = int(rng.integers(2, 6)), 2.0
+    kinds = rng.choice(["driven", "idle", "held"], count, p=[0.6, 0.25, 0.15])
+    if "driven" not in kinds:
+        return None
+    unwinder, winder = np.exp(rng.uniform(np.log(60.0), np.log(250.0), 2)).tolist()
+    frictions = np.exp(rng.uniform(np.log(0.1), np.log(1.0), count)).tolist()
+    speeds = (
+        speed
+        * (1.0 + np.where(rng.random(count) < 0.3, rng.uniform(-0.03, 0.03, count), rng.uniform(-0.003, 0.003, count)))
+    ).tolist()
+    pulleys = [_pulley(k, str(kind), frictions[k], speeds[k]) for k, kind in enumerate(kinds)]
+    drive = Drive(
+        belt={
+            "axial_stiffness": AXIAL,
+            "bending_stiffness": 1e-4,
+            "mass_per_length": MASS,
+            "thickness": 1e-4,
+            "width": 0.2,
+        },
+        unwinder={"point": [0.0, 0.3], "tension": unwinder},
+        pulley=pulleys,
+        winder={"point": [0.5 * (count + 1), 0.3 if count % 2 else 0.0], "tension": winder},
+        simulation={"duration": 1.0},
+    )
+    wraps = drive.path.wrap_angles
+    rollers = [
+        Roller({"driven": speeds[k], "idle": None, "held": 0.0}[str(kind)], frictions[k] * float(wraps[k]))
+        for k, kind in enumerate(kinds)
+    ]
+    found = chain(rollers, unwinder, winder)
+    return None if found is None or not _is_clear(rollers, found) else DrawnLine(drive, found)
+
+
+def _pulley(k: int, kind: str, friction: float, speed: float) -> dict[str, Any]:
+    """A roller on one side of the web or the other."""
+    sense = 1.0 if k % 2 == 0 else -1.0
+    pulley = {
+        "name": f"roller {k}",
+        "center": [0.5 * (k + 1), 0.0 if k % 2 == 0 else 0.3],
+        "radius": 0.05,
+        "side": "inside" if k % 2 == 0 else "outside",
+        "friction": friction,
+    }
+    motion: dict[str, dict[str, Any]] = {
+        "driven": {"speed": sense * speed / 0.05},
+        "held": {"speed": 0.0},
+        "idle": {"inertia": 1e-3},
+    }
+    return pulley | motion[kind]
+
+
+def _is_clear(rollers: Sequence[Roller], found: Chain) -> bool:
+    """Whether a driven roller grips for sure, and no tension is so small that it may vanish."""
+    used = [
+        abs(np.log(behind / before)) / roller.grip
+        for roller, before, behind in zip(rollers, found.tensions[:-1], found.tensions[1:], strict=True)
+        if roller.speed
+    ]
+    return min(used) < _GRIPPING and min(found.tensions) > 5.0

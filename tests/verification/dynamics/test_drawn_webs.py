@@ -1,0 +1,72 @@
+"""Web lines drawn at random, with driven, idle and held rollers, against a chain of capstans."""
+
+from collections.abc import Callable
+
+import numpy as np
+import pytest
+
+import beltdyn as bd
+from beltdyn.errors import ConvergenceError
+from beltdyn.model import Drive
+from tests.lumped.web_chain import AXIAL, MASS, Roller, chain, drawn_line
+
+
+@pytest.mark.parametrize("seeds", [range(3), pytest.param(range(3, 1000), marks=pytest.mark.slow)], ids=len)
+def test_every_line_runs_with_the_tensions_of_the_chain(seeds: range, measured: Callable[..., None]) -> None:
+    """The chain has no creep below full friction: by the creep ratio tensions differ by 2 N; one of 1000 is refused."""
+    errors, refused = dict[int, float](), list[int]()
+    for seed in seeds:
+        drawn = drawn_line(seed)
+        try:
+            run = bd.steady_state(drawn.drive)
+        except ConvergenceError:
+            refused.append(seed)
+            continue
+        expected, found = np.array(drawn.chain.tensions), run.dataset.span_tension.values[-1]
+        found = np.append(found[-1], found[: expected.size - 1])
+        errors[seed] = float(np.max(np.abs(found - expected)) / np.max(expected))
+    worst = max(errors, key=lambda seed: errors[seed])
+    measured(
+        lines=len(seeds), refused=len(refused), median=float(np.median(list(errors.values()))), worst=errors[worst]
+    )
+    assert len(refused) <= len(seeds) // 1000, refused
+    assert errors[worst] < 0.02, worst
+
+
+def line(speed: float, friction: float) -> Drive:
+    """A first roller of a speed (rad/s), and a driven one with much grip."""
+    return Drive(
+        belt={
+            "axial_stiffness": AXIAL,
+            "bending_stiffness": 1e-4,
+            "mass_per_length": MASS,
+            "thickness": 1e-4,
+            "width": 0.2,
+        },
+        unwinder={"point": [0.0, 0.3], "tension": 100.0},
+        pulley=[
+            {"name": "first", "center": [0.5, 0.0], "radius": 0.05, "speed": speed, "friction": friction},
+            {
+                "name": "driven",
+                "center": [1.0, 0.3],
+                "radius": 0.05,
+                "side": "outside",
+                "speed": -40.0,
+                "friction": 1.0,
+            },
+        ],
+        winder={"point": [1.5, 0.0], "tension": 110.0},
+        simulation={"duration": 1.0},
+    )
+
+
+@pytest.mark.parametrize("speed", [39.2, 0.0])
+def test_a_web_runs_at_the_speed_of_the_roller_that_grips(speed: float) -> None:
+    """The first roller slides, slow or held; the web could also slip through at 33 m/s, lifted by its inertia."""
+    drive = line(speed, 0.1)
+    wraps = drive.path.wrap_angles
+    expected = chain([Roller(0.05 * speed, 0.1 * float(wraps[0])), Roller(2.0, float(wraps[1]))], 100.0, 110.0)
+    assert expected is not None
+    run = bd.steady_state(drive)
+    assert run.dataset.attrs["belt_parameter"] == pytest.approx(expected.passed, rel=1e-3)
+    assert run.dataset.span_tension.values[-1, 0] == pytest.approx(expected.tensions[1], rel=5e-3)
