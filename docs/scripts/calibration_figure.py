@@ -23,7 +23,7 @@ import beltdyn as bd
 from beltdyn.arrays import FloatArray
 from beltdyn.cli.output import show_result
 from beltdyn.designs.calibrate import fit
-from beltdyn.designs.designs import free_number
+from beltdyn.designs.designs import free_numbers
 from beltdyn.designs.residuals import Residuals
 from beltdyn.model.parameter_study import CalibrationStudy
 from beltdyn.model.toml import read_study
@@ -115,7 +115,7 @@ def sizes(values: FloatArray) -> FloatArray:
 
 def residuals_in(folder: Path, drive: bd.Drive, study: CalibrationStudy, tolerance: float | None) -> Residuals:
     """Residuals against the tables of a folder."""
-    return Residuals(drive, [free_number(drive, one) for one in study.numbers], study, folder, tolerance, None)
+    return Residuals(drive, free_numbers(drive, study.numbers), study, folder, tolerance, None)
 
 
 class Surface(NamedTuple):
@@ -167,7 +167,7 @@ def held(folder: Path, drive: bd.Drive, study: CalibrationStudy, exact: FloatArr
     write(folder, exact, sizes(exact))
     fitting = residuals_in(folder, drive, study, None)
     fitting.start()
-    frees = [free_number(drive, one) for one in study.numbers]
+    frees = free_numbers(drive, study.numbers)
     pairs = zip(NUMBERS.values(), frees, strict=True)
     true = np.array([(one.true - free.least) / (free.largest - free.least) for one, free in pairs])
     surface, rng, found = surface_of(fitting, true), np.random.default_rng(15), []

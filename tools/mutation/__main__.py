@@ -18,6 +18,7 @@ import json
 import math
 import os
 import random
+import tempfile
 from collections import Counter, defaultdict
 from collections.abc import Callable, Iterable, Iterator
 from dataclasses import asdict
@@ -25,13 +26,14 @@ from functools import partial
 from importlib import import_module
 from itertools import count
 from pathlib import Path
+from pkgutil import walk_packages
 from types import CodeType
 
 import pytest
 from hypothesis import Phase, settings
 
 from tools.mutation.mutants import Mutant, control, has_kernels, mutants_of
-from tools.mutation.traces import Trace, read_traces, traces
+from tools.mutation.traces import Trace, left_out, read_traces, traces
 from tools.mutation.trial import (
     FAULT,
     MAX_TESTS,
@@ -50,6 +52,8 @@ LIBRARIES = ["matplotlib.pyplot", "numba", "scipy.integrate", "scipy.optimize", 
 LIBRARIES += ["pydantic", "xarray", "h5py"]
 PATIENCE = 2.5
 """A mutant whose tests take longer than this many times their usual time runs without end."""
+NOT_TRIED = {"__main__", "app", "cosimulation"}
+"""Programs on top of the package, which are not imported for trials."""
 STARTING = 2.0
 """Time to start a session, s."""
 
@@ -67,14 +71,27 @@ def main() -> None:
     for library in LIBRARIES:
         import_module(library)
     mutants = list(_sample(asked))
+    with tempfile.TemporaryDirectory() as folder:
+        tempfile.tempdir = folder
+        _try_all(mutants, asked)
+    asked.out.write_text(json.dumps([asdict(each) for each in mutants], indent=1), encoding="utf-8")
+    for folder in asked.folders:
+        _print_score(folder, [each for each in mutants if each.file.startswith(f"src/beltdyn/{folder}")])
+
+
+def _try_all(mutants: list[Mutant], asked: argparse.Namespace) -> None:
+    """Try mutants of files with kernels as plain Python, then those of other files with compiled kernels."""
     for kernels_interpreted in (True, False):
         group = [each for each in mutants if has_kernels(ROOT / each.file) is kernels_interpreted]
         if group:
             _interpret_kernels(kernels_interpreted)
             _try_group(group, asked, "plain" if kernels_interpreted else "compiled")
-    asked.out.write_text(json.dumps([asdict(each) for each in mutants], indent=1), encoding="utf-8")
-    for folder in asked.folders:
-        _print_score(folder, [each for each in mutants if each.file.startswith(f"src/beltdyn/{folder}")])
+
+
+def _mirror(folder: str) -> list[Path]:
+    """Tests of a folder, or of a file, by their names."""
+    path = Path("tests/unit", folder)
+    return [path] if path.is_dir() else sorted(path.parent.glob(f"test_{path.stem}*.py"))
 
 
 def _interpret_kernels(interpreted: bool) -> None:
@@ -89,15 +106,16 @@ def _try_group(mutants: list[Mutant], asked: argparse.Namespace, name: str) -> N
     """Try mutants in a copy of this process, which imports the package, and note what becomes of them."""
     answers = asked.out.with_suffix(f".{name}.json").absolute()
     kept = asked.out.with_suffix(f".{name}.traces.json").absolute()
-    tests = asked.tests or [f"tests/unit/{folder.removesuffix('.py')}" for folder in asked.folders]
+    tests = asked.tests or [str(test) for folder in asked.folders for test in _mirror(folder)]
 
     def session() -> int:
-        in_session([*tests, "-k", asked.select], lambda items: _try_in_functions(items, mutants, asked, kept))
+        if not in_session([*tests, "-k", asked.select], lambda items: _try_in_functions(items, mutants, asked, kept)):
+            raise SystemExit("The tests cannot be collected.")
         answers.write_text(json.dumps([asdict(each) for each in mutants]), encoding="utf-8")
         return 0
 
-    answers.unlink(missing_ok=True)
-    os.waitpid(fork(session, math.inf), 0)
+    if os.waitstatus_to_exitcode(os.waitpid(fork(session, math.inf), 0)[1]):
+        raise SystemExit(1)
     tried = [Mutant(**each) for each in json.loads(answers.read_text(encoding="utf-8"))]
     answers.unlink()
     for mutant, result in zip(mutants, tried, strict=True):
@@ -108,11 +126,12 @@ def _try_group(mutants: list[Mutant], asked: argparse.Namespace, name: str) -> N
 def _try_in_functions(items: list[pytest.Item], mutants: list[Mutant], asked: argparse.Namespace, kept: Path) -> None:
     """Try the mutants inside functions, which replace those of the imported modules."""
     items = _first_cases(items, asked.cases)
-    if os.environ["NUMBA_DISABLE_JIT"] == "0":
-        _load_kernels()
+    _warm_up(os.environ["NUMBA_DISABLE_JIT"] == "0")
     functions = functions_of({mutant.file for mutant in mutants})
     known = traces(items, asked.folders, asked.slowest, kept)
     print(f"{len(mutants)} mutants, {len(known)} of {len(items)} tests", flush=True)
+    for reason, tests in Counter(left_out(kept).values()).items():
+        print(f"{tests} left out: {reason}", flush=True)
     by_id = {item.nodeid: item for item in items}
     lines = _tests_of_lines(known)
 
@@ -227,13 +246,21 @@ def _tests_of_lines(known: dict[str, Trace]) -> defaultdict[tuple[str, int], lis
     return lines
 
 
-def _load_kernels() -> None:
-    """Load the usual kernels once for all copies of this process."""
+def _warm_up(kernels: bool) -> None:
+    """Import the package, prepare a drive, and load the usual kernels if they are compiled, once for all copies."""
     import beltdyn
+    from beltdyn.system.build import drive_system
+    from beltdyn.system.state import laid
 
+    for module in walk_packages(beltdyn.__path__, "beltdyn."):
+        if module.name.split(".")[1] not in NOT_TRIED:
+            import_module(module.name)
     drive = beltdyn.example("two_pulley")
-    beltdyn.simulate(drive.replace(simulation=drive.simulation.replace(duration=1e-3, output_interval=1e-3)))
-    beltdyn.steady_state(drive)
+    prepared = beltdyn.model.prepare(drive)
+    laid(drive_system(prepared), prepared.path)
+    if kernels:
+        beltdyn.simulate(drive.replace(simulation=drive.simulation.replace(duration=1e-3, output_interval=1e-3)))
+        beltdyn.steady_state(drive)
 
 
 def _print_score(folder: str, mutants: list[Mutant]) -> None:

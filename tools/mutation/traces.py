@@ -18,7 +18,7 @@ from typing import Any
 import coverage
 import pytest
 
-from tools.mutation.trial import ROOT, SETUP, SOURCE, fork, silence
+from tools.mutation.trial import ROOT, SETUP, SOURCE, fork, reason_of_failure, silence
 
 
 @dataclass
@@ -73,11 +73,17 @@ def traces(items: list[pytest.Item], folders: list[str], seconds: float, kept: P
 def read_traces(kept: Path) -> dict[str, Trace]:
     """What is known of tests, by their ids, from a file of `traces`."""
     known = json.loads(kept.read_text(encoding="utf-8"))
-    return {test: Trace(**each["trace"]) for test, each in known.items() if each["trace"]}
+    return {test: Trace(**each["trace"]) for test, each in known.items() if isinstance(each["trace"], dict)}
+
+
+def left_out(kept: Path) -> dict[str, str]:
+    """Why tests kill nothing, by their ids, from a file of `traces`."""
+    known = json.loads(kept.read_text(encoding="utf-8"))
+    return {test: each["trace"] for test, each in known.items() if isinstance(each["trace"], str)}
 
 
 def _trace(items: list[pytest.Item], folders: list[str], seconds: float) -> dict[str, Any]:
-    """Traces of the tests of a file, each as a dictionary, or None of those that fail or take too long.
+    """Traces of the tests of a file, each as a dictionary, or why of those that fail or take too long.
 
     A fixture may serve several tests: what the fixtures of the file execute counts for each of its tests.  A test that
     ends its process is named, and the others are traced without it.
@@ -93,7 +99,7 @@ def _trace(items: list[pytest.Item], folders: list[str], seconds: float) -> dict
         raise RuntimeError(f"Tracing {items[0].path} ended with status {status} outside its tests.")
     print(f"{deadly} ends its process with status {status} while it is traced, and kills no mutant.", flush=True)
     others = [item for item in items if item.nodeid != deadly]
-    return {deadly: None} | (_trace(others, folders, seconds) if others else {})
+    return {deadly: f"ends its process with status {status}"} | (_trace(others, folders, seconds) if others else {})
 
 
 def _write_traces(items: list[pytest.Item], folders: list[str], seconds: float, answer: Path, current: Path) -> int:
@@ -107,27 +113,32 @@ def _write_traces(items: list[pytest.Item], folders: list[str], seconds: float, 
     warnings.simplefilter("ignore")  # a file may execute nothing of the folders
     lines = _lines(tool.get_data())
     traced = {
-        test: {"duration": duration, "lines": _joined(lines[SETUP], lines[test])} if duration is not None else None
+        test: {"duration": duration, "lines": _joined(lines[SETUP], lines[test])}
+        if isinstance(duration, float)
+        else duration
         for test, duration in durations.items()
     }
     answer.write_text(json.dumps(traced), "utf-8")
     return 0
 
 
-def _durations(items: list[pytest.Item], seconds: float, current: Path) -> dict[str, float | None]:
-    """Run tests; give the processor time of each, None where it fails or needs more than that many seconds."""
+def _durations(items: list[pytest.Item], seconds: float, current: Path) -> dict[str, float | str]:
+    """Run tests; give the processor time of each, or why it fails, as where it needs more than that many seconds."""
 
     def stop(*_: object) -> None:
         raise TimeoutError
 
     signal.signal(signal.SIGXCPU, stop)
-    durations: dict[str, float | None] = {}
+    durations: dict[str, float | str] = {}
     for item, following in zip(items, [*items[1:], None], strict=True):
         current.write_text(item.nodeid, "utf-8")
         begun, failed = time.process_time(), item.session.testsfailed
         resource.setrlimit(resource.RLIMIT_CPU, (math.ceil(begun + seconds), resource.RLIM_INFINITY))
         item.config.hook.pytest_runtest_protocol(item=item, nextitem=following)
-        durations[item.nodeid] = time.process_time() - begun if item.session.testsfailed == failed else None
+        if item.session.testsfailed == failed:
+            durations[item.nodeid] = time.process_time() - begun
+        else:
+            durations[item.nodeid] = reason_of_failure(item)
     return durations
 
 

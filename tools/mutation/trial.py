@@ -7,6 +7,8 @@ import math
 import os
 import resource
 import signal
+import sys
+import tempfile
 import traceback
 from collections import defaultdict
 from collections.abc import Callable, Iterable, Iterator
@@ -46,10 +48,21 @@ class _Loop:
 
     def __init__(self, loop: Callable[[list[pytest.Item]], None]) -> None:
         self.loop = loop
+        self.has_run = False
+        self.error: BaseException | None = None
+        self.reason = ""
+
+    def pytest_runtest_logreport(self, report: pytest.TestReport) -> None:
+        if report.failed:
+            self.reason = str(report.longrepr).splitlines()[-1]
 
     def pytest_runtestloop(self, session: pytest.Session) -> bool:
         session.config._tmp_path_factory.getbasetemp()  # type: ignore[attr-defined]  # one for all copies
-        self.loop(session.items)
+        self.has_run = True
+        try:
+            self.loop(session.items)
+        except BaseException as error:
+            self.error = error  # pytest would report it as its own
         return True
 
     @pytest.hookimpl(wrapper=True, tryfirst=True)
@@ -62,8 +75,8 @@ class _Loop:
             tool.switch_context(item.nodeid)
 
 
-def in_session(tests: Iterable[str], loop: Callable[[list[pytest.Item]], None]) -> None:
-    """Collect tests and hand them to a loop.
+def in_session(tests: Iterable[str], loop: Callable[[list[pytest.Item]], None]) -> bool:
+    """Collect tests and hand them to a loop; False where they cannot be collected.
 
     Parameters
     ----------
@@ -72,7 +85,16 @@ def in_session(tests: Iterable[str], loop: Callable[[list[pytest.Item]], None]) 
     loop : Callable
         Takes the list of collected tests.
     """
-    pytest.main([*OPTIONS, *tests], plugins=[_Loop(loop)])
+    plugin, folder = _Loop(loop), tempfile.mkdtemp()  # that of other sessions may be removed by them
+    pytest.main([*OPTIONS, f"--basetemp={folder}/tests", *tests], plugins=[plugin])
+    if plugin.error:
+        raise plugin.error
+    return plugin.has_run
+
+
+def reason_of_failure(item: pytest.Item) -> str:
+    """Last line of the report of the last test that failed in the session of a test."""
+    return next(each for each in item.config.pluginmanager.get_plugins() if isinstance(each, _Loop)).reason
 
 
 def first_failure(items: list[pytest.Item]) -> int:
@@ -110,6 +132,8 @@ def fork(work: Callable[[], int], seconds: float) -> int:
                 signal.alarm(100 * limit)
                 silence()
             status = work()
+        except SystemExit as error:
+            print(error, file=sys.stderr)
         except BaseException:
             traceback.print_exc()
         finally:
