@@ -12,10 +12,12 @@ import sys
 import time
 import warnings
 from collections.abc import Awaitable, Callable, Iterator, Mapping
-from concurrent.futures import CancelledError, Future, ProcessPoolExecutor
+from concurrent.futures import CancelledError, Future, InvalidStateError, ProcessPoolExecutor
 from concurrent.futures.process import BrokenProcessPool
-from contextlib import closing, contextmanager
+from contextlib import closing, contextmanager, suppress
 from dataclasses import dataclass, replace
+from importlib.metadata import PackageNotFoundError
+from importlib.metadata import version as version_of
 from multiprocessing import resource_tracker
 from multiprocessing.context import SpawnContext, SpawnProcess
 from multiprocessing.process import BaseProcess
@@ -380,6 +382,10 @@ class ThisProcess:
         """Do nothing; see `Workers.close`."""
 
 
+class _StrandedError(Exception):
+    """The only workers that may take a task are gone."""
+
+
 class DaskWorkers:
     """Workers of an existing Dask cluster, each of which computes one point at a time."""
 
@@ -398,22 +404,56 @@ class DaskWorkers:
             raise ModelError(
                 f"scheduler = {scheduler!r} does not answer ({told}). Start one with `dask scheduler`, or correct it."
             ) from error
-        self._asked, self._known = -_ASK, 0
+        self._asked = -_ASK
+        self._versions = dict[str, str]()
+        """Address of a worker that is there -> its version of beltdyn."""
+        self._bound: list[tuple[frozenset[str], Any, Future[Any]]] = []
+        """Tasks that only some workers may take, by their addresses, and what becomes of them."""
 
     @property
     def slots(self) -> int:
-        """How many workers there are now; see `Workers.slots`."""
+        """How many workers of this version there are now; see `Workers.slots`."""
         if time.monotonic() - self._asked > _ASK:
             try:
-                self._known, self._asked = len(self._client.nthreads()), time.monotonic()
+                self._look()
             except OSError as error:
                 raise SimulationError(GONE) from error
-        return self._known
+            self._asked = time.monotonic()
+        return len(self._suited)
+
+    @property
+    def _suited(self) -> list[str]:
+        own = version_of("beltdyn")
+        return [address for address, version in self._versions.items() if version == own]
+
+    def _look(self) -> None:
+        """Look which workers there are, and which version of beltdyn new ones have."""
+        there = list(self._client.nthreads())
+        new = [one for one in there if one not in self._versions]
+        answers = self._client.run(version_of, "beltdyn", workers=new, on_error="return") if new else {}
+        known = self._versions | {one: answer for one, answer in answers.items() if isinstance(answer, str)}
+        without = [one for one, answer in answers.items() if isinstance(answer, PackageNotFoundError)]
+        self._versions = {one: version for one, version in (known | dict.fromkeys(without, "")).items() if one in there}
+        if self._versions and not self._suited:
+            others = ", ".join(sorted({version or "none" for version in self._versions.values()}))
+            raise ModelError(
+                f"no worker has beltdyn {version_of('beltdyn')}, with which the study was started; workers have "
+                f"{others}. Install the same version everywhere."
+            )
+        for bound, task, future in self._bound:
+            if not future.done() and bound.isdisjoint(there):  # nobody else would take it
+                with suppress(InvalidStateError):
+                    future.set_exception(_StrandedError())
+                task.cancel()
+        self._bound = [one for one in self._bound if not one[2].done()]
 
     def submit(self, function: Callable[..., Any], *arguments: Any) -> Future[Any]:
-        """Have it computed; see `Workers.submit`."""
+        """Have it computed by a worker of this version; see `Workers.submit`."""
         future: Future[Any] = Future()
-        task = self._client.submit(function, *arguments, pure=False)
+        bound = frozenset(self._suited) if len(self._suited) < len(self._versions) else None
+        task = self._client.submit(function, *arguments, pure=False, workers=None if bound is None else list(bound))
+        if bound is not None:
+            self._bound.append((bound, task, future))
         self._client.loop.add_callback(hand_on, task, future)
         return future
 
@@ -421,7 +461,7 @@ class DaskWorkers:
         """See `Workers.lost`; the scheduler gives work of a killed worker to others a few times itself."""
         from distributed import KilledWorker
 
-        return isinstance(error, KilledWorker)
+        return isinstance(error, KilledWorker | _StrandedError)
 
     def close(self, *, abandon: bool = False) -> None:
         """Leave the cluster; see `Workers.close`."""
@@ -433,13 +473,14 @@ async def hand_on(task: Awaitable[Any], future: Future[Any]) -> None:
 
     Dask's own executor never tells of a task whose result was lost with its worker, and that has failed since then.
     """
-    try:
-        future.set_result(await task)
-    except (CancelledError, asyncio.CancelledError):
-        future.cancel()
-        future.set_running_or_notify_cancel()
-    except Exception as error:
-        future.set_exception(error)
+    with suppress(InvalidStateError):  # of a stranded task
+        try:
+            future.set_result(await task)
+        except (CancelledError, asyncio.CancelledError):
+            if future.cancel():
+                future.set_running_or_notify_cancel()
+        except Exception as error:
+            future.set_exception(error)
 
 
 def workers_of(jobs: int | None, scheduler: str | None) -> Workers:
