@@ -41,7 +41,7 @@ def beyond(present: float, wanted: float, digits: int = 2) -> float:
         return wanted
     step = 10.0 ** (math.floor(math.log10(abs(wanted))) - digits + 1)
     rounded = math.ceil if wanted > present else math.floor
-    return float(f"{step * rounded(round(wanted / step, 6)):.{digits}g}")
+    return float(f"{step * rounded(round(wanted / step, 2)):.{digits}g}")
 
 
 # A problem of a drive or its results: what is wrong, what it affects, what to do
