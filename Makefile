@@ -59,8 +59,8 @@ compatibility: ## kernels with the oldest Numba, the last one known and the newe
 	rm -rf .venv-numba
 
 mutation: install ## small changes of the sources, taken at random, and how many of them the tests notice
-	$(BIN)/python -m tools.mutation contact elements machines system results/derived --sample 100 \
-		--tests tests/unit/contact tests/unit/elements tests/unit/machines tests/unit/system tests/unit/results/derived
+	$(BIN)/python -m tools.mutation elements contact machines system results/derived points state transient vibration \
+		designs --sample 150
 
 browser: install ## the page of `beltdyn app` in a real Chromium, which must be installed (or named in BELTDYN_BROWSER)
 	$(BIN)/pip install --quiet playwright

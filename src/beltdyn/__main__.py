@@ -2,9 +2,10 @@
 
 import sys
 
-if not sys.flags.safe_path:
-    sys.path.pop(0)
+if __name__ == "__main__":
+    if not sys.flags.safe_path:
+        sys.path.pop(0)
 
-from beltdyn.cli import main
+    from beltdyn.cli import main
 
-main()
+    main()

@@ -10,6 +10,7 @@ their shapes, with right and left eigenvectors (`state_modes`).
 """
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
+from contextlib import suppress
 from typing import Annotated, NamedTuple
 
 import numpy as np
@@ -19,12 +20,12 @@ from pydantic import Field
 from beltdyn.arrays import FloatArray
 from beltdyn.designs.batch import OperatingPoint, named
 from beltdyn.designs.designs import CHANGE, Designs, Free, SmallChanges
-from beltdyn.designs.found_state import FoundState, Resting, Running
+from beltdyn.designs.found_state import FoundState, Resting, Running, require_closed_at_rest
 from beltdyn.designs.named_results import listed, names_in, names_of, need_bands, unit_of
 from beltdyn.errors import ModelError, cause_of
 from beltdyn.model import Drive, prepare
 from beltdyn.model.parameter_study import Points
-from beltdyn.parts.change import require_distinct, tolerances_of, unit_at, value_at
+from beltdyn.parts.change import number_path, require_distinct, tolerances_of, unit_at, value_at
 from beltdyn.parts.messages import suggest
 from beltdyn.parts.options import ForceTolerance, takes_options
 from beltdyn.parts.part import Part
@@ -104,9 +105,17 @@ def chosen_numbers(drive: Drive, numbers: str | Sequence[str] | None, tolerances
         known.setdefault(path, Number(path, value, PART * value or size))
     if numbers is None:
         return list(known.values())
-    chosen = [known.get(path) or _number_in_place(drive, path, list(known)) for path in listed(numbers)]
+    paths = [path if path in known else _path_of_number(drive, path) for path in listed(numbers)]
+    chosen = [known.get(path) or _number_in_place(drive, path, list(known)) for path in paths]
     require_distinct(drive, [one.path for one in chosen], "numbers:")
     return chosen
+
+
+def _path_of_number(drive: Drive, path: str) -> str:
+    """The path of a number, or of the value of a constant; as it is where there is none."""
+    with suppress(ModelError):
+        return number_path(drive, path)
+    return path
 
 
 def _number_in_place(drive: Drive, path: str, known: Sequence[str]) -> Number:
@@ -288,6 +297,8 @@ def sensitivity(
     """
     if about not in _USUAL:
         raise ModelError(f'about = {about!r} must be "{STEADY}" or "{REST}".')
+    if about == REST:
+        require_closed_at_rest(drive, "a sensitivity at rest")
     given = at_instant(drive, at)
     require_points(sobol)
     tolerances = {path: size for path, size in tolerances_of(drive).items() if _stands(given, path)}

@@ -8,18 +8,19 @@ import numpy as np
 from numpy.typing import NDArray
 
 from beltdyn.arrays import FloatArray
-from beltdyn.errors import ConvergenceError, ModelError
+from beltdyn.errors import ConvergenceError, ModelError, TimeLimitError
 from beltdyn.machines.tensioners.tensioner import MovingTensioner
-from beltdyn.model import Drive, Installation, Prepared, prepare
+from beltdyn.model import Drive, Installation, Prepared, estimate_at_rest, prepare
 from beltdyn.model.carrier import moved
 from beltdyn.model.static_estimate import held_belt
-from beltdyn.parts.messages import reason
+from beltdyn.parts.messages import Finding, reason
 from beltdyn.parts.options import takes_options
 from beltdyn.parts.quantity import Number, to_si
 from beltdyn.points.changed_drive import require_belt
 from beltdyn.points.operating_points import Axes
 from beltdyn.results import Result, Variable, build_result
 from beltdyn.solvers.run_progress import Progress, Report
+from beltdyn.solvers.time_limit import time_limit
 from beltdyn.state.installation import looked_at
 from beltdyn.state.staying import bring_to_stand, stand
 
@@ -28,6 +29,9 @@ _FINENESS = 1.2
 _ACCURACY = 1e-9
 """Of the place at a stop, over the way on which the path lengthens by itself."""
 _MOST_TRIALS = 20
+_LONGEST_SEARCH = 30.0
+"""Processor time of all searches for equilibrium, s, after which closed forms take their place; sheets of the examples
+take below 5 s."""
 _FREE, _NOMINAL = "free arm", "nominal belt"
 _OTHERS = ("longest belt", _NOMINAL, "shortest belt")
 _WORN, _STRETCHED = ("worn belt", "0.5 %", "1 %"), ("stretched belt", "0.1 %", "0.1 %")
@@ -110,7 +114,8 @@ def tensioner_sheet(
         If the drive has no moving tensioner, or several without a choice by pulley, or if tolerance or wear is not a
         length.
     ConvergenceError
-        If no static equilibrium of the nominal belt is found.
+        If no static equilibrium of the nominal belt is found. After 30 s of processor time closed forms take the
+        place of searches, with a warning.
 
     Examples
     --------
@@ -123,7 +128,16 @@ def tensioner_sheet(
     number = _number_of(drive, pulley)
     tell = progress or (lambda _: None)
     tell(Progress(0.0, drive.simulation.duration, 0.0, 0, "equilibrium"))
-    rest = bring_to_stand(prepare(drive)).prepared
+    with time_limit(_LONGEST_SEARCH):
+        return _sheet(drive, number, tolerance, wear)
+
+
+def _sheet(drive: Drive, number: int, tolerance: Number | None, wear: Number | None) -> Result:
+    """The states of a tensioner, from the free arm to the lower stop."""
+    try:
+        rest = bring_to_stand(prepare(drive)).prepared
+    except TimeLimitError:
+        rest = estimate_at_rest(prepare(drive))[0]
     held = rest.replace(contact=rest.contact)
     sheet = _Sheet(held, number)
     nominal = held.belt_length
@@ -148,6 +162,7 @@ class _Sheet:
         self._rows = dict[str, dict[str, float]]()
         self._belts = (_aged(prepared)[0], *_OTHERS)
         self._failures = dict[str, str]()
+        self._by_closed_forms = False
         rate, preload = self._tensioner.rate, self._tensioner.preload
         lower, upper = self._tensioner.stops or (-np.inf, np.inf)
         spring = self._tensioner.spring
@@ -210,7 +225,7 @@ class _Sheet:
     def _row(self, prepared: Prepared, length: float) -> dict[str, float]:
         """The row of a belt of a length, m."""
         prepared = prepared.replace(belt=prepared.drive.belt.replace(length=length))
-        there, tensioner = _balanced(prepared), prepared.carriers[self._number].tensioner
+        there, tensioner = self._balanced(prepared), prepared.carriers[self._number].tensioner
         carrier, position = prepared.carriers[self._number], float(there.tensioner_positions[self._number])
         force = there.hub_loads[carrier.pulley]
         row = {
@@ -228,8 +243,17 @@ class _Sheet:
         for name, push in self._frictions.items():
             pushed = self._with(tensioner.replace(preload=tensioner.preload + push), prepared)
             with suppress(ConvergenceError, ModelError):
-                row[f"tension_after_{name}"] = _balanced(pushed).tension
+                row[f"tension_after_{name}"] = self._balanced(pushed).tension
         return row
+
+    def _balanced(self, prepared: Prepared) -> Installation:
+        """The belt at rest, by closed forms once the search has taken too long."""
+        try:
+            rest = stand(prepared, fineness=_FINENESS)
+            return looked_at(prepared, rest.system, rest.state).installation
+        except TimeLimitError:
+            self._by_closed_forms = True
+            return estimate_at_rest(prepared)[1]
 
     def _placed(self, position: float) -> FloatArray:
         """Places of all tensioners, with this one elsewhere and the others where the nominal belt has them."""
@@ -271,6 +295,13 @@ class _Sheet:
     def _warnings(self) -> Iterator[str]:
         """What a designer has to look after."""
         lower, upper, written = self._stops["lower stop"], self._stops["upper stop"], self._tensioner.written
+        if self._by_closed_forms:
+            finding = Finding(
+                f"the search for static equilibrium was ended after {_LONGEST_SEARCH:g} s of processor time.",
+                "States after that are closed forms, within 1 % where arcs are long.",
+                "Omit contact.stiffness and belt.elements so that they are chosen.",
+            )
+            yield str(finding)
         for state, cause in self._failures.items():
             yield f"{state}: {cause}"
         for state in self._belts:
@@ -286,12 +317,6 @@ class _Sheet:
                     f"the {state} is {-1e3 * row['slack']:.3g} mm too short to be fitted with the tensioner of "
                     f"{self._tensioner.pulley} at its lower stop. Lower that stop, or use a longer belt."
                 )
-
-
-def _balanced(prepared: Prepared) -> Installation:
-    """The belt at rest."""
-    rest = stand(prepared, fineness=_FINENESS)
-    return looked_at(prepared, rest.system, rest.state).installation
 
 
 def _number_of(drive: Drive, pulley: str | None) -> int:

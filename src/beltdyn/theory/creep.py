@@ -26,8 +26,8 @@ from typing import NamedTuple
 import numpy as np
 
 from beltdyn.arrays import FloatArray
+from beltdyn.parts.ranges import LARGEST_EXPONENT, require_above, require_at_least, require_at_most
 from beltdyn.stretch import StretchParameters
-from beltdyn.theory.ranges import LARGEST_EXPONENT, require_above, require_at_least, require_at_most
 from beltdyn.theory.span import open_belt
 
 

@@ -37,7 +37,7 @@ import numpy as np
 
 from beltdyn.arrays import FloatArray
 from beltdyn.errors import ModelError
-from beltdyn.theory.ranges import require_above, require_at_least, require_at_most
+from beltdyn.parts.ranges import require_above, require_at_least, require_at_most
 
 _POINTS = 24
 """Of quadrature over a nip."""

@@ -41,7 +41,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from beltdyn.arrays import FloatArray
-from beltdyn.theory.ranges import require_above, require_at_least
+from beltdyn.parts.ranges import require_above, require_at_least
 
 _HALF_TURN, _BASE = 1.25, 5.0
 """Of the wrap factor in ISO 5292, which is 1 for half a turn."""

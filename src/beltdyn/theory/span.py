@@ -23,7 +23,7 @@ from math import asin, cos, pi, sin, sqrt, tanh
 from typing import NamedTuple
 
 from beltdyn.errors import ModelError
-from beltdyn.theory.ranges import require_above, require_at_least
+from beltdyn.parts.ranges import require_above, require_at_least
 
 _SMALLEST = 1e-12
 """lambda^2 below which a span is straight."""

@@ -6,8 +6,8 @@ from typing import NamedTuple
 import numpy as np
 
 from beltdyn.errors import ModelError
+from beltdyn.parts.ranges import require_above, require_at_least
 from beltdyn.stretch import StretchParameters
-from beltdyn.theory.ranges import require_above, require_at_least
 from beltdyn.theory.span import open_belt
 
 _DEEPEST = 0.15

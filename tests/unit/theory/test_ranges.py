@@ -10,10 +10,10 @@ import numpy as np
 import pytest
 
 from beltdyn.errors import ModelError
+from beltdyn.parts.ranges import require_above, require_at_least, require_at_most
 from beltdyn.stretch import Green, Linear
 from beltdyn.theory import creep, nip, rating, span, static_tension
 from beltdyn.theory.creep import SlidingBelt
-from beltdyn.theory.ranges import require_above, require_at_least, require_at_most
 from beltdyn.theory.rating import RatingLaw
 from beltdyn.theory.static_tension import Section
 

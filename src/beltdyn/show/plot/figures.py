@@ -20,7 +20,7 @@ from beltdyn.kinds import Registry
 from beltdyn.results import Result, Run, derived
 from beltdyn.results.atomic import MARK, atomic_path, is_marked, make_folder, require_replaceable
 from beltdyn.results.schema import runs_steadily
-from beltdyn.show.plot.gaps import explain_empty, first_failure, gaps
+from beltdyn.show.plot.gaps import explain_empty, first_failure, gaps, mark_isolated
 from beltdyn.show.plot.headline import headlines, overlay, write_headline
 from beltdyn.show.plot.style import one_panel, show_enough, styled
 
@@ -107,6 +107,7 @@ def figure(
             def on(result: Result, ax: Axes | None) -> Axes:
                 bound.arguments |= {first: result, "ax": ax}
                 axes = painted(*bound.args, **bound.kwargs)
+                mark_isolated(axes)
                 explain_empty(axes, result)
                 return axes
 

@@ -44,6 +44,18 @@ def count_missing(values: FloatArray) -> str:
     return f"no value at {missing} of {values.size} points" if missing else ""
 
 
+def mark_isolated(ax: Axes) -> None:
+    """Mark points of lines between points without a value: a line alone would not show them."""
+    for line in ax.lines:
+        drawn = str(line.get_linestyle()) not in ("None", "") and line.get_marker() in ("None", "", None)
+        points = np.column_stack([line.get_xdata(), line.get_ydata()]).astype(float)
+        if drawn and of_data(line) and len(points):
+            known = np.isfinite(points).all(axis=1)
+            beside = np.append(False, known[:-1]) | np.append(known[1:], False)
+            if (known & ~beside).any():
+                line.set(marker="o", markersize=3.0, markevery=np.flatnonzero(known & ~beside).tolist())
+
+
 def explain_empty(ax: Axes, result: Result) -> None:
     """Write into axes on which no value is drawn that there is none, and why."""
     if has_values(ax) or any(text.get_gid() == NOTE for text in ax.texts):

@@ -6,6 +6,7 @@ from functools import partial
 import numpy as np
 import xarray as xr
 from matplotlib.axes import Axes
+from matplotlib.colors import Normalize
 from matplotlib.figure import Figure
 
 from beltdyn.arrays import FloatArray
@@ -15,7 +16,18 @@ from beltdyn.parts.quantity import SHOWN_UNITS
 from beltdyn.results import Result
 from beltdyn.results.checks.machines import LIFTS
 from beltdyn.show.plot.figures import Choice, always, figure
-from beltdyn.show.plot.style import INK, axes_or_new, color, dash, label, name_lines, name_once, panels, rows
+from beltdyn.show.plot.style import (
+    INK,
+    axes_or_new,
+    color,
+    dash,
+    label,
+    name_lines,
+    name_once,
+    panels,
+    rows,
+    spread,
+)
 
 # Figures of tensioner sheets
 
@@ -127,6 +139,14 @@ def _over_both(result: Result) -> bool:
     return {"speed", "load"} <= set(result.dataset.dims)
 
 
+def _mark_points(ax: Axes, values: xr.DataArray, norm: Normalize) -> None:
+    """Draw known points of a map over load and speed as circles in their colors, and unknown ones as crosses."""
+    load, speed = np.meshgrid(values["load"].values, _in_shown_units(values["speed"]).values, indexing="ij")
+    known = np.isfinite(values.values)
+    ax.scatter(speed[known], load[known], 30, values.values[known], cmap="viridis", norm=norm, edgecolor=INK)
+    ax.plot(speed[~known], load[~known], "x", color=color(1), markersize=5, clip_on=False)
+
+
 def _over_slip(result: Result) -> bool:
     """Whether it is the traction curve of a pulley without teeth."""
     return "slip" in result.dataset.dims
@@ -136,7 +156,8 @@ def _over_slip(result: Result) -> bool:
 def operating_points(result: Result, variable: str = "span_tension", *, ax: Axes | None = None) -> Axes:
     """Draw a variable of operating points over speed, load, torque on teeth, or the rows of a duty table.
 
-    Of a map over speed and load it is drawn over the speed, at the load nearest to that of the drive file.
+    Of a map over speed and load it is drawn over the speed, at the load nearest to that of the drive file; over the
+    load where there is one speed.
 
     Parameters
     ----------
@@ -165,17 +186,21 @@ def operating_points(result: Result, variable: str = "span_tension", *, ax: Axes
     """
     dataset = result.dataset
     axis = str(dataset.attrs["axes"]).split()[0]
+    if _over_both(result) and dataset.sizes["speed"] == 1:
+        axis = "load"
     numbers = [str(name) for name, one in dataset.data_vars.items() if axis in one.dims and one.dtype.kind == "f"]
     if variable not in numbers:
         raise ModelError(
             f"variable = {variable!r} is not a variable of operating points. Choose one of {', '.join(numbers)}."
         )
     values = dataset[variable]
-    if _over_both(result):
-        values = values.sel(load=1.0, method="nearest")
-    values, ax = _in_shown_units(values), axes_or_new(ax)
-    if _over_both(result):
-        ax.set_title(f"load {float(values['load']):.4g}")
+    ax, over_both = axes_or_new(ax), _over_both(result)
+    if over_both:
+        values = values.isel(speed=0) if axis == "load" else values.sel(load=1.0, method="nearest")
+        held = values["speed" if axis == "load" else "load"]
+        shown = _in_shown_units(held)
+        ax.set_title(f"{held.name} {float(shown):.4g} {shown.attrs['units']}".removesuffix(" 1"))
+    values = _in_shown_units(values)
     along = _in_shown_units(dataset[axis])
     for number, (name, line) in enumerate(_lines(values, axis)):
         mark = "o" if axis == "row" else None
@@ -205,9 +230,16 @@ def _top(safety: xr.DataArray) -> float:
     return min(_SAFE, top) if known.min() < _SAFE else top
 
 
-@figure(_over_both, of=("operating_map",))
+def _over_a_grid(result: Result) -> bool:
+    """Whether a map has several speeds and several loads."""
+    return _over_both(result) and min(result.dataset.sizes[name] for name in ("speed", "load")) > 1
+
+
+@figure(_over_a_grid, of=("operating_map",))
 def efficiency_map(result: Result, ax: Axes | None = None) -> Axes:
     """Draw the efficiency over speed and load, with lines of the least slip safety.
+
+    Where points failed, crosses mark them, and circles the known ones.
 
     Parameters
     ----------
@@ -224,7 +256,7 @@ def efficiency_map(result: Result, ax: Axes | None = None) -> Axes:
     Raises
     ------
     ModelError
-        If the map is over speed or load alone.
+        If the map has one speed or one load.
 
     Examples
     --------
@@ -232,15 +264,20 @@ def efficiency_map(result: Result, ax: Axes | None = None) -> Axes:
     >>> bd.plot.efficiency_map(found).get_ylabel()
     'Load'
     """
-    if not _over_both(result):
-        raise ModelError("an efficiency map needs speed and load. Give both to `beltdyn operating-map`.")
+    if not _over_a_grid(result):
+        raise ModelError("an efficiency map needs several speeds and loads. Give them to `beltdyn operating-map`.")
     dataset, ax = result.dataset, axes_or_new(ax)
     speed, load = _in_shown_units(dataset["speed"]), dataset["load"]
     efficiency = 100.0 * dataset["efficiency"].transpose("load", "speed")
-    filled = ax.contourf(speed, load, efficiency, levels=12, cmap="viridis")
-    page = ax.get_figure()
+    known, page = np.isfinite(efficiency.values), ax.get_figure()
     assert page is not None
-    page.colorbar(filled, ax=ax, label="Efficiency [%]")
+    if known.any():
+        low, high = spread(float(efficiency.min()), float(efficiency.max()), "%")
+        levels = 12 if known.all() else np.linspace(low, high, 13)
+        filled = ax.contourf(speed, load, efficiency, levels=levels, cmap="viridis")
+        page.colorbar(filled, ax=ax, label="Efficiency [%]")
+        if not known.all():
+            _mark_points(ax, efficiency, Normalize(low, high))
     safety = dataset["least_slip_safety"].transpose("load", "speed")
     if safety.notnull().any():
         lines = ax.contour(speed, load, safety, levels=[1.0, 1.5, 2.0, 3.0, 5.0], colors="w", linewidths=0.9)

@@ -333,7 +333,7 @@ def _draw_modes(ax: Axes, result: Result, speed: FloatArray, values: FloatArray)
         known = np.flatnonzero(np.isfinite(line))
         if not known.size:
             continue
-        ax.plot(speed, line, color=tint, linewidth=1.5, marker="." if known.size == 1 else None, zorder=2)
+        ax.plot(speed, line, color=tint, linewidth=1.5, zorder=2)
         last = known[-1]
         ax.annotate(str(mode), (speed[last], line[last]), (3, 0), textcoords="offset points", color=tint, fontsize=8)
         grows = dataset["growth_rate"].values[:, column] > 0.0

@@ -20,7 +20,7 @@ from beltdyn.model import Drive, ParameterStudy
 from beltdyn.results import Result
 from beltdyn.show import plot
 from beltdyn.show.plot.figures import FIGURES, Choice, chosen_by_default
-from beltdyn.show.plot.gaps import explain_empty, gaps
+from beltdyn.show.plot.gaps import explain_empty, gaps, mark_isolated
 from beltdyn.show.plot.style import NOTE
 from beltdyn.show.report import write_report
 from beltdyn.show.sheet import as_text, sheet
@@ -216,6 +216,15 @@ def test_results_without_a_value_at_any_point_are_named(make: Make, tmp_path: Pa
 def test_a_study_of_one_point_names_its_figures(make: Make, tmp_path: Path) -> None:
     with pytest.raises(ModelError, match=r"no figure of study is drawn by default here. Choose some of"):
         plot.save_all(make({"path": "belt.width", "values": [0.01]}), tmp_path)
+
+
+def test_points_between_gaps_are_marked(ax: Axes) -> None:
+    (line,) = ax.plot(range(7), [1.0, np.nan, 2.0, np.nan, 3.0, 4.0, np.nan])
+    (whole,) = ax.plot(range(3), [1.0, 2.0, 3.0])
+    ax.plot([], [])
+    mark_isolated(ax)
+    assert (line.get_marker(), line.get_markevery()) == ("o", [0, 2])
+    assert whole.get_marker() == "None"
 
 
 def test_results_that_no_figure_compares_are_refused(make: Make, tmp_path: Path) -> None:

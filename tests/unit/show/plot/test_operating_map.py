@@ -4,12 +4,14 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from matplotlib.collections import PathCollection
 
 from beltdyn.errors import ModelError
 from beltdyn.model import Drive
 from beltdyn.points.operating_points import OperatingPoints
 from beltdyn.results import Result, Variable
 from beltdyn.show import plot
+from beltdyn.show.plot.figures import chosen_by_default
 
 
 def made(drive: Drive, kind: str, **sizes: int) -> Result:
@@ -95,5 +97,24 @@ def test_a_traction_curve_names_the_pulley_that_slips(drive: Drive) -> None:
 def test_what_cannot_be_drawn(drive: Drive) -> None:
     with pytest.raises(ModelError, match="variable = 'wear' is not a variable of operating points"):
         plot.operating_points(made(drive, "operating_map", speed=4), "wear")
-    with pytest.raises(ModelError, match="an efficiency map needs speed and load"):
+    with pytest.raises(ModelError, match="an efficiency map needs several speeds and loads"):
         plot.efficiency_map(made(drive, "operating_map", speed=4))
+
+
+def test_a_map_with_failed_points_shows_the_known_ones(drive: Drive) -> None:
+    table = made(drive, "operating_map", speed=4, load=3)
+    failed = np.zeros((4, 3), dtype=bool)
+    failed[0, :2] = failed[2, 1] = failed[3, 2] = True
+    values = table.dataset["efficiency"].transpose("speed", "load")
+    ax = plot.efficiency_map(Result(table.dataset.assign(efficiency=values.where(~failed)), table.drive))
+    (circles,) = (one for one in ax.collections if isinstance(one, PathCollection))
+    (crosses,) = ax.lines
+    assert (len(np.asarray(circles.get_offsets())), len(np.asarray(crosses.get_xdata()))) == (8, 4)
+
+
+def test_one_speed_is_drawn_over_the_load(drive: Drive) -> None:
+    table = made(drive, "operating_map", speed=1, load=3)
+    assert "efficiency_map" not in chosen_by_default([table])
+    ax = plot.operating_points(table, "hub_load")
+    assert ax.get_xlabel() == "Load"
+    assert {len(np.asarray(line.get_xdata())) for line in ax.lines} == {3}
