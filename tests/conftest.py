@@ -23,7 +23,7 @@ from beltdyn.results import Layout, MemoryRecorder, Run, provenance
 from beltdyn.results.belt_history import mid_span_displacements
 from beltdyn.results.friction_work import FrictionWork, Touch
 from beltdyn.results.mechanics import cells
-from beltdyn.results.schema import FILTERED
+from beltdyn.results.schema import FILTERED, SPAN_TENSIONS
 from beltdyn.results.slip_safety import sliding_of_pulleys
 
 Arrays = dict[str, NDArray[Any]]
@@ -162,7 +162,8 @@ def make_chunk(drive: Drive, layout: Layout) -> Callable[[FloatArray], Arrays]:
     def make(time: FloatArray) -> Arrays:
         outputs = _outputs(drive, layout, time)
         nothing = {name: np.zeros(layout.shape(variable, len(time))) for name, variable in layout.recorded.items()}
-        return nothing | outputs | _summed_up(drive, layout, outputs)
+        spans = dict.fromkeys(SPAN_TENSIONS, outputs["span_tension"])
+        return nothing | spans | outputs | _summed_up(drive, layout, outputs)
 
     return make
 
@@ -174,6 +175,7 @@ def make_run(
     def make(outputs: int = 101, status: Any = "completed", **changed: NDArray[Any]) -> Run:
         recorder = MemoryRecorder(layout, attributes)
         chunk = make_chunk(np.linspace(0.0, 1.0, outputs)) | changed
+        chunk |= dict.fromkeys(SPAN_TENSIONS, chunk["span_tension"]) | changed
         recorder.append(chunk | _summed_up(drive, layout, chunk) | changed)
         recorder.close(status, STATISTICS)
         return Run(recorder.dataset(), drive)

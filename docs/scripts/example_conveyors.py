@@ -1,14 +1,14 @@
 """What the page of belts that carry says in numbers, beside a hand calculation; see `example_numbers.py`."""
 
 from collections.abc import Iterator
-from math import hypot, pi, tanh
+from math import expm1, hypot, pi
 
 from example_numbers import Number
 
 from beltdyn import Run
 from beltdyn.machines import Guide, Idlers
 from beltdyn.results import summarize
-from beltdyn.results.mechanics import tensions_at_arcs
+from beltdyn.results.mechanics import SpanTension
 
 GRAVITY = 9.81
 
@@ -35,10 +35,11 @@ def conveyor_1km(run: Run) -> Iterator[Number]:
     yield Number("largest pull of the start, kN", 1e-3 * (main + raising + start), 1e-3 * float(pull[top].max()), 8.0)
     returning = friction * slope * GRAVITY * (belt.mass_per_length * length / slope + lower.rotating_mass)
     slack = 0.5 * weight.preload + lift * GRAVITY * belt.mass_per_length - returning
-    before, after = tensions_at_arcs(lambda name: dataset[name].values[end].mean(axis=0), run.prepared)
+    before, after = SpanTension.of(lambda name: dataset[name].values[end].mean(axis=0)).at_arcs(run.prepared)
     yield Number("slack tension at the head drum, kN", 1e-3 * slack, 1e-3 * float(after[0]), 0.5)
     yield Number("tight tension, kN", 1e-3 * (slack + main + raising), 1e-3 * float(before[0]), 0.5)
-    safety = (2.0 * slack + main + raising) * tanh(0.5 * pi * float(drive.frictions[0])) / (main + raising)
+    grip = expm1(pi * float(drive.frictions[0]))  # the weight holds the tension at the tail
+    safety = (slack + returning) * grip / (main + raising + returning * grip)
     yield Number("slip safety of the head drum", safety, summarize(run).pulleys[0].slip_safety, 0.02)
 
 
@@ -57,10 +58,12 @@ def package_conveyor(run: Run) -> Iterator[Number]:
     radius = float(drive.radii[0])
     torque = float(run.dataset.shaft_torque.values[run.dataset.time.values > 5.0, 0].mean())
     yield Number("pull, N", pull, torque / radius, 0.02 * pull)
-    before, after = tensions_at_arcs(lambda name: run.dataset[name].values[-1], run.prepared)
+    tension = SpanTension.of(lambda name: run.dataset[name].values[-1])
+    before, after = tension.at_arcs(run.prepared)
     between = float(before[0]) - pull
     yield Number("slack tension of the drum, N", between, float(after[0]), 0.02 * pull)
     creep = 100.0 * (float(before[0]) - float(before[1])) / belt.axial_stiffness
     yield Number("creep of the tail drum, %", creep, 100.0 * summary.pulleys[1].slip, 0.02)
-    safety = (float(before[0]) + between) * tanh(0.5 * pi * float(drive.frictions[0])) / pull
+    mean, grip = float(tension.mean.mean()), expm1(pi * float(drive.frictions[0]))  # the screws hold the mean
+    safety = mean * grip / (pull - (between - mean) * grip)
     yield Number("slip safety of the drum", safety, summary.pulleys[0].slip_safety, 0.05 * safety)

@@ -128,7 +128,7 @@ def in_running(run: Run) -> Findings:
     summary = summarize(run)
     names = tuple(one.name for one in summary.pulleys)
     loads = [one.hub_load for one in summary.pulleys]
-    safeties = [one.slip_safety if one.slip_safety < _DECADES else math.nan for one in summary.pulleys]
+    safeties = [one.least_safety if one.least_safety < _DECADES else math.nan for one in summary.pulleys]
     balance, spans = summary.balance, summary.spans
     figures = []
     if balance.power_in > 0.0:
@@ -152,7 +152,9 @@ def in_running(run: Run) -> Findings:
                 "Spans",
                 tuple(one.name for one in spans),
                 (
-                    Column("tension", "N", _plain(one.tension for one in spans)),
+                    Column("mean tension", "N", _plain(one.tension for one in spans)),
+                    Column("least tension", "N", _plain(one.lowest for one in spans)),
+                    Column("largest tension", "N", _plain(one.highest for one in spans)),
                     Column("belt speed", "m/s", _plain(one.belt_speed for one in spans)),
                 ),
             ),

@@ -74,6 +74,24 @@ def fill_bernstein_rates(xi: float, rates: FloatArray) -> None:
 
 
 @kernel(inline=True)
+def second_rate(control: FloatArray, xi: float, scratch: FloatArray) -> tuple[float, float]:
+    """Second derivative of a curve with respect to xi, m: p (p - 1) times the second differences of control points.
+
+    `control`: control points, m, shape (p + 1, 2); `xi`: place on the curve, 0 to 1; `scratch`: overwritten; its
+    length says the degree p, shape (p + 1,).
+    """
+    degree, x, y = scratch.size - 1, 0.0, 0.0
+    if degree < 2:
+        return x, y
+    _fill_polynomials(xi, degree - 2, scratch)
+    for k in range(degree - 1):
+        x += scratch[k] * (control[k + 2, 0] - 2.0 * control[k + 1, 0] + control[k, 0])
+        y += scratch[k] * (control[k + 2, 1] - 2.0 * control[k + 1, 1] + control[k, 1])
+    factor = degree * (degree - 1.0)
+    return factor * x, factor * y
+
+
+@kernel(inline=True)
 def _fill_polynomials(xi: float, degree: int, values: FloatArray) -> None:
     """Overwrite the first values by the Bernstein polynomials of a degree."""
     complement, power = 1.0 - xi, 1.0

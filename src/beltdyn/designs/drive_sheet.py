@@ -29,7 +29,7 @@ from beltdyn.points.quasi_steady import QuasiSteady, Running, Torques, torques_b
 from beltdyn.points.tensioner_sheet import lengths_of
 from beltdyn.results import Result, Variable, build_result
 from beltdyn.results.means import rate, utilization
-from beltdyn.results.schema import AXIS_NAMES, COORDINATES
+from beltdyn.results.schema import AXIS_NAMES, COORDINATES, RECORDED, SPAN_TENSIONS
 from beltdyn.solvers.run_progress import Progress, Report
 from beltdyn.state.installation import looked_at
 from beltdyn.state.staying import bring_to_stand
@@ -291,17 +291,33 @@ class _DriveSheet:
         states = self._steady.at(np.tile(speeds, len(cases)), np.tile(loads, (len(cases), 1)) * light[:, None], rate_)
         full = Running(*(values[:count] for values in states))
         tension = states.tension.reshape(len(cases), count, -1)
+        largest = states.ends.max(axis=2).reshape(len(cases), count, -1)
         hub = np.linalg.norm(states.hub_force, axis=2).reshape(len(cases), count, -1)
         factors = self._options.factors
-        safety = self._steady.slip_safety(states, factors).reshape(factors.size, len(cases), count, -1).swapaxes(0, 1)
+        by_all, by_own = (
+            values.reshape(factors.size, len(cases), count, -1).swapaxes(0, 1)
+            for values in self._steady.slip_safety(states, factors)
+        )
+        safety = np.fmin(by_all, by_own)
         nominal = int(np.argmin(np.abs(factors - 1.0)))
         swing = [self._amplitudes(full, row) for row in range(count)]
         tension_swing, hub_swing, way = (np.array(one) for one in zip(*swing, strict=True))
         every = {
             "belt_speed": (Variable((dim,), "m/s", "Belt speed"), np.abs(speeds)),
-            "span_tension": (Variable((dim, _SPAN), "N", "Span tension"), full.tension),
+            **{
+                name: (Variable((dim, _SPAN), "N", RECORDED[name].long_name), values)
+                for name, values in zip(
+                    SPAN_TENSIONS,
+                    (full.tension, full.ends.max(axis=2), full.ends.min(axis=2), *np.moveaxis(full.ends, 2, 0)),
+                    strict=True,
+                )
+            },
             "hub_load": (Variable((dim, _PULLEY), "N", "Hub load"), hub[0]),
-            "slip_safety": (Variable((dim, _PULLEY), "1", "Slip safety"), safety[0, nominal]),
+            "slip_safety": (Variable((dim, _PULLEY), "1", "Slip safety"), by_all[0, nominal]),
+            "own_load_safety": (
+                Variable((dim, _PULLEY), "1", "Slip safety by the pulley's own load"),
+                by_own[0, nominal],
+            ),
             "tension_of_case": (Variable((dim, "case", _SPAN), "N", "Span tension"), tension.transpose(1, 0, 2)),
             "slip_safety_of_case": (
                 Variable((dim, "case", "friction", _PULLEY), "1", "Slip safety"),
@@ -315,7 +331,7 @@ class _DriveSheet:
             "hub_load_amplitude": (Variable((dim, _PULLEY), "N", "Amplitude of hub load, all orders"), hub_swing),
             "peak_tension": (
                 Variable((dim, _SPAN), "N", "Peak tension"),
-                np.fmax.reduce(tension, axis=0) + tension_swing,
+                np.fmax.reduce(largest, axis=0) + tension_swing,
             ),
             "peak_hub_load": (Variable((dim, _PULLEY), "N", "Peak hub load"), np.fmax.reduce(hub, axis=0) + hub_swing),
         }
@@ -561,7 +577,7 @@ class _DriveSheet:
         lost = [rows[row] for row, one in enumerate(self.variables["span_tension"][1]) if not np.isfinite(one).all()]
         if lost:
             yield f"the belt holds no tension at the operating points {', '.join(lost)}. Raise the tension at rest."
-        slack = self.variables["span_tension"][1] - self.variables["tension_amplitude"][1]
+        slack = self.variables["least_span_tension"][1] - self.variables["tension_amplitude"][1]
         if np.isfinite(slack).any() and np.nanmin(slack) < 0.0:
             row, span = np.unravel_index(int(np.nanargmin(slack)), slack.shape)
             yield (

@@ -384,7 +384,7 @@ class Resting(FoundState):
         whole = {
             "belt_length": rest.prepared.belt_length,
             "tension": rest.tension,
-            "largest_tension": float(there.span_tensions.max()),
+            "largest_tension": float(there.end_tensions.max()),
         }
         return named | whole
 

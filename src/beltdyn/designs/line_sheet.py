@@ -21,8 +21,8 @@ from beltdyn.model.carrying import stretch_of, upper_side
 from beltdyn.points.duty import Column, at_row, durations_of
 from beltdyn.results import Run, Variable
 from beltdyn.results.derived import nips
-from beltdyn.results.mechanics import tensions_at_arcs
-from beltdyn.results.schema import COORDINATES
+from beltdyn.results.mechanics import SpanTension
+from beltdyn.results.schema import COORDINATES, RECORDED
 from beltdyn.results.summary import Means, means_of
 from beltdyn.state.staying import bring_to_stand
 from beltdyn.state.steady import steady_state
@@ -151,7 +151,8 @@ class _Row:
         self.drive: Drive = run.drive
         self.at = run.dataset.isel(time=-1, field_time=-1)
         self.means: Means = means_of(run)
-        self.before, self.after = tensions_at_arcs(lambda name: self.at[name].values, self.prepared)
+        self.tension = SpanTension.of(lambda name: np.asarray(self.at[name].values))
+        self.before, self.after = self.tension.at_arcs(self.prepared)
         speeds = self.at["belt_speed"].values
         self.sense = 1.0 if float(speeds.mean()) >= 0.0 else -1.0
 
@@ -185,6 +186,9 @@ class _Row:
             "power": ("W", "Power into the drive", "power"),
             "pulley_slip": ("1", "Slip", "slip"),
             "slip_safety": ("1", "Slip safety", "slip_safety"),
+            "own_load_safety": ("1", "Slip safety by the pulley's own load", "own_load_safety"),
+            "tension_ratio": ("1", "Tension ratio", "tension_ratio"),
+            "allowed_tension_ratio": ("1", "Tension ratio that friction allows", "allowed_tension_ratio"),
             "wrap_angle": ("rad", "Wrap angle", "wrap_angle"),
             "hub_load": ("N", "Hub load", "hub_load"),
         }
@@ -216,12 +220,12 @@ class _Row:
         """Tensions at the ends of spans in running direction, stretch and, of what carries, resistances."""
         speed, law = np.abs(self.at["belt_speed"].values), self.prepared.belt.stretch_parameters
         first, last = self.span_ends
-        mean = self.at["span_tension"].values
+        mean = self.tension.mean
         yield "span_tension", (Variable((_SPAN,), "N", "Span tension"), mean)
         yield "tension_at_start", (Variable((_SPAN,), "N", "Tension at the start of the span"), first)
         yield "tension_at_end", (Variable((_SPAN,), "N", "Tension at the end of the span"), last)
-        yield "largest_tension", (Variable((_SPAN,), "N", "Largest tension"), np.maximum(first, last))
-        yield "least_tension", (Variable((_SPAN,), "N", "Least tension"), np.minimum(first, last))
+        for name in ("largest_span_tension", "least_span_tension"):
+            yield name, (Variable((_SPAN,), "N", RECORDED[name].long_name), self.at[name].values)
         yield "belt_speed", (Variable((_SPAN,), "m/s", "Belt speed"), speed)
         yield "span_strain", (Variable((_SPAN,), "1", "Strain"), law.stretch(mean) - 1.0)
         # stretch and speed of gripped belt go together, so draws against the first span are those of strains
@@ -245,9 +249,7 @@ class _Row:
     @cached_property
     def span_ends(self) -> tuple[FloatArray, FloatArray]:
         """Tensions at start and end of each span in running direction, shape (spans,), N."""
-        starts, ends = self.at["span_tension"].values.copy(), self.at["span_tension"].values.copy()
-        path = self.drive.path
-        starts[path.leaving[path.on]], ends[path.reaching[path.on]] = self.after[path.on], self.before[path.on]
+        starts, ends = self.tension.start, self.tension.end
         return (starts, ends) if self.sense > 0.0 else (ends, starts)
 
     def _of_starts(self) -> Iterator[tuple[str, tuple[Variable, Any]]]:
@@ -334,7 +336,7 @@ class _Row:
     def sag(self) -> tuple[FloatArray, FloatArray]:
         """Least tension of each span for the largest sag between idlers, and the sag that is found."""
         drive, path, goods = self.drive, self.prepared.installation.path, self.goods_mass
-        least = np.minimum(*self.span_ends)
+        least = self.at["least_span_tension"].values
         needed = np.full(len(drive.spans), np.nan)
         for support in drive.supports:
             place = stretch_of(support, drive.spans, path)

@@ -33,7 +33,9 @@ class Installation:
     tension: float
     """Mean tension of the spans with the penetration into the pulleys, N."""
     span_tensions: FloatArray
-    """Tension of each of s spans: the same in all, but for weight and the mesh, N, shape (s,)."""
+    """Mean tension of each of s spans: the same in all, but for weight and the mesh, N, shape (s,)."""
+    end_tensions: FloatArray
+    """Tension at start and end of each span, N, shape (s, 2)."""
     penetrations: FloatArray
     """Penetration into each pulley, in the middle of the arc, m, shape (n,)."""
     tensioner_positions: FloatArray

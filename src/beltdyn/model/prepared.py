@@ -216,10 +216,16 @@ class Prepared:
         path = estimate.path
         turned = path.span_directions[path.leaving] - path.span_directions[path.reaching]
         tensions = np.full(path.spans, estimate.tension)
-        return self.installed(tensions, estimate.penetrations.copy(), estimate.tension * turned, positions.copy())
+        ends = np.repeat(tensions[:, None], 2, axis=1)
+        return self.installed(tensions, estimate.penetrations.copy(), estimate.tension * turned, positions.copy(), ends)
 
     def installed(
-        self, span_tensions: FloatArray, penetrations: FloatArray, hub_loads: FloatArray, positions: FloatArray
+        self,
+        span_tensions: FloatArray,
+        penetrations: FloatArray,
+        hub_loads: FloatArray,
+        positions: FloatArray,
+        end_tensions: FloatArray,
     ) -> Installation:
         """Describe the belt at rest in some state: arrays as those of an `Installation`."""
         belt, path = self.belt, moved(self.path, self.carriers, positions)
@@ -229,6 +235,7 @@ class Prepared:
             laid_tension=float(belt.stretch_parameters.tension(laid)),
             tension=float(span_tensions.mean()),
             span_tensions=span_tensions,
+            end_tensions=end_tensions,
             penetrations=penetrations,
             tensioner_positions=positions,
             path=path,

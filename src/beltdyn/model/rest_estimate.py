@@ -73,7 +73,7 @@ def estimate_at_rest(prepared: Prepared) -> tuple[Prepared, Installation]:
     if prepared.installed_tension is not None:
         prepared = prepared.tightened(_distance(prepared, belt))
     depths = belt.tension * belt.stretch / (prepared.radii * prepared.contact_stiffness)
-    return prepared, prepared.installed(belt.span_tensions, depths, belt.hub_loads, belt.positions)
+    return prepared, prepared.installed(belt.span_tensions, depths, belt.hub_loads, belt.positions, belt.end_tensions)
 
 
 class Tightening(NamedTuple):
@@ -181,6 +181,13 @@ class _Belt:
         if self.spans.ends is None or not pulled:
             return np.asarray(self.tension + lifted - lifted.mean())
         return np.asarray(self.tension + lifted + self.spans.ends[pulled[0]] @ self._weight)
+
+    @property
+    def end_tensions(self) -> FloatArray:
+        """At start and end of the spans, N, shape (s, 2)."""
+        points, (before, behind) = self.spans.span_points, self._goods
+        below = (points.mean(axis=1, keepdims=True) - points) @ self._weight
+        return np.asarray(self.span_tensions[:, None] + below + np.stack([-before, behind], axis=1))
 
     @property
     def hub_loads(self) -> FloatArray:

@@ -14,8 +14,8 @@ from beltdyn.results.belt_history import mid_span_displacements
 from beltdyn.results.checks.creep import SWEEP_REMEDY
 from beltdyn.results.friction_work import FrictionWork, MaterialWork, Touch
 from beltdyn.results.incidents import JUMPS
-from beltdyn.results.mechanics import across, wraps_of_contact
-from beltdyn.results.schema import FILTERED
+from beltdyn.results.mechanics import SpanTension, wraps_of_contact
+from beltdyn.results.schema import FILTERED, SPAN_TENSIONS
 from beltdyn.results.slip_safety import sliding_of_pulleys
 from beltdyn.solvers.flutter import Flutter, FlutterWatch
 from beltdyn.solvers.trajectory import Chunk
@@ -80,7 +80,7 @@ WORKS = ("friction_work_on_arc", "friction_work_on_belt")
 """Variables that are seen as integrals from the start on, and recorded as what they grow by."""
 
 
-_VALUES_OF_SPANS = ("span_tension", "belt_speed", "mid_span_displacement")
+_VALUES_OF_SPANS = (*SPAN_TENSIONS, "belt_speed", "mid_span_displacement")
 _OF_SHOWN = frozenset(name for name, per in OBSERVED.items() if per.shown)
 """Observations that are there for states that are shown alone."""
 
@@ -215,7 +215,8 @@ class SlipThrough:
 
     def _message(self, number: int, time: float, speed: float, outputs: Arrays, row: int) -> str:
         name, swept = (self._prepared.pulleys[one].name for one in (number, self._swept))
-        before, after = (float(side[number]) for side in across(outputs["span_tension"][row], self._prepared))
+        tension = SpanTension.of(lambda name: outputs[name][row])
+        before, after = (float(side[number]) for side in tension.at_arcs(self._prepared))
         sliding = abs(float(outputs["sliding_speed"][row, number]))
         share = sliding / (abs(speed) * self._radius)
         return (

@@ -25,7 +25,7 @@ from beltdyn.results.damage import VARIABLES as OF_FATIGUE
 from beltdyn.results.damage import fatigue_by_name, known_variables
 from beltdyn.results.dataset import is_result
 from beltdyn.results.recorder import status_after
-from beltdyn.results.schema import AXIS_NAMES, COORDINATES, runs_steadily
+from beltdyn.results.schema import AXIS_NAMES, COORDINATES, RECORDED, SPAN_TENSIONS, runs_steadily
 from beltdyn.results.summary import Means, means_of
 from beltdyn.results.tension_balance import causes_of
 from beltdyn.results.tooth_loads import ToothLoads, tooth_loads
@@ -43,6 +43,7 @@ VARIABLES = {
     "power_out": Variable((), "W", "Power output"),
     "efficiency": Variable((), "1", "Efficiency"),
     "largest_tension": Variable((), "N", "Largest tension"),
+    "least_tension": Variable((), "N", "Least tension"),
     "least_slip_safety": Variable((), "1", "Least slip safety"),
     "least_safe_pulley": Variable((), "1", "Pulley with the least slip safety", "str"),
     "pulley_speed": Variable(PULLEY, "rad/s", "Pulley speed"),
@@ -54,6 +55,9 @@ VARIABLES = {
     "regularization": Variable(PULLEY, "1", "Slip due to the friction law slope"),
     "sliding": Variable(PULLEY, "1", "Gross slip"),
     "slip_safety": Variable(PULLEY, "1", "Slip safety: factor on all loads at gross slip"),
+    "own_load_safety": Variable(PULLEY, "1", "Slip safety: factor on the pulley's own load at gross slip"),
+    "tension_ratio": Variable(PULLEY, "1", "Tension ratio"),
+    "allowed_tension_ratio": Variable(PULLEY, "1", "Tension ratio that friction allows"),
     "sliding_arc": Variable(PULLEY, "rad", "Sliding arc"),
     "wrap_angle": Variable(PULLEY, "rad", "Wrap angle"),
     "hub_load": Variable(PULLEY, "N", "Hub load"),
@@ -63,7 +67,7 @@ VARIABLES = {
     "teeth_in_mesh": Variable(PULLEY, "1", "Teeth in mesh"),
     "tooth_load": Variable(PULLEY, "N", "Largest tooth load"),
     "jump_margin": Variable(PULLEY, "1", "Margin to a jump: at 1 teeth lift"),
-    "span_tension": Variable(_SPAN, "N", "Span tension"),
+    **{name: Variable(_SPAN, "N", RECORDED[name].long_name) for name in SPAN_TENSIONS},
     "tensioner_position": Variable(_TENSIONER, "m or rad", "Tensioner position"),
     "tensioner_position_after_tensioning": Variable(
         _TENSIONER, "m or rad", "Position, held by dry friction after tensioning"
@@ -90,6 +94,9 @@ _OF_PULLEYS = {
     "regularization": "regularization",
     "sliding": "sliding",
     "slip_safety": "slip_safety",
+    "own_load_safety": "own_load_safety",
+    "tension_ratio": "tension_ratio",
+    "allowed_tension_ratio": "allowed_tension_ratio",
     "sliding_arc": "sliding_arc",
     "wrap_angle": "wrap_angle",
     "hub_load": "hub_load",
@@ -97,6 +104,9 @@ _OF_PULLEYS = {
     "utilization": "utilization",
 }
 """Variable -> attribute of a `PulleySummary`."""
+
+_OF_SPANS = ("tension", "highest", "lowest", "at_start", "at_end")
+"""Attributes of a `SpanSummary` in the order of `SPAN_TENSIONS`."""
 
 _OF_TEETH = {"teeth_in_mesh": "in_mesh", "tooth_load": "largest", "jump_margin": "jump_margin"}
 """Variable -> attribute of `ToothLoads`."""
@@ -151,7 +161,7 @@ def computed_with(name: str) -> Collection[str]:
 
 def values_by_name(run: Run, means: Means, names: Collection[str]) -> dict[str, Any]:
     """The values of an operating point by the names of `VARIABLES`; of fatigue, teeth and mesh where some need them."""
-    balance, dataset, tensions = means.balance, run.dataset, [one.tension for one in means.spans]
+    balance, dataset = means.balance, run.dataset
     known = variables_of(run.drive)
     values: dict[str, Any] = {
         name: [getattr(one, attribute) for one in means.pulleys]
@@ -160,9 +170,13 @@ def values_by_name(run: Run, means: Means, names: Collection[str]) -> dict[str, 
     }
     values |= {
         "hub_force": dataset["hub_force"].values[-1],
-        "span_tension": tensions,
+        **{
+            name: [getattr(one, attribute) for one in means.spans]
+            for name, attribute in zip(SPAN_TENSIONS, _OF_SPANS, strict=True)
+        },
         "belt_speed": np.mean([abs(one.belt_speed) for one in means.spans]),
-        "largest_tension": max(tensions),
+        "largest_tension": max(one.highest for one in means.spans),
+        "least_tension": min(one.lowest for one in means.spans),
         "power_in": balance.power_in,
         "power_out": balance.power_out,
         "efficiency": balance.efficiency,
@@ -170,7 +184,7 @@ def values_by_name(run: Run, means: Means, names: Collection[str]) -> dict[str, 
     }
     if run.drive.belt.teeth and not _OF_TEETH.keys().isdisjoint(names):
         values |= _tooth_values(tooth_loads(run), [one.name for one in means.pulleys])
-    safeties = np.array(values["slip_safety"])
+    safeties = np.array([one.least_safety for one in means.pulleys])
     if np.any(np.isfinite(safeties)):
         least = int(np.nanargmin(safeties))
         values |= {"least_slip_safety": safeties[least], "least_safe_pulley": means.pulleys[least].name}

@@ -12,8 +12,9 @@ from beltdyn.model.hysteresis import compression_losses
 from beltdyn.model.nip import refuse_nips
 from beltdyn.model.path import span_directions
 from beltdyn.points.changed_drive import driver_of
-from beltdyn.results.slip_safety import slip_safety_of_states
-from beltdyn.results.tension_balance import TensionBalance
+from beltdyn.results.mechanics import SpanTension
+from beltdyn.results.slip_safety import SlipSafety, slip_safety_of_states
+from beltdyn.results.tension_balance import TensionBalance, weight_of_meter
 from beltdyn.theory.nip import bending_loss
 
 Torques = Callable[[float], FloatArray]
@@ -28,7 +29,9 @@ class Running(NamedTuple):
     torque: FloatArray
     """On the shafts, N m, that of the driver from the balance, shape (n, P)."""
     tension: FloatArray
-    """Of spans, N, shape (n, spans); NaN where there is no balance."""
+    """Mean of spans, N, shape (n, spans); NaN where there is no balance."""
+    ends: FloatArray
+    """Tension at start and end of spans, N, shape (n, spans, 2)."""
     positions: FloatArray
     """Of tensioners, m or rad, shape (n, K)."""
     centers: FloatArray
@@ -48,7 +51,8 @@ class QuasiSteady:
         self.prepared, self.rest, self.drive = prepared, rest, prepared.drive
         self.driver = driver_of(self.drive)
         still = np.zeros((1, prepared.path.spans))
-        self.balance = TensionBalance(prepared, rest.span_tensions[None], still, rest.path.centers[None])
+        tension = SpanTension(*rest.end_tensions.T[:, None], rest.span_tensions[None])
+        self.balance = TensionBalance(prepared, tension, still, rest.path.centers[None])
         belt, self._radii = prepared.belt, np.asarray(prepared.path.radii)
         self._drag = compression_losses(prepared) + bending_loss(
             belt.bending_stiffness, belt.bending_loss_factor, np.abs(self._radii)
@@ -97,21 +101,29 @@ class QuasiSteady:
         whole[:, self.driver] = (
             driven + self.inertia[self.driver] * running[:, 0] * acceleration / self._radii[self.driver]
         )
-        pressing = (found.tension - self.prepared.belt.mass_per_length * speed[:, None] ** 2)[:, :, None]
-        along = pressing * span_directions(found.centers, self._radii)
-        return Running(speed, whole, found.tension, found.positions, found.centers, along - np.roll(along, 1, axis=1))
+        ends = np.stack(found.tension[:2], axis=2)
+        lifted = self.prepared.belt.mass_per_length * speed[:, None, None] ** 2
+        pulls = (ends - lifted)[..., None] * span_directions(found.centers, self._radii)[:, :, None]
+        weight = weight_of_meter(self.prepared, found.tension)
+        arcs = (found.wrap * np.abs(self._radii))[:, :, None] * weight[:, None]
+        hub = pulls[:, :, 0] - np.roll(pulls[:, :, 1], 1, axis=1) + arcs
+        return Running(speed, whole, found.tension.mean, ends, found.positions, found.centers, hub)
 
-    def slip_safety(self, states: Running, factors: FloatArray) -> FloatArray:
+    def slip_safety(self, states: Running, factors: FloatArray) -> SlipSafety:
         """Slip safety of each pulley with factors on all coefficients of friction, shape (factors, n, P)."""
-        shape = (factors.size, *states.torque.shape)
-        found, known = np.full(shape, np.nan), np.isfinite(states.tension).all(axis=1)
-        tension, centers = (
-            np.tile(one[known], (factors.size, *[1] * (one.ndim - 1))) for one in (states.tension, states.centers)
-        )
-        speed = np.tile(np.repeat(states.speed[known, None], tension.shape[1], axis=1), (factors.size, 1))
+        shape, known = (factors.size, *states.torque.shape), np.isfinite(states.tension).all(axis=1)
+
+        def tiled(values: FloatArray) -> FloatArray:
+            return np.tile(values[known], (factors.size, *[1] * (values.ndim - 1)))
+
+        tension = SpanTension(tiled(states.ends[..., 0]), tiled(states.ends[..., 1]), tiled(states.tension))
+        speed = tiled(np.repeat(states.speed[:, None], states.tension.shape[1], axis=1))
         frictions = np.repeat(factors[:, None] * self.prepared.frictions, known.sum(), axis=0)
-        safety = slip_safety_of_states(tension, speed, centers, self.prepared, frictions)
-        found[:, known] = safety.reshape(factors.size, -1, shape[2])
+        torque = tiled(states.torque)
+        safety = slip_safety_of_states(tension, speed, tiled(states.centers), self.prepared, torque, frictions)
+        found = SlipSafety(np.full(shape, np.nan), np.full(shape, np.nan))
+        for place, values in zip(found, safety, strict=True):
+            place[:, known] = values.reshape(factors.size, -1, shape[2])
         return found
 
 

@@ -10,7 +10,7 @@ from beltdyn.arrays import FloatArray, IntArray
 from beltdyn.model import Drive, Prepared
 from beltdyn.model.rating import CordFatigue
 from beltdyn.results.belt_history import BeltHistory, belt_history, turn_history
-from beltdyn.results.mechanics import across
+from beltdyn.results.mechanics import SpanTension
 from beltdyn.results.run import Run
 from beltdyn.results.schema import Variable, runs_steadily
 
@@ -131,7 +131,7 @@ def hourly_damage(run: Run) -> Damage:
     speed = abs(float(np.squeeze(run.dataset.attrs["belt_parameter"])))
     turns = HOUR * speed / run.prepared.belt_length
     cord, force = _cord_damage(run.drive, turn_history(run), rainflow_of_turn)
-    rib = _rib_passages(run.prepared, run.dataset["span_tension"].values[-1])
+    rib = _rib_passages(run.prepared, SpanTension.of(lambda name: run.dataset[name].values[-1]))
     return Damage(cord, rib, 1.0, force).times(turns)
 
 
@@ -143,7 +143,7 @@ def damage_of_run(run: Run) -> Damage:
     cord, force = _cord_damage(run.drive, history, rainflow)
     time, dataset = run.dataset["time"].values, run.dataset
     rate = np.abs(dataset["belt_speed"].values.mean(axis=1)) / run.prepared.path.length
-    passages = _rib_passages(run.prepared, dataset["span_tension"].values)
+    passages = _rib_passages(run.prepared, SpanTension.of(lambda name: dataset[name].values))
     turns = float(np.trapezoid(rate, time))
     return Damage(cord, np.trapezoid(passages * rate[:, None], time, axis=0), turns, force)
 
@@ -219,11 +219,11 @@ def miner(line: CordFatigue, cycles: Cycles, pulley: IntArray, pulleys: int) -> 
     return np.asarray(damage, dtype=float), float(force.max(initial=0.0))
 
 
-def _rib_passages(prepared: Prepared, span_tension: FloatArray) -> FloatArray:
+def _rib_passages(prepared: Prepared, tension: SpanTension) -> FloatArray:
     """Reference passages for which one passage over each pulley counts, shape (..., pulleys)."""
     law = prepared.belt.rib_fatigue
     if law is None:
-        return np.full((*span_tension.shape[:-1], len(prepared.pulleys)), np.nan)
-    tension = np.maximum(*across(span_tension, prepared))
+        return np.full((*tension.mean.shape[:-1], len(prepared.pulleys)), np.nan)
+    largest = np.maximum(*tension.at_arcs(prepared))
     diameters, sides = [2.0 * one.radius for one in prepared.pulleys], [one.side for one in prepared.pulleys]
-    return law.passages_at(tension, diameters, prepared.belt.temperature, sides)
+    return law.passages_at(largest, diameters, prepared.belt.temperature, sides)

@@ -12,7 +12,17 @@ from beltdyn.analyses import RUN
 from beltdyn.errors import ModelError
 from beltdyn.results.atomic import unreadable
 from beltdyn.results.layout import Layout
-from beltdyn.results.schema import AXIS_NAMES, COORDINATES, DERIVED, FORMAT, OPTIONAL, TIMES, VARIABLES, Variable
+from beltdyn.results.schema import (
+    AXIS_NAMES,
+    COORDINATES,
+    DERIVED,
+    FORMAT,
+    OPTIONAL,
+    SUBSTITUTES,
+    TIMES,
+    VARIABLES,
+    Variable,
+)
 from beltdyn.results.staged_file import DamageError, is_marked, verify
 
 if TYPE_CHECKING:
@@ -152,10 +162,13 @@ def _complete(dataset: "xr.Dataset") -> "xr.Dataset":
 
 
 def _with_parts(dataset: "xr.Dataset") -> "xr.Dataset":
-    """Add the variables that are parts of others."""
+    """Add the variables that are parts of others, and those that files of earlier formats lack."""
     places = dataset["nodal_coordinates"].isel(coordinate=slice(len(AXIS_NAMES))).drop_vars("coordinate")
     places = places.rename(coordinate="axis").assign_coords(axis=dataset["axis"])
-    return dataset.assign(node_position=places.assign_attrs(VARIABLES["node_position"].attributes))
+    parts = {"node_position": places} | {
+        name: dataset[other] for name, other in SUBSTITUTES.items() if name not in dataset and other in dataset
+    }
+    return dataset.assign({name: one.assign_attrs(VARIABLES[name].attributes) for name, one in parts.items()})
 
 
 def is_result(path: Path) -> bool:

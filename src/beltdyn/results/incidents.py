@@ -149,8 +149,8 @@ def slides_through(recorded: Recorded, prepared: Prepared) -> BoolArray:
 
 
 def is_slack(recorded: Recorded) -> BoolArray:
-    """Whether the tension of each span is zero or below, shape (outputs, spans)."""
-    tension = np.asarray(recorded["span_tension"])
+    """Whether the tension of each span is zero or below anywhere along it, shape (outputs, spans)."""
+    tension = np.asarray(recorded["least_span_tension"])
     return np.asarray(np.isfinite(tension) & (tension <= 0.0))
 
 

@@ -13,7 +13,15 @@ from beltdyn.model import Limits
 from beltdyn.results.means import pulley_means
 from beltdyn.results.result import Result
 from beltdyn.results.run import Run
-from beltdyn.results.schema import in_words, names, runs_steadily
+from beltdyn.results.schema import (
+    SLIP_SAFETIES,
+    SUBSTITUTES,
+    in_words,
+    least_safeties,
+    names,
+    runs_steadily,
+    variable_of,
+)
 from beltdyn.results.tooth_loads import loads_over_time
 
 if TYPE_CHECKING:
@@ -87,7 +95,7 @@ def _of_run(run: Result) -> Iterator[Found]:
     with run.recorded() as recorded:
         means = pulley_means(recorded, run.prepared)
         hub_load = np.linalg.norm(np.asarray(recorded["hub_force"]), axis=2)
-        tension = np.asarray(recorded["span_tension"])
+        largest, least = (np.asarray(recorded[name]) for name in ("largest_span_tension", "least_span_tension"))
         pulleys, spans = names(recorded, "pulley"), names(recorded, "span")
         lasts = runs_steadily(recorded) or len(recorded["time"]) == 1
         loads = list(loads_over_time(recorded, run.prepared))
@@ -96,9 +104,9 @@ def _of_run(run: Result) -> Iterator[Found]:
     slips = np.array([[one.slip for one in means]])
     yield _worst("largest_slip", _of_turning(run, slips), "%", [over], pulleys)
     yield _worst("largest_hub_load", hub_load, "N", time, pulleys)
-    yield _worst("largest_tension", tension, "N", time, spans)
-    yield _worst("least_tension", tension, "N", time, spans)
-    yield _worst("least_slip_safety", np.array([[one.slip_safety for one in means]]), "1", [over], pulleys)
+    yield _worst("largest_tension", largest, "N", time, spans)
+    yield _worst("least_tension", least, "N", time, spans)
+    yield _worst("least_slip_safety", np.array([[one.least_safety for one in means]]), "1", [over], pulleys)
     for key, field in (("largest_tooth_load", "largest"), ("least_jump_margin", "jump_margin")) if loads else ():
         when = [""] * len(loads) if lasts else [f"at {instant:.4g} s" for instant, _ in loads]
         by_name = [{one.name: getattr(one, field) for one in teeth} for _, teeth in loads]
@@ -116,8 +124,8 @@ def _of_turning(result: Result, slips: FloatArray) -> FloatArray:
 _OF_TABLES = {
     "largest_slip": ("pulley_slip", "pulley", "%"),
     "largest_hub_load": ("hub_load", "pulley", "N"),
-    "largest_tension": ("span_tension", "span", "N"),
-    "least_tension": ("span_tension", "span", "N"),
+    "largest_tension": ("largest_span_tension", "span", "N"),
+    "least_tension": ("least_span_tension", "span", "N"),
     "least_slip_safety": ("slip_safety", "pulley", "1"),
     "largest_utilization": ("utilization", "pulley", "%"),
     "largest_tooth_load": ("tooth_load", "pulley", "N"),
@@ -132,9 +140,9 @@ def _of_table(
     dataset = result.dataset
     places = _places(dataset)
     for key, (name, of, unit) in variables.items():
-        if name in dataset:
-            variable = dataset[name].transpose(..., of)
-            values = variable.values.reshape(len(places), -1)
+        if {name, SUBSTITUTES.get(name)} & set(dataset):
+            variable = least_safeties(dataset) if name == SLIP_SAFETIES[0] else variable_of(dataset, name)
+            values = variable.transpose(..., of).values.reshape(len(places), -1)
             values = _of_turning(result, values) if key == "largest_slip" else values
             yield _worst(key, values, unit, places, list(map(str, dataset[of].values)))
 
@@ -155,15 +163,10 @@ _OF_SHEETS = _OF_TABLES | {
     "least_slip_safety": ("least_slip_safety", "pulley", "1"),
 }
 """Of sheets, whose operating points have peaks."""
-_OF_LINES = _OF_TABLES | {
-    "largest_tension": ("largest_tension", "span", "N"),
-    "least_tension": ("least_tension", "span", "N"),
-}
-"""Of sheets of lines, whose tensions vary along spans."""
 
 
 def _of_sheet(result: Result) -> Iterator[Found]:
-    yield from _of_table(result, _OF_LINES if "tension_at_start" in result.dataset else _OF_SHEETS)
+    yield from _of_table(result, _OF_SHEETS if "peak_tension" in result.dataset else _OF_TABLES)
 
 
 def _places(dataset: "xr.Dataset") -> list[str]:

@@ -11,9 +11,9 @@ from beltdyn.model.path import span_directions, wrap_angles
 from beltdyn.model.rating import PowerRating
 from beltdyn.model.toothing import MeshRating
 from beltdyn.results.cycles import Window, mean_window
-from beltdyn.results.mechanics import rim_speeds, tensions_at_arcs
+from beltdyn.results.mechanics import SpanTension, rim_speeds
 from beltdyn.results.schema import Recorded, names
-from beltdyn.results.slip_safety import slip_parts, slip_safety_of
+from beltdyn.results.slip_safety import grip_of, slip_parts, slip_safety_of
 
 _LOADED = 0.01
 """Share of the largest power from which a pulley transmits power; idlers take less by friction."""
@@ -95,6 +95,12 @@ class PulleySummary:
     """Angle over which friction is fully used, rad."""
     slip_safety: float
     """Factor on all loads of the drive at gross slip of this pulley, if the others hold; NaN without load."""
+    own_load_safety: float
+    """Factor on the load of this pulley alone at its gross slip; for the driver that on all loads. NaN without load."""
+    tension_ratio: float
+    """Tension ratio (T1 - m v^2) / (T2 - m v^2), with the larger tension T1; infinite where a span is slack."""
+    allowed_tension_ratio: float
+    """Tension ratio that friction allows, exp(mu theta); 1 where teeth or guides hold the belt."""
     wrap_angle: float
     """Wrap angle, rad."""
     hub_load: float
@@ -103,6 +109,11 @@ class PulleySummary:
     """Rated power of the belt on the pulley, W; NaN without a rating of its profile, and on the back of the belt."""
     utilization: float
     """Design power over rated power; NaN as above."""
+
+    @property
+    def least_safety(self) -> float:
+        """The lesser slip safety, by all loads or by the pulley's own; NaN without load."""
+        return float(np.fmin(self.slip_safety, self.own_load_safety))
 
 
 @dataclass(frozen=True, slots=True)
@@ -143,11 +154,15 @@ class SpanSummary:
     name: str
     """Name of the span."""
     tension: float
-    """Mean tension, N."""
+    """Mean tension over the span and time, N."""
     lowest: float
-    """Minimum tension, N."""
+    """Least tension anywhere along the span at any time, N."""
     highest: float
-    """Maximum tension, N."""
+    """Largest tension anywhere along the span at any time, N."""
+    at_start: float
+    """Mean tension where the belt leaves the first pulley of the name, N."""
+    at_end: float
+    """Mean tension where it reaches the second one, N."""
     belt_speed: float
     """Mean speed of the belt, m/s, positive in the sense in which the driver moves it."""
 
@@ -156,14 +171,14 @@ def pulley_means(recorded: Recorded, prepared: Prepared, window: Window | None =
     """Average the pulleys over a window."""
     window = mean_window(recorded, prepared) if window is None else window
     means = partial(window.mean, recorded)
-    belt_torque, shaft_torque, wrap_angle, hub_force, tension, centers = map(
-        means, ("pulley_torque", "shaft_torque", "wrap_angle", "hub_force", "span_tension", "pulley_center")
+    belt_torque, shaft_torque, wrap_angle, hub_force, centers = map(
+        means, ("pulley_torque", "shaft_torque", "wrap_angle", "hub_force", "pulley_center")
     )
     single = len(window.time) == 1
     speed = means("pulley_speed") if single else window.rate(recorded, "pulley_angle")
     gross, share = map(means, ("sliding_speed", "sliding_share"))
-    at_arcs = tensions_at_arcs(means, prepared)
-    parts = slip_parts(rim_speeds(speed, prepared), tension, gross, window.end - window.start, prepared, at_arcs)
+    elapsed = window.end - window.start
+    parts = slip_parts(rim_speeds(speed, prepared), SpanTension.of(means), gross, elapsed, prepared)
     power = window.product(recorded, "shaft_torque", "shaft_speed")
     rating = rate(prepared, speed, power, centers)
     rated = np.full(speed.size, np.nan) if rating is None else rating.power
@@ -176,7 +191,8 @@ def pulley_means(recorded: Recorded, prepared: Prepared, window: Window | None =
         *parts,
         gross,
         share * wrap_angle,
-        slip_safety_of(means, prepared),
+        *slip_safety_of(means, prepared),
+        *grip_of(means, prepared),
         wrap_angle,
         np.hypot(hub_force[:, 0], hub_force[:, 1]),
         rated,
@@ -205,10 +221,14 @@ def tensioner_means(
 def span_means(recorded: Recorded, prepared: Prepared, window: Window | None = None) -> tuple[SpanSummary, ...]:
     """Average the spans over a window."""
     window = mean_window(recorded, prepared) if window is None else window
-    tension = np.asarray(recorded["span_tension"][window.first :])
-    mean, belt_speed, speed = (window.mean(recorded, name) for name in ("span_tension", "belt_speed", "pulley_speed"))
+    start, end, mean = SpanTension.of(partial(window.mean, recorded))
+    least, largest = (
+        find(np.asarray(recorded[name][window.first :]), axis=0)
+        for find, name in ((np.min, "least_span_tension"), (np.max, "largest_span_tension"))
+    )
+    belt_speed, speed = (window.mean(recorded, name) for name in ("belt_speed", "pulley_speed"))
     backward = speed[prepared.reference] * prepared.pulleys[prepared.reference].turning < 0.0
-    columns = (mean, tension.min(axis=0), tension.max(axis=0), -belt_speed if backward else belt_speed)
+    columns = (mean, least, largest, start, end, -belt_speed if backward else belt_speed)
     return tuple(
         SpanSummary(name, *map(float, row)) for name, *row in zip(names(recorded, "span"), *columns, strict=True)
     )

@@ -5,7 +5,7 @@ last one reaches pulley 0.
 """
 
 from collections.abc import Callable
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -81,33 +81,32 @@ Pair = tuple[FloatArray, FloatArray]
 """Values where the belt reaches and leaves every pulley, each of shape (..., pulleys)."""
 
 
-def pressing_at_arcs(value_of: Callable[[str], FloatArray], prepared: Prepared) -> Pair | None:
-    """Tensions less m v^2 at the ends of arcs, N, of a belt that carries; `value_of` gives recorded variables by name.
+class SpanTension(NamedTuple):
+    """Tension over spans in the direction of ascending belt coordinate, N, each of shape (..., spans)."""
 
-    The torque of the belt on the pulley is their difference, and the force on its hub, less the weight of the belt on
-    the arc, their sum. Without supports and goods, the tension of spans says the same.
-    """
-    if not prepared.carries:
-        return None
-    path = prepared.path
-    torque, hub_force, centers = (value_of(name) for name in ("pulley_torque", "hub_force", "pulley_center"))
-    spans = span_directions(centers, *path.shape)
-    reached, left = spans[..., path.reaching, :], spans[..., path.leaving, :]
-    size = np.abs(path.radii) * wrap_angles(spans, *path.shape)
-    pull = hub_force - prepared.belt.mass_per_length * size[..., None] * np.array(prepared.gravity)
-    turn = 1.0 - np.sum(reached * left, axis=-1)
-    both = np.divide(np.sum(pull * (left - reached), axis=-1), turn, out=np.full_like(turn, np.nan), where=turn > 0.0)
-    more = -np.array([one.turning for one in prepared.pulleys]) * torque / prepared.radii
-    return 0.5 * (both + more), 0.5 * (both - more)
+    start: FloatArray
+    """Where the belt leaves a pulley."""
+    end: FloatArray
+    """Where it reaches the next one."""
+    mean: FloatArray
 
+    @classmethod
+    def of(cls, value_of: Callable[[str], FloatArray]) -> "SpanTension":
+        """From recorded variables, which `value_of` gives by name."""
+        return cls(*(value_of(name) for name in ("span_tension_at_start", "span_tension_at_end", "span_tension")))
 
-def tensions_at_arcs(value_of: Callable[[str], FloatArray], prepared: Prepared) -> Pair:
-    """Tensions at the ends of arcs, N: those of the spans there, or of a belt that carries, from `pressing_at_arcs`."""
-    pressing = pressing_at_arcs(value_of, prepared)
-    if pressing is None:
-        return across(value_of("span_tension"), prepared)
-    before, after = across(prepared.belt.mass_per_length * value_of("belt_speed") ** 2, prepared)
-    return pressing[0] + before, pressing[1] + after
+    @classmethod
+    def uniform(cls, tension: FloatArray) -> "SpanTension":
+        """The same all along each span."""
+        return cls(tension, tension, tension)
+
+    def each(self, change: Callable[[FloatArray], FloatArray]) -> "SpanTension":
+        """Change all three alike."""
+        return SpanTension(*map(change, self))
+
+    def at_arcs(self, prepared: Prepared) -> Pair:
+        """Tensions where the belt reaches and leaves every pulley, shape (..., pulleys)."""
+        return self.end[..., prepared.path.reaching], self.start[..., prepared.path.leaving]
 
 
 def cells(belt_coordinate: FloatArray, length: float) -> FloatArray:

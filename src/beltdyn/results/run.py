@@ -26,7 +26,17 @@ from beltdyn.results.provenance import (
     mesh_resolution,
 )
 from beltdyn.results.result import Result, build_result, drive_of
-from beltdyn.results.schema import COORDINATES, DERIVED, TIMES, VARIABLES, InMemory, Recorded, Variable, runs_steadily
+from beltdyn.results.schema import (
+    COORDINATES,
+    DERIVED,
+    TIMES,
+    VARIABLES,
+    InFile,
+    InMemory,
+    Recorded,
+    Variable,
+    runs_steadily,
+)
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -195,7 +205,7 @@ class Run(Result):
             yield InMemory(self._dataset)
             return
         with h5py.File(self._file, "r") as file:
-            yield file
+            yield InFile(file)
 
     @property
     def _file(self) -> Path:

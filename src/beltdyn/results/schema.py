@@ -11,9 +11,10 @@ from numpy.typing import NDArray
 from beltdyn.parts.quantity import SHOWN_UNITS
 
 if TYPE_CHECKING:
+    import h5py
     import xarray as xr
 
-FORMAT = (1, 3)
+FORMAT = (1, 4)
 """Version of the result file: the major number grows when earlier readers would misread a file, the minor number when a
 file holds more than before."""
 
@@ -131,6 +132,10 @@ _OUTPUTS = {
         _ELEMENT, "N", "Variation of the tension within an element", SHORT, core=False, at_rest=True
     ),
     "span_tension": Variable(_SPAN, "N", "Span tension", at_rest=True),
+    "largest_span_tension": Variable(_SPAN, "N", "Largest tension of the span", SHORT, core=False, at_rest=True),
+    "least_span_tension": Variable(_SPAN, "N", "Least tension of the span", SHORT, core=False, at_rest=True),
+    "span_tension_at_start": Variable(_SPAN, "N", "Tension at the start of the span", SHORT, core=False, at_rest=True),
+    "span_tension_at_end": Variable(_SPAN, "N", "Tension at the end of the span", SHORT, core=False, at_rest=True),
     "belt_speed": Variable(_SPAN, "m/s", "Belt speed"),
     "mid_span_displacement": Variable(_SPAN, "m", "Mid-span displacement", SHORT, core=False, at_rest=True),
     "normal_force": Variable(_POINT, "N/m", "Normal force on the belt", SHORT, at_rest=True),
@@ -172,6 +177,21 @@ _OUTPUTS = {
     "energy_closure": Variable(_OVER_TIME, "1", "Energy balance error"),
     "step_size": Variable(_OVER_TIME, "s", "Time step", core=False),
 }
+
+SPAN_TENSIONS = (
+    "span_tension",
+    *("largest_span_tension", "least_span_tension"),
+    *("span_tension_at_start", "span_tension_at_end"),
+)
+"""The tension of a span: its mean, extremes, and values where the belt leaves a pulley and reaches the next one."""
+
+SLIP_SAFETIES = ("slip_safety", "own_load_safety")
+"""Slip safety of pulleys: factor on all loads, and on the pulley's own. The lesser counts."""
+
+SUBSTITUTES = MappingProxyType(
+    dict.fromkeys(SPAN_TENSIONS[1:], SPAN_TENSIONS[0]) | {SLIP_SAFETIES[1]: SLIP_SAFETIES[0]}
+)
+"""Variable that results of earlier formats lack -> the one that stands for it."""
 
 FILTERED = (
     *("pulley_speed", "shaft_speed", "pulley_torque", "shaft_torque", "hub_force", "tensioner_position"),
@@ -266,6 +286,33 @@ class Recorded(Protocol):
 
     def __getitem__(self, name: str, /) -> Any:
         """A variable, which is read where it is indexed."""
+
+
+def variable_of(dataset: "xr.Dataset", name: str) -> "xr.DataArray":
+    """A variable, or in a result of an earlier format its substitute."""
+    return dataset[name if name in dataset else SUBSTITUTES.get(name, name)]
+
+
+def least_safeties(dataset: "xr.Dataset") -> "xr.DataArray":
+    """The lesser slip safety of each pulley, NaN without load."""
+    first, second = (variable_of(dataset, name) for name in SLIP_SAFETIES)
+    return first.copy(data=np.fmin(first.values, second.transpose(*first.dims).values))
+
+
+class InFile:
+    """Variables of an open result file, read where they are indexed; of an earlier format with their `SUBSTITUTES`."""
+
+    def __init__(self, file: "h5py.File") -> None:
+        self._file = file
+        self.attrs: Mapping[Any, Any] = file.attrs
+
+    def __contains__(self, name: object, /) -> bool:
+        """Whether a variable was recorded."""
+        return name in self._file
+
+    def __getitem__(self, name: str, /) -> Any:
+        """A variable of the file."""
+        return self._file[name if name in self._file else SUBSTITUTES.get(name, name)]
 
 
 class InMemory:

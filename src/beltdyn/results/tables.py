@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 from beltdyn.results.atomic import atomic_path, make_folder, require_replaceable
 from beltdyn.results.result import Result
 from beltdyn.results.run import Run
-from beltdyn.results.schema import VARIABLES
+from beltdyn.results.schema import SPAN_TENSIONS, VARIABLES
 from beltdyn.results.summary import Summary, summarize
 from beltdyn.results.tension_balance import losses_of
 
@@ -37,6 +37,7 @@ _PULLEYS = (
     "sliding",
     "sliding_arc",
     "slip_safety",
+    "own_load_safety",
     "tension_ratio",
     "hub_load",
     "hub_direction",
@@ -45,7 +46,7 @@ _PULLEYS = (
     "friction_power",
     "contact_damping_power",
 )
-_SPANS = ("span_tension", "belt_speed", "mid_span_displacement")
+_SPANS = (*SPAN_TENSIONS, "belt_speed", "mid_span_displacement")
 _ENERGY = (*(name for name, variable in VARIABLES.items() if variable.dims == ("time",)),)
 _TENSIONERS = ("tensioner_position", "tensioner_speed")
 _CARRIAGE = ("carriage_position", "carriage_speed", "carriage_error")
@@ -65,12 +66,18 @@ _PULLEY_SUMMARY = (
     "sliding speed [m/s]",
     "sliding arc [rad]",
     "slip safety [1]",
+    "slip safety by own load [1]",
+    "tension ratio [1]",
+    "allowed tension ratio [1]",
     "wrap angle [rad]",
     "hub load [N]",
     "rated power [W]",
     "utilization [1]",
 )
-_SPAN_SUMMARY = ("span", "tension [N]", "least tension [N]", "largest tension [N]", "belt speed [m/s]")
+_SPAN_SUMMARY = (
+    *("span", "tension [N]", "least tension [N]", "largest tension [N]"),
+    *("tension at start [N]", "tension at end [N]", "belt speed [m/s]"),
+)
 _LOSS_SUMMARY = ("cause", "power [W]", "share of the power input [1]", "energy since the start [J]")
 
 _FIRST_HEADINGS = {
@@ -218,12 +225,9 @@ def _with_derived(run: Run) -> "xr.Dataset":
     from beltdyn.results import derived
 
     hub = derived.hub_loads(run)[["hub_load", "hub_direction"]]
-    parts = (derived.slips(run), derived.sliding_arcs(run), derived.pulley_powers(run), hub)
-    named = {
-        "slip_safety": derived.slip_safety(run),
-        "tension_ratio": derived.tension_ratios(run),
-    }
-    return run.dataset.assign({name: part[name] for part in parts for name in part.data_vars} | named)
+    parts = (derived.slips(run), derived.sliding_arcs(run), derived.pulley_powers(run), hub, derived.slip_safeties(run))
+    ratio = {"tension_ratio": derived.tension_ratios(run)}
+    return run.dataset.assign({name: part[name] for part in parts for name in part.data_vars} | ratio)
 
 
 def _with_others(names: tuple[str, ...], dimension: str) -> tuple[str, ...]:

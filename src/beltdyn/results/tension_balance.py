@@ -7,19 +7,20 @@ else holds a tensioner there, as weight and dry friction, goes on holding it.
 """
 
 import math
-from collections.abc import Callable, Mapping
+from collections.abc import Mapping
 from copy import copy
 from dataclasses import dataclass
 from typing import NamedTuple, Self
 
 import numpy as np
+from numpy.polynomial.legendre import leggauss
 
 from beltdyn.arrays import BoolArray, FloatArray, IntArray
 from beltdyn.machines.tensioners.tensioner import MovingTensioner
 from beltdyn.model import Prepared
 from beltdyn.model.path import span_directions, span_points, wrap_angles
 from beltdyn.results.cycles import Window, plain_window
-from beltdyn.results.mechanics import UNLOADED, across
+from beltdyn.results.mechanics import SpanTension, across
 from beltdyn.results.schema import Recorded
 
 LOSSES: Mapping[str, str] = {
@@ -191,26 +192,43 @@ def energy_put_in(recorded: Recorded) -> FloatArray:
     return np.asarray(stored + np.maximum.accumulate(done, axis=1).sum(axis=0))
 
 
+# What holds the tensions of a belt
+
 _MOST_ITERATIONS = 25
 _CONVERGED = 1e-9
 """Step of Newton's method, over the scale of each unknown."""
 _DIFFERENCE = 1e-6
 """Step of difference quotients, over the scale of each unknown."""
 _PRESSED = 0.1
-"""Least tension above that at which the belt lifts off: of a guess over the mean tension, of a step over the last."""
+"""Least tension that presses the belt on, over that before a step of Newton's method."""
+_SLACK = 0.25
+"""Least tension that presses, over the weight across a span, of which the sag is taken: a belt hangs deeper below."""
+_PLACES, _WEIGHTS = (0.5 * (values + shift) for values, shift in zip(leggauss(8), (1.0, 0.0), strict=True))
+"""Gauss points and weights along a span."""
 _LONGEST = 0.2
 """Step of Newton's method for the place of a tensioner, over the way on which it moves by the smallest radius."""
 
 
-Condition = Callable[[FloatArray, FloatArray], FloatArray]
-"""What sets the factor on the loads: zero, shape (n,), of tensions that press (n, spans) and of s (n, pulleys)."""
+class Loads(NamedTuple):
+    """Loads on known states, a row for each."""
+
+    state: IntArray
+    """Number of the state, shape (n,)."""
+    start: FloatArray
+    """Derivative of the tension where each span starts by the factor on the load, N, shape (n, spans)."""
+    end: FloatArray
+    """The same where it ends."""
+
+    def of(self, rows: IntArray | BoolArray) -> "Loads":
+        """Some of them."""
+        return Loads(*(values[rows] for values in self))
 
 
 class States(NamedTuple):
     """States in balance, a row for each."""
 
-    tension: FloatArray
-    """Of spans, N, shape (n, spans)."""
+    tension: SpanTension
+    """N, shape (n, spans)."""
     positions: FloatArray
     """Of tensioners, m or rad, shape (n, K)."""
     centers: FloatArray
@@ -226,6 +244,8 @@ class _Geometry(NamedTuple):
     """Of pulleys, m, shape (n, pulleys, 2)."""
     directions: FloatArray
     """Unit vectors along spans, shape (n, spans, 2)."""
+    points: FloatArray
+    """Start and end of spans, m, shape (n, spans, 2, 2)."""
     lengths: FloatArray
     """Of spans, m."""
     wrap: FloatArray
@@ -237,60 +257,65 @@ class _Geometry(NamedTuple):
 class TensionBalance:
     """The balance that determines the tension of a belt, as a change of n known states.
 
-    Unknowns are the mean tension and the displacements of tensioners. Span tensions and speeds have shape (n, spans);
-    frictions, shape (n, pulleys), replace those of the drive.
+    Unknowns are the rise of all tensions and the displacements of tensioners; both are zero in the known states.
+    Tensions and speeds have shape (n, spans); frictions, shape (n, pulleys), replace those of the drive.
     """
 
     def __init__(
         self,
         prepared: Prepared,
-        tension: FloatArray,
+        tension: SpanTension,
         speed: FloatArray,
         centers: FloatArray,
         frictions: FloatArray | None = None,
     ) -> None:
-        self._prepared, self._centers = prepared, centers
-        self._frictions = np.tile(prepared.frictions, (len(tension), 1)) if frictions is None else frictions
-        self.mean = tension.mean(axis=1)
-        self.differences = tension - self.mean[:, None]
+        self._prepared, self._centers, self.tension = prepared, centers, tension
+        count = len(tension.mean)
+        self._frictions = np.tile(prepared.frictions, (count, 1)) if frictions is None else frictions
         self._lifted = prepared.belt.mass_per_length * speed**2
         self._backward = speed.mean(axis=1) < 0.0
         self._carriers = prepared.carriers
         self._pulled = _pulled_span(prepared)
         smallest = float(np.min(prepared.radii))
         reaches = [float(np.linalg.norm(one.place(0.0)[1])) for one in self._carriers]
-        self.scales = np.array(
-            [max(float(np.nanmax(np.abs(tension), initial=0.0)), 1e-9), *(smallest / one for one in reaches)]
-        )
-        self._places = _places(prepared, centers)
+        largest = max(float(np.nanmax(np.abs(tension.mean), initial=0.0)), 1e-9)
+        self.scales = np.array([largest, *(smallest / one for one in reaches)])
         self._along = [one.place(0.0) for one in self._carriers]
-        self._held = np.zeros((len(tension), self.scales.size))
-        rows, still = np.arange(len(tension)), self.start
-        self._held = self.residual(rows, np.ones(len(rows)), still)
+        self._places = _places(prepared, centers)
+        self._weight = weight_of_meter(prepared, tension)
+        self._known: _Geometry | None = None
+        self._known = self._geometry(np.arange(count), self.start)
+        self._held = self._off(self.tension, np.arange(count), self._known, self.start)
+        self._sense = np.where(self.jumps() < 0.0, -1.0, 1.0)
 
     def under(self, differences: FloatArray, speed: float | FloatArray, longer: float | FloatArray = 0.0) -> Self:
-        """The balance about its one known state, for other speeds, differences from the mean and a longer belt (m)."""
+        """The balance about its one known state, for another speed, a longer belt (m) and further tensions.
+
+        `differences`: of the tensions of spans from those of the known state, N, shape (n, spans).
+        """
         other, count = copy(self), len(differences)
-        for name in ("mean", "_centers", "_places", "_held", "_frictions"):
+        for name in ("_centers", "_places", "_held", "_frictions", "_weight"):
             setattr(other, name, np.repeat(getattr(self, name)[:1], count, axis=0))
-        other.differences = differences
+        other.tension = self.tension.each(lambda values: values[:1] + differences)
         other._held[:, 0] += longer
         flowing = np.broadcast_to(np.asarray(speed, dtype=float), count)
         other._lifted = self._prepared.belt.mass_per_length * np.repeat(flowing[:, None] ** 2, differences.shape[1], 1)
-        other._backward = flowing < 0.0
+        other._backward, other._known = flowing < 0.0, None
+        other._known = other._geometry(np.arange(count), other.start)
         return other
 
-    def states(self) -> "States":
+    def states(self) -> States:
         """The states that are in balance; NaN where there is none."""
-        rows, factor = np.arange(self.mean.size), np.ones(self.mean.size)
+        still = self._no_loads()
         with np.errstate(invalid="ignore", divide="ignore", over="ignore"):
-            unknowns = self.solve(rows, factor, self.start)
-            shape = self._geometry(rows, unknowns)
-        return States(self._tension(rows, factor, unknowns), self._places + unknowns[:, 1:], shape.centers, shape.wrap)
+            unknowns = self.solve(still, np.ones(len(still.state)), self.start)
+            shape = self._geometry(still.state, unknowns)
+        tension = self.tension.each(lambda values: values + unknowns[:, :1])
+        return States(tension, self._places + unknowns[:, 1:], shape.centers, shape.wrap)
 
     def path_at(self, positions: FloatArray) -> FloatArray:
         """Unit vectors along spans, shape (spans, 2), with tensioners at positions, shape (K,); NaN without a path."""
-        unknowns = np.concatenate([self.mean[:1], positions - self._places[0]])[None]
+        unknowns = np.concatenate([[0.0], positions - self._places[0]])[None]
         with np.errstate(invalid="ignore"):  # a free arm may be where no belt can run
             return np.asarray(self._geometry(np.zeros(1, dtype=int), unknowns).directions[0])
 
@@ -298,56 +323,77 @@ class TensionBalance:
         """The belt at rest that holds a tensioner at a position, with the others where they are in the known state.
 
         `number`: the tensioner; `position`: m or rad. Returns longer, tension: unstretched length less that of the
-        known state, m, and tension, N.
+        known state, m, and mean tension, N.
         """
-        still = self.under(np.zeros((1, self.differences.shape[1])), 0.0)
-        rows, factor, unknowns = np.zeros(1, dtype=int), np.ones(1), still.start
+        still = self.under(np.zeros((1, self.tension.mean.shape[1])), 0.0)
+        unknowns, row = still.start, np.zeros(1, dtype=int)
         unknowns[:, 1 + number] = position - self._places[0, number]
+        shape = still._geometry(row, unknowns)
 
-        def off(tension: float) -> FloatArray:
-            unknowns[:, 0] = tension
-            return np.asarray(still.residual(rows, factor, unknowns)[0])
+        def off(rise: float) -> FloatArray:
+            tension = still.tension.each(lambda values: values + rise)
+            return np.asarray(still._off(tension, row, shape, unknowns)[0] - still._held[0])
 
         none, some = off(0.0)[1 + number], off(self.scales[0])[1 + number]
-        tension = float(self.scales[0] * none / (none - some))
-        return float(off(tension)[0]), tension
+        rise = float(self.scales[0] * none / (none - some))
+        return float(off(rise)[0]), float(self.tension.mean[0].mean()) + rise
 
     @property
     def start(self) -> FloatArray:
-        """The unknowns in the present states."""
-        return np.column_stack([self.mean, np.zeros((self.mean.size, len(self._carriers)))])
+        """The unknowns in the known states."""
+        return np.zeros((len(self.tension.mean), self.scales.size))
 
-    def use(self, rows: IntArray, factor: FloatArray, unknowns: FloatArray) -> FloatArray:
-        """What s is at each pulley, shape (n, pulleys); inf where the belt lifts off."""
-        return self._use(rows, self.pressing(rows, factor, unknowns), self._geometry(rows, unknowns).wrap)
+    # Loads and the edge of slip
 
-    def _use(self, rows: IntArray, pressing: FloatArray, wrap: FloatArray) -> FloatArray:
-        before, after = across(pressing, self._prepared)
-        held = (before + after) * np.tanh(0.5 * self._frictions[rows] * wrap)
-        return np.where(held > 0.0, np.abs(before - after) / held, np.where(np.isnan(held), np.nan, np.inf))
+    def all_loads(self) -> Loads:
+        """All loads of each state: tensions less the weight of the belt below, about their mean."""
+        start, end = self._levels()
+        mean = 0.5 * (start + end).mean(axis=1, keepdims=True)
+        return Loads(np.arange(len(start)), start - mean, end - mean)
 
-    def pressing(self, rows: IntArray, factor: FloatArray, unknowns: FloatArray) -> FloatArray:
-        """Tensions less m v^2, with which the belt presses, N, shape (n, spans)."""
-        return np.asarray(self._tension(rows, factor, unknowns) - self._lifted[rows])
+    def own_loads(self) -> Loads:
+        """The load of each pulley, taken up by the driver: rows are those of all pulleys of a state, then the next."""
+        rise, path, driver = self.jumps(), self._prepared.path, self._prepared.reference
+        spans, place = np.arange(path.spans), path.leaving
+        between = np.zeros((path.count, path.spans))
+        for pulley in path.on.tolist():
+            first, last, sign = place[pulley], place[driver], 1.0
+            if last < first:
+                first, last, sign = last, first, -1.0
+            between[pulley] = np.where((spans >= first) & (spans < last), sign, 0.0)
+        slopes = rise[:, :, None] * between
+        everything = self.all_loads()
+        start, end = slopes.copy(), slopes.copy()
+        start[:, driver], end[:, driver] = everything.start, everything.end
+        states = np.repeat(everything.state, path.count)
+        return Loads(states, start.reshape(-1, path.spans), end.reshape(-1, path.spans))
 
-    def loaded(self) -> BoolArray:
-        """Whether a pulley has a load, shape (n, pulleys)."""
-        before, after = across(self.differences + self.mean[:, None], self._prepared)
-        return np.asarray(np.abs(before - after) > UNLOADED * np.abs(before + after))
+    def jumps(self) -> FloatArray:
+        """Rise of the tension over each arc by friction, without the weight of its belt, N, shape (n, pulleys)."""
+        start, end = self._levels()
+        path = self._prepared.path
+        return np.asarray(start[:, path.leaving] - end[:, path.reaching])
 
-    def solve(self, rows: IntArray, factor: FloatArray, unknowns: FloatArray) -> FloatArray:
-        """The unknowns with other loads, by Newton's method from a guess; NaN where there is no balance.
+    def edge(self, loads: Loads, factor: FloatArray, unknowns: FloatArray) -> tuple[FloatArray, FloatArray]:
+        """What friction carries at each pulley, and the most that it can carry, N, shape (n, pulleys).
 
-        The belt presses on every pulley: where it does not, it has slid before.
+        With T' = T - m v^2, and the weight of the belt on the arc in P, T' - P grows by exp(mu theta) where all of it
+        slides: the difference of both ends is their sum times tanh(mu theta / 2).
         """
-        found, left = unknowns.copy(), np.arange(rows.size)
-        edge = np.max(self._lifted[rows] - factor[:, None] * self.differences[rows], axis=1)
-        found[:, 0] = np.maximum(found[:, 0], edge + _PRESSED * np.abs(self.mean[rows]))
+        return self._edge(self._tension(loads, factor, unknowns), loads, self._geometry(loads.state, unknowns))
+
+    def pressing(self, loads: Loads, factor: FloatArray, unknowns: FloatArray) -> FloatArray:
+        """Least tension less m v^2 of each span, N, shape (n, spans)."""
+        tension = self._tension(loads, factor, unknowns)
+        return np.asarray(np.minimum(tension.start, tension.end) - self._lifted[loads.state])
+
+    def solve(self, loads: Loads, factor: FloatArray, unknowns: FloatArray) -> FloatArray:
+        """The unknowns with a factor on loads, by Newton's method from a guess; NaN where there is no balance."""
+        found, left = unknowns.copy(), np.arange(len(factor))
         for _ in range(_MOST_ITERATIONS):
-            step = -self.newton_step(rows[left], factor[left], found[left])
-            step[:, 1:] = np.clip(step[:, 1:], -_LONGEST * self.scales[1:], _LONGEST * self.scales[1:])
-            step[:, 0] = np.maximum(step[:, 0], (_PRESSED - 1.0) * (found[left, 0] - edge[left]))
-            found[left] += step
+            some = loads.of(left)
+            step, _ = self.newton_step(some, factor[left], found[left])
+            found[left] += self.limited(some, factor[left], found[left], step)
             away = np.max(np.abs(step) / self.scales, axis=1)
             left, away = left[~(away <= _CONVERGED)], away[~(away <= _CONVERGED)]
             if not np.isfinite(away).any():
@@ -357,59 +403,137 @@ class TensionBalance:
         found[left] = np.nan
         return found
 
-    def newton_step(
-        self, rows: IntArray, factor: FloatArray, unknowns: FloatArray, condition: "Condition | None" = None
-    ) -> FloatArray:
-        """What Newton's method takes off the unknowns, and off ln f with a condition that sets the factor f.
+    def limited(self, loads: Loads, factor: FloatArray, unknowns: FloatArray, step: FloatArray) -> FloatArray:
+        """A step of the unknowns, shortened where a tensioner moves far or a span loses most of what presses it on."""
+        part = np.ones(len(step))
+        if len(self._carriers):
+            moves = np.abs(step[:, 1 : self.scales.size] / self.scales[1:]).max(axis=1)
+            part = np.minimum(part, _LONGEST / np.maximum(moves, _LONGEST))
+        before = self.pressing(loads, factor, unknowns).min(axis=1)
+        most = (1.0 - _PRESSED) * before
+        falls = -step[:, 0] * part
+        part *= np.where((before > 0.0) & (falls > most), most / np.where(falls > 0.0, falls, 1.0), 1.0)
+        return np.asarray(part[:, None] * step)
 
-        Difference quotients; the path changes with tensioners alone, so tensions and f are varied on it.
+    def newton_step(
+        self, loads: Loads, factor: FloatArray, unknowns: FloatArray, pulley: IntArray | None = None
+    ) -> tuple[FloatArray, FloatArray]:
+        """Step of Newton's method for the unknowns, and the determinant of their balance.
+
+        With `pulley`, shape (n,), the factor is the last unknown: the belt is to slide there. Difference quotients; the
+        path changes with tensioners alone.
         """
-        shape, moved = self._geometry(rows, unknowns), unknowns.copy()
+        rows, moved = loads.state, unknowns.copy()
 
         def off(factor: FloatArray, shape: _Geometry) -> FloatArray:
-            missing = self._off(rows, factor, moved, shape)
-            if condition is None:
+            tension = self._tension(loads, factor, moved)
+            missing = self._off(tension, rows, shape, moved) - self._held[rows]
+            if pulley is None:
                 return missing
-            pressing = self.pressing(rows, factor, moved)
-            return np.column_stack([missing, condition(pressing, self._use(rows, pressing, shape.wrap))])
+            carried, held = self._edge(tension, loads, shape)
+            return np.column_stack([missing, (carried - held)[np.arange(rows.size), pulley] / self.scales[0]])
 
+        shape = self._geometry(rows, unknowns)
         here, slopes = off(factor, shape), list[FloatArray]()
-        for one, scale in enumerate(self.scales.tolist()):
-            moved[:, one] += _DIFFERENCE * scale
-            there = off(factor, shape if one == 0 else self._geometry(rows, moved))
+        for number, scale in enumerate(self.scales.tolist()):
+            moved[:, number] += _DIFFERENCE * scale
+            there = off(factor, shape if number == 0 else self._geometry(rows, moved))
             slopes.append((there - here) / (_DIFFERENCE * scale))
-            moved[:, one] = unknowns[:, one]
-        if condition is not None:
-            slopes.append((off(factor * (1.0 + _DIFFERENCE), shape) - here) / _DIFFERENCE)
-        return _solved(np.stack(slopes, axis=2), here)
+            moved[:, number] = unknowns[:, number]
+        size = self.scales.size
+        if pulley is not None:
+            slopes.append((off(factor * (1.0 + _DIFFERENCE), shape) - here) / (_DIFFERENCE * factor[:, None]))
+        matrix = np.stack(slopes, axis=2)
+        return -_solved(matrix, here), np.linalg.det(matrix[:, :size, :size])
 
-    def _tension(self, rows: IntArray, factor: FloatArray, unknowns: FloatArray) -> FloatArray:
-        return np.asarray(unknowns[:, :1] + factor[:, None] * self.differences[rows])
+    # Parts
 
-    def residual(self, rows: IntArray, factor: FloatArray, unknowns: FloatArray) -> FloatArray:
-        """What the balances miss: unstretched length, m, or the tension of a pulled span, N, then each tensioner."""
-        return self._off(rows, factor, unknowns, self._geometry(rows, unknowns))
+    def _no_loads(self) -> Loads:
+        none = np.zeros_like(self.tension.mean)
+        return Loads(np.arange(len(none)), none, none)
 
-    def _off(self, rows: IntArray, factor: FloatArray, unknowns: FloatArray, shape: _Geometry) -> FloatArray:
-        tension = self._tension(rows, factor, unknowns)
-        missing = [self._belt_on(rows, tension, shape) if self._pulled is None else tension[:, self._pulled]]
-        pressing = tension - self._lifted[rows]
-        path = self._prepared.path
-        for number, one in enumerate(self._carriers):
-            before, after = (
-                pressing[:, span, None] * shape.directions[:, span]
-                for span in (path.reaching[one.pulley], path.leaving[one.pulley])
+    def _levels(self) -> tuple[FloatArray, FloatArray]:
+        """Tensions at start and end of spans less the weight of the belt below, N: T + m g . r."""
+        assert self._known is not None
+        start, end = self._touching(self.tension, self._lifted, self._known)
+        weight = self._weight[:, None]
+        return self.tension.start + np.sum(start * weight, -1), self.tension.end + np.sum(end * weight, -1)
+
+    def _tension(self, loads: Loads, factor: FloatArray, unknowns: FloatArray) -> SpanTension:
+        more, rise = (factor - 1.0)[:, None], unknowns[:, :1]
+        start, end, mean = self.tension.each(lambda values: values[loads.state] + rise)
+        return SpanTension(start + more * loads.start, end + more * loads.end, mean + 0.5 * more * sum(loads[1:]))
+
+    def _edge(self, tension: SpanTension, loads: Loads, shape: _Geometry) -> tuple[FloatArray, FloatArray]:
+        rows, path = loads.state, self._prepared.path
+        friction, gravity = self._frictions[rows], self._weight[rows]
+        lifted = across(self._lifted[rows], self._prepared)
+        ends = tension.at_arcs(self._prepared)
+        sign = self._sense[rows]
+        if np.any(gravity):
+            turns = -np.sign(path.radii)[:, None]
+            starts, stops = self._touching(tension, self._lifted[rows], shape)
+            places = stops[:, path.reaching], starts[:, path.leaving]
+            size, signed = np.abs(path.radii), sign * friction
+            along, inwards = 2.0 * signed / (1.0 + friction**2), (1.0 - friction**2) / (1.0 + friction**2)
+            lifted = tuple(
+                lifted[end]
+                + size
+                * (
+                    along * np.sum(turns * _turned(ways) * gravity[:, None], axis=-1)
+                    + inwards * np.sum(ways * gravity[:, None], axis=-1)
+                )
+                for end, ways in enumerate((shape.centers - place) / size[:, None] for place in places)
             )
-            belt = np.sum((after - before) * shape.slopes[:, number], axis=1)
-            place = self._places[rows, number] + unknowns[:, 1 + number]
-            missing.append(belt + _spring(one.tensioner, place))
-        return np.column_stack(missing) - self._held[rows]
+        before, after = ends[0] - lifted[0], ends[1] - lifted[1]
+        wrap = wrap_with_sag(self._prepared, tension, self._lifted[rows], shape.directions)
+        return sign * (after - before), (after + before) * np.tanh(0.5 * friction * wrap)
 
-    def _belt_on(self, rows: IntArray, tension: FloatArray, shape: _Geometry) -> FloatArray:
+    def _touching(self, tension: SpanTension, lifted: FloatArray, shape: _Geometry) -> tuple[FloatArray, FloatArray]:
+        """Where spans that sag leave and reach pulleys, m, shape (n, spans, 2)."""
+        sag, pulleys = sag_of(self._prepared, tension, lifted, shape.directions), self._prepared.path.span_pulleys
+        points = [shape.points[:, :, end] for end in (0, 1)]
+        if sag is None:
+            return points[0], points[1]
+        for end, angle in enumerate((sag.start, sag.end)):
+            on = np.flatnonzero(pulleys[:, end] >= 0)
+            center = shape.centers[:, pulleys[on, end]]
+            arm, turn = points[end][:, on] - center, angle[:, on, None]
+            points[end] = points[end].copy()
+            points[end][:, on] = center + np.cos(turn) * arm + np.sin(turn) * _turned(arm)
+        return points[0], points[1]
+
+    def _off(self, tension: SpanTension, rows: IntArray, shape: _Geometry, unknowns: FloatArray) -> FloatArray:
+        """Unstretched length of the belt, m, or the tension of a pulled span, N, then the force on each tensioner."""
+        path, lifted = self._prepared.path, self._lifted[rows]
+        first = self._belt_on(rows, tension, shape) if self._pulled is None else tension.mean[:, self._pulled]
+        missing = [first]
+        pulls = self._pulls(tension, lifted, shape) if self._carriers else ()
+        for number, one in enumerate(self._carriers):
+            before, after = path.reaching[one.pulley], path.leaving[one.pulley]
+            pull = pulls[0][:, after] - pulls[1][:, before]
+            place = self._places[rows, number] + unknowns[:, 1 + number]
+            missing.append(np.sum(pull * shape.slopes[:, number], axis=1) + _spring(one.tensioner, place))
+        return np.column_stack(missing)
+
+    def _pulls(self, tension: SpanTension, lifted: FloatArray, shape: _Geometry) -> tuple[FloatArray, FloatArray]:
+        """Forces with which spans pull at their starts and ends, N, shape (n, spans, 2)."""
+        sag = sag_of(self._prepared, tension, lifted, shape.directions)
+        start, end = ((values - lifted)[..., None] * shape.directions for values in tension[:2])
+        if sag is None:
+            return start, end
+        left = _turned(shape.directions)
+        first, last = (
+            pull * (1.0 - 0.5 * slope**2)[..., None] + (slope * (values - lifted))[..., None] * left
+            for pull, values, slope in ((start, tension.start, sag.start), (end, tension.end, sag.end))
+        )
+        return first, last
+
+    def _belt_on(self, rows: IntArray, tension: SpanTension, shape: _Geometry) -> FloatArray:
         """Unstretched length of the belt on its path, m."""
         prepared = self._prepared
         law, radii, friction = prepared.belt.stretch_parameters, np.abs(prepared.path.radii), self._frictions[rows]
-        before, after = across(tension, prepared)
+        before, after = tension.at_arcs(prepared)
         lifted_before, lifted_after = across(self._lifted[rows], prepared)
         backward, least = self._backward[rows, None], 1e-9 * self.scales[0]
         reaching, lifted = np.where(backward, after, before), np.where(backward, lifted_after, lifted_before)
@@ -422,11 +546,14 @@ class TensionBalance:
         mean = (1.0 - part) * reaching + part * sliding
         sunk = np.maximum(mean - lifted, 0.0) / (radii * prepared.contact_stiffness)
         arcs = shape.wrap * (radii - sunk) * ((1.0 - part) / law.stretch(reaching) + part / law.stretch(sliding))
-        spans = shape.lengths / law.stretch(tension)
+        sag = sag_of(prepared, tension, self._lifted[rows], shape.directions)
+        spans = (shape.lengths + (0.0 if sag is None else sag.longer)) / law.stretch(tension.mean)
         return np.asarray(spans.sum(axis=1) + arcs.sum(axis=1))
 
     def _geometry(self, rows: IntArray, unknowns: FloatArray) -> _Geometry:
         """The path with the tensioners where the unknowns have them."""
+        if not self._carriers and self._known is not None:
+            return _Geometry(*(values[rows] for values in self._known))
         centers, slopes = self._centers[rows].copy(), np.empty((len(rows), len(self._carriers), 2))
         for number, one in enumerate(self._carriers):
             way, along = unknowns[:, 1 + number], self._along[number]
@@ -444,7 +571,57 @@ class TensionBalance:
         shape = self._prepared.path.shape
         directions, points = span_directions(centers, *shape), span_points(centers, *shape)
         lengths = np.linalg.norm(points[:, :, 1] - points[:, :, 0], axis=-1)
-        return _Geometry(centers, directions, lengths, wrap_angles(directions, *shape), slopes)
+        return _Geometry(centers, directions, points, lengths, wrap_angles(directions, *shape), slopes)
+
+
+# Sag of spans that no support carries
+
+
+class Sag(NamedTuple):
+    """How spans sag, each of shape (n, spans)."""
+
+    longer: FloatArray
+    """Length beyond that of the straight line, m."""
+    start: FloatArray
+    """Angle by which sag turns the belt to the left where the span starts, rad."""
+    end: FloatArray
+    """The same where it ends."""
+
+
+def sag_of(prepared: Prepared, tension: SpanTension, lifted: FloatArray, directions: FloatArray) -> Sag | None:
+    """How spans sag by the weight w across them; None without gravity.
+
+    `tension`, `lifted`: T and m v^2, N, shape (n, spans); `directions`: shape (n, spans, 2). With T' = T - m v^2, which
+    is linear along the span of length L, its small slope y' has T' y' = c - w s, with c so that both ends stay where
+    they are.
+    """
+    if not any(prepared.gravity):
+        return None
+    supported = {one.span for one in prepared.supports}
+    length = np.where([span in supported for span in prepared.spans], 0.0, prepared.path.span_lengths)
+    across = np.sum(_turned(directions) * weight_of_meter(prepared, tension)[:, None], axis=-1) * length
+    least = _SLACK * np.abs(across) + np.finfo(float).tiny
+    first, last = (np.maximum(values - lifted, least) for values in tension[:2])
+    pressing = first[..., None] + (last - first)[..., None] * _PLACES
+    held = across * (_PLACES / pressing @ _WEIGHTS) / (1.0 / pressing @ _WEIGHTS)
+    slope = (held[..., None] - across[..., None] * _PLACES) / pressing
+    return Sag(0.5 * length * (slope**2 @ _WEIGHTS), held / first, (held - across) / last)
+
+
+def wrap_with_sag(prepared: Prepared, tension: SpanTension, lifted: FloatArray, directions: FloatArray) -> FloatArray:
+    """Wrap angles between spans that sag, rad, shape (n, pulleys); arguments as for `sag_of`."""
+    path = prepared.path
+    straight, sag = wrap_angles(directions, *path.shape), sag_of(prepared, tension, lifted, directions)
+    if sag is None:
+        return straight
+    turned = np.sign(path.radii) * (sag.start[:, path.leaving] - sag.end[:, path.reaching])
+    return np.asarray(np.maximum(straight + turned, 0.0))
+
+
+def weight_of_meter(prepared: Prepared, tension: SpanTension) -> FloatArray:
+    """Weight of a meter of the stretched belt, N/m, shape (n, 2)."""
+    stretch = prepared.belt.stretch_parameters.stretch(tension.mean.mean(axis=-1))
+    return np.asarray(prepared.belt.mass_per_length / stretch[:, None] * np.array(prepared.gravity))
 
 
 def _pulled_span(prepared: Prepared) -> int | None:

@@ -9,6 +9,7 @@ from beltdyn.arrays import FloatArray
 from beltdyn.parts.messages import aligned, listing
 from beltdyn.parts.quantity import RPM
 from beltdyn.results import Result
+from beltdyn.results.schema import least_safeties, variable_of
 from beltdyn.show.line_sheet import line_sheet
 from beltdyn.show.sheet import Facts, Sheet, Table, safeties
 
@@ -146,15 +147,15 @@ def _points(dataset: "xr.Dataset") -> Table:
     """A line for each operating point, with the worst of pulleys and spans."""
     whole = float(dataset["duration"].sum())
     driver = int(np.argmin(np.abs(dataset["speed_ratio"].values - 1.0)))
-    safety, least = (dataset[name].values for name in ("slip_safety", "least_slip_safety"))
+    safety, least = least_safeties(dataset).values, dataset["least_slip_safety"].values
     columns: list[Sequence[str]] = [
         [str(one) for one in dataset["row"].values],
         [f"{one / whole:.3g}" if whole == 0.0 else f"{one / whole:.1%}" for one in dataset["duration"].values],
         aligned((RPM * np.abs(dataset["pulley_speed"].values[:, driver])).tolist(), 4),
         aligned((1e-3 * dataset["power"].values[:, driver]).tolist(), 3),
         aligned(dataset["belt_speed"].values.tolist(), 3),
-        aligned(dataset["span_tension"].min("span").values.tolist(), 4),
-        aligned(dataset["span_tension"].max("span").values.tolist(), 4),
+        aligned(variable_of(dataset, "least_span_tension").min("span").values.tolist(), 4),
+        aligned(variable_of(dataset, "largest_span_tension").max("span").values.tolist(), 4),
         aligned(dataset["peak_tension"].max("span").values.tolist(), 4),
         aligned(dataset["peak_hub_load"].max("pulley").values.tolist(), 4),
         safeties(np.fmin.reduce(safety, axis=1)),
@@ -184,19 +185,19 @@ def _by_name(dataset: "xr.Dataset", dim: str) -> Table:
         at = dataset.isel(row=number)
         if dim == "pulley":
             loads, peaks, angles = (at[one].values for one in ("hub_load", "peak_hub_load", "hub_direction"))
-            shown = safeties(at["slip_safety"].values)
+            shown = safeties(least_safeties(at).values)
             cells = [
                 f"{_whole(load)} ({_whole(peak)}) {_angle(angle)} {safety}"
                 for load, peak, angle, safety in zip(loads, peaks, angles, shown, strict=True)
             ]
         else:
-            tensions, peaks = at["span_tension"].values, at["peak_tension"].values
+            tensions, peaks = variable_of(at, "largest_span_tension").values, at["peak_tension"].values
             cells = [f"{_whole(tension)} ({_whole(peak)})" for tension, peak in zip(tensions, peaks, strict=True)]
         rows.append((str(point), *cells))
     title = (
         "Hub load N (peak), direction, slip safety"
         if dim == "pulley"
-        else "Tension N (peak, with acceleration and vibration)"
+        else "Largest tension N (peak, with acceleration and vibration)"
     )
     return Table(title, ("", *map(str, dataset[dim].values)), tuple(rows))
 

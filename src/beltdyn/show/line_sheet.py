@@ -10,6 +10,7 @@ from beltdyn.designs.line_sheet import LARGEST_SAG, RESISTANCES, STRETCHES
 from beltdyn.parts.messages import aligned
 from beltdyn.parts.quantity import RPM
 from beltdyn.results import Result
+from beltdyn.results.schema import least_safeties, variable_of
 from beltdyn.show.sheet import Facts, Sheet, Table, power_unit, safeties
 
 if TYPE_CHECKING:
@@ -62,7 +63,7 @@ def _points(dataset: "xr.Dataset") -> Table:
     """A line for each operating point, with the worst of pulleys and spans."""
     durations = dataset["duration"].values
     powers, (unit, watts) = dataset["power_in"].values, power_unit(dataset["power"].values)
-    ends = np.stack([dataset["tension_at_start"].values, dataset["tension_at_end"].values])
+    least, largest = (variable_of(dataset, f"{which}_span_tension") for which in ("least", "largest"))
     columns: list[Sequence[str]] = [
         [str(one) for one in dataset["row"].values],
         [f"{one:.1%}" for one in durations / durations.sum()],
@@ -74,9 +75,9 @@ def _points(dataset: "xr.Dataset") -> Table:
             f"{out / given:.1%}" if given > 0.0 and out > 0.0 else "none"
             for out, given in zip(dataset["power_out"].values, powers, strict=True)
         ],
-        aligned(ends.min(axis=(0, 2)).tolist(), 4),
-        aligned(ends.max(axis=(0, 2)).tolist(), 4),
-        safeties(np.fmin.reduce(dataset["slip_safety"].values, axis=1)),
+        aligned(least.min("span").values.tolist(), 4),
+        aligned(largest.max("span").values.tolist(), 4),
+        safeties(np.fmin.reduce(least_safeties(dataset).values, axis=1)),
     ]
     headings: tuple[str, ...] = (
         *("", "time", "belt\nm/s", f"power in\n{unit}", f"out\n{unit}", f"losses\n{unit}", "efficiency"),
@@ -147,13 +148,14 @@ def _grip(at: "xr.Dataset", where: str, stands: BoolArray) -> Table:
         _but(stands, [f"{one:z.3%}" for one in at["pulley_slip"].values]),
         [f"{one:.3g}" for one in at["friction_coefficient"].values],
         _but(stands, safeties(at["slip_safety"].values)),
+        _but(stands, safeties(variable_of(at, "own_load_safety").values)),
     ]
     grid = np.array(tensions[2 * count :]).reshape(needed.shape)
     idle = stands | np.isnan(at["slip_safety"].values)
     columns += [_but(idle, list(map(str, grid[:, number]))) for number in range(needed.shape[1])]
     factors = [f"× {one:.3g}" for one in at["friction"].values]
     headings = (
-        *("", "tension\nbefore N", "behind N", "pull\nN", "slip", "friction", "slip\nsafety"),
+        *("", "tension\nbefore N", "behind N", "pull\nN", "slip", "friction", "slip safety\nall loads", "own load"),
         *(f"slack needed\nN {one}" if number == 0 else f"\nN {one}" for number, one in enumerate(factors)),
     )
     return Table(f"Grip{where}", headings, tuple(zip(*columns, strict=True)))
@@ -199,7 +201,7 @@ def _sag(at: "xr.Dataset", where: str) -> Table:
     """Sag between idlers."""
     carried = np.flatnonzero(at["sag"].notnull().values)
     there = at.isel(span=carried)
-    least = np.minimum(there["tension_at_start"].values, there["tension_at_end"].values)
+    least = variable_of(there, "least_span_tension").values
     columns = (
         map(str, there["span"].values),
         aligned(there["largest_idler_spacing"].values.tolist(), 3),

@@ -2,7 +2,7 @@
 
 import math
 import re
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from importlib import import_module
 from typing import TYPE_CHECKING, NamedTuple
 
@@ -169,7 +169,7 @@ def run_sheet(run: Run) -> Sheet:
     over = _window(run, summary)
     spans = Table(
         f"Spans{over}",
-        ("", "tension\nN", "min\nN", "max\nN", "belt speed\nm/s"),
+        ("", "tension\nmean N", "min\nN", "max\nN", "at start\nN", "at end\nN", "belt speed\nm/s"),
         tuple(_spans(summary)),
     )
     facts = Facts(
@@ -180,6 +180,7 @@ def run_sheet(run: Run) -> Sheet:
         (
             _pulleys(f"Pulleys{over}", summary, run.drive.guides),
             *_teeth(run),
+            *_grip(over, summary),
             spans,
             *_steady_running(run),
             facts,
@@ -244,10 +245,25 @@ def _pulleys(title: str, summary: Summary, guides: BoolArray) -> Table:
         (_share(math.nan if stands else one.elastic_creep) for one, stands in zip(pulleys, guides, strict=True)),
         (f"{math.degrees(one.wrap_angle):.1f}°" for one in pulleys),
         (f"{math.degrees(one.sliding_arc):.1f}°" for one in pulleys),
-        (_safety(one.slip_safety) for one in pulleys),
+        (_safety(one.least_safety) for one in pulleys),
         aligned([one.hub_load for one in pulleys]),
     )
     return Table(title, (*headings, "slip\nsafety", "hub load\nN"), tuple(zip(*columns, strict=True)))
+
+
+def _grip(over: str, summary: Summary) -> Iterator[Table]:
+    """Tension ratios and slip safeties of the pulleys whose load friction carries, if there are any."""
+    loaded = [one for one in summary.pulleys if not math.isnan(one.least_safety)]
+    if loaded:
+        columns = (
+            (one.name for one in loaded),
+            (_safety(one.tension_ratio) for one in loaded),
+            (_safety(one.allowed_tension_ratio) for one in loaded),
+            (_safety(one.own_load_safety) for one in loaded),
+            (_safety(one.slip_safety) for one in loaded),
+        )
+        headings = ("", "tension\nratio", "allowed by\nfriction", "slip safety\nown load", "all loads")
+        yield Table(f"Grip{over}", headings, tuple(zip(*columns, strict=True)))
 
 
 def power_unit(powers: ArrayLike) -> tuple[str, float]:
@@ -292,10 +308,11 @@ def _spans(summary: Summary) -> Iterable[tuple[str, ...]]:
     A span has no tension or speed while the belt has left one of its pulleys; a warning says so.
     """
     spans = summary.spans
-    tensions = iter(aligned([tension for one in spans for tension in (one.tension, one.lowest, one.highest)]))
+    rows = [(one.tension, one.lowest, one.highest, one.at_start, one.at_end) for one in spans]
+    tensions = np.reshape(aligned([tension for row in rows for tension in row]), (len(rows), -1)).tolist()
     speeds = aligned([one.belt_speed for one in spans])
-    for one, speed in zip(spans, speeds, strict=True):
-        yield one.name, next(tensions), next(tensions), next(tensions), speed
+    for one, row, speed in zip(spans, tensions, speeds, strict=True):
+        yield one.name, *row, speed
 
 
 def _watts(power: float, digits: int = 4) -> str:

@@ -77,7 +77,8 @@ class Rest(NamedTuple):
         seen = self.seen
         positions = self.state.position[self.state.position.size - self.system.tensioners.size :]
         depths = np.array([np.median(depth) for depth in _depths(self.prepared, seen)])
-        return self.prepared.installed(seen.span_tension[0], depths, seen.hub_force[0], positions)
+        ends = np.stack([seen.span_tension_at_start[0], seen.span_tension_at_end[0]], axis=1)
+        return self.prepared.installed(seen.span_tension[0], depths, seen.hub_force[0], positions, ends)
 
 
 Found = TypeVar("Found")

@@ -9,6 +9,7 @@ import numpy as np
 from beltdyn.arrays import FloatArray, IntArray, blank, record
 from beltdyn.contact.contact_zone import combine, fill_bernstein
 from beltdyn.contact.law import PulleyState
+from beltdyn.elements import ELEMENTS
 from beltdyn.kernel import kernel
 from beltdyn.system.arrays import PENALTY_ENERGY, SPRING_ENERGY, BodyForces, System
 from beltdyn.system.element_state import element_workspace
@@ -130,8 +131,16 @@ class Observations(NamedTuple):
     tension_variation: OfShownCurve
     """Root mean square deviation of the axial force within each curve from that mean, N."""
     span_tension: OfSpan
-    """Mean axial force of the free belt after each pulley, N; nan where the belt does not leave it. The last span of an
+    """Mean tension of the free belt after each pulley, N; nan where the belt does not leave it. The last span of an
     open belt is the one before the first pulley."""
+    largest_span_tension: OfSpan
+    """N."""
+    least_span_tension: OfSpan
+    """N."""
+    span_tension_at_start: OfSpan
+    """Where the belt leaves a pulley, N."""
+    span_tension_at_end: OfSpan
+    """Where it reaches the next one, N."""
     belt_speed: OfSpan
     """Mean speed along the belt of the same, m/s."""
     normal_force: OfPoint
@@ -166,9 +175,12 @@ class Samples(NamedTuple):
     """Scratch arrays for one state."""
 
     tension: FloatArray
+    """Of the sampling points, N: the force of the span on its line of action."""
     speed: FloatArray
     velocity: FloatArray
     """Of the sampling points, m/s, shape (n c, 2)."""
+    bending: float
+    """N m^2: times the square of the curvature, what a bent belt takes off the axial force of its centerline."""
     weight: FloatArray
     """Length of the free belt in each span."""
     is_open: bool
@@ -219,6 +231,16 @@ def new_observations(system: System, forces: BodyForces, shown: int) -> Observat
     )
 
 
+def _bending(system: System) -> float:
+    """EI (1/2 - e), N m^2, with the strain e of bending at the centerline over EI kappa^2 / EA (`ElementKind`).
+
+    A span that pulls with T is an elastica: its axial force is T - EI kappa^2 / 2, and the stretch that elements take
+    for the axial force differs by e EI kappa^2.
+    """
+    kind = next(kind for kind in ELEMENTS.values() if kind.element is type(system.element))
+    return float(system.element.section.bending * (0.5 - kind.bent_strain))
+
+
 def new_samples(system: System) -> Samples:
     """Make scratch arrays for a system."""
     points = system.length.size * system.control.shape[1] * system.contact.points.size
@@ -226,6 +248,7 @@ def new_samples(system: System) -> Samples:
         tension=np.zeros(points),
         speed=np.zeros(points),
         velocity=np.zeros((points, 2)),
+        bending=_bending(system),
         weight=np.zeros(span_count(system)),
         is_open=_is_open(system),
         leaving=np.cumsum(system.pulleys.beside == 0) - 1,

@@ -11,6 +11,7 @@ from beltdyn.contact.contact_zone import (
     fill_bernstein,
     fill_bernstein_rates,
     out_of_reach,
+    second_rate,
     touching_intervals,
 )
 from beltdyn.contact.law import PulleyState
@@ -151,13 +152,25 @@ def _observe_points(
         fill_bernstein(xi, weights)
         x, y = combine(piece.control, weights)
         vx, vy = combine(piece.velocity, weights)
-        qx, qy, samples.tension[row] = stretch_at(system, piece, xi, pull, rates)
+        qx, qy, force = stretch_at(system, piece, xi, pull, rates)
+        samples.tension[row] = force + _tension_by_bending(piece, xi, qx, qy, samples.bending, rates)
         samples.speed[row] = (qx * vx + qy * vy) / sqrt(qx * qx + qy * qy)
         samples.velocity[row, 0], samples.velocity[row, 1] = vx, vy
         result.contact_position[k, row, 0] = x
         result.contact_position[k, row, 1] = y
         result.contact_pulley[k, row] = -1
         result.normal_force[k, row] = result.friction_force[k, row] = result.slip_velocity[k, row] = 0.0
+
+
+@kernel(inline=True)
+def _tension_by_bending(piece: Curve, xi: float, qx: float, qy: float, bending: float, rates: FloatArray) -> float:
+    """What a bent belt carries of its tension by shear forces and moments, N: see `Samples.bending`."""
+    if bending == 0.0:
+        return 0.0
+    wx, wy = second_rate(piece.control, xi, rates)
+    metric = qx * qx + qy * qy
+    turning = (qx * wy - qy * wx) / (piece.length * piece.length)
+    return bending * turning * turning / (metric * metric * metric)
 
 
 @kernel(inline=True)
@@ -227,7 +240,7 @@ def _nearest_point(system: System, xi: float) -> int:
 
 @kernel(inline=True)
 def _observe_spans(system: System, samples: Samples, result: Observations, k: int) -> None:
-    """Mean tension and speed of the free belt between two pulleys.
+    """Tension of the free belt between two pulleys, its mean, extremes and values at both ends, and its mean speed.
 
     Going along the belt, free points belong to the span of the pulley that was touched last, if the next one
     touched is another. On coarse meshes a pulley may be touched between points alone, and a span may have none: then
@@ -241,6 +254,8 @@ def _observe_spans(system: System, samples: Samples, result: Observations, k: in
             samples.nearest[pulley], touched[row] = row, samples.leaving[pulley]
     for span in range(spans):
         weight[span] = result.span_tension[k, span] = result.belt_speed[k, span] = 0.0
+        result.largest_span_tension[k, span], result.least_span_tension[k, span] = -np.inf, np.inf
+        result.span_tension_at_start[k, span] = result.span_tension_at_end[k, span] = np.nan
     for p in range(system.pulleys.size):
         if samples.nearest[p] >= 0:
             touched[samples.nearest[p]] = samples.leaving[p]
@@ -253,30 +268,64 @@ def _observe_spans(system: System, samples: Samples, result: Observations, k: in
     if is_open:
         before, first = spans - 1, -1
     length = tension = speed = 0.0
+    start, end, largest, least = np.nan, np.nan, -np.inf, np.inf
     for walk in range(first + 1, first + 1 + count + is_open):
         row = walk % count
         after = touched[row]
         if is_open and walk == count:
             row, after = count - 1, spans
         if after < 0:
-            share = system.length[row // (points * curves)] * system.contact.weights[row % points]
-            length += share
-            tension += share * samples.tension[row]
-            speed += share * samples.speed[row]
+            if result.friction_force[k, row] == 0.0:  # teeth reach farther than rims
+                share = system.length[row // (points * curves)] * system.contact.weights[row % points]
+                length += share
+                tension += share * samples.tension[row]
+                speed += share * samples.speed[row]
+            if row % points == 0 and _is_free(row, points, samples, result, k):
+                end = _mean_tension(system, row, points, samples)
+                start = end if largest < least else start
+                largest, least = max(largest, end), min(least, end)
             continue
         if before != after:
             if length == 0.0:
                 last = (row - 1) % count if not is_open else max(row - 1, 0)
                 length, speed = 1.0, 0.5 * (samples.speed[last] + samples.speed[row])
                 tension = 0.5 * (samples.tension[last] + samples.tension[row])
+            if largest < least:
+                start = end = largest = least = tension / length
+            if weight[before] == 0.0:
+                result.span_tension_at_start[k, before] = start
+            result.span_tension_at_end[k, before] = end
+            result.largest_span_tension[k, before] = max(largest, result.largest_span_tension[k, before])
+            result.least_span_tension[k, before] = min(least, result.least_span_tension[k, before])
             weight[before] += length
             result.span_tension[k, before] += tension
             result.belt_speed[k, before] += speed
-        before, length, tension, speed = after, 0.0, 0.0, 0.0
+        before, length, tension, speed, largest, least = after, 0.0, 0.0, 0.0, -np.inf, np.inf
     for span in range(spans):
         free = weight[span] > 0.0
         result.span_tension[k, span] = result.span_tension[k, span] / weight[span] if free else np.nan
         result.belt_speed[k, span] = result.belt_speed[k, span] / weight[span] if free else np.nan
+        if not free:
+            result.largest_span_tension[k, span] = result.least_span_tension[k, span] = np.nan
+
+
+@kernel(inline=True)
+def _is_free(first: int, points: int, samples: Samples, result: Observations, k: int) -> bool:
+    """Whether a curve, of which a row is the first point, touches no pulley and no tooth."""
+    for row in range(first, first + points):
+        if samples.touched[row] >= 0 or result.friction_force[k, row] != 0.0:
+            return False
+    return True
+
+
+@kernel(inline=True)
+def _mean_tension(system: System, first: int, points: int, samples: Samples) -> float:
+    """Mean tension of a curve: within coarse elements at the ends of arcs, that of points swings about it."""
+    tension = weight = 0.0
+    for point in range(points):
+        tension += system.contact.weights[point] * samples.tension[first + point]
+        weight += system.contact.weights[point]
+    return tension / weight
 
 
 @kernel(inline=True)

@@ -30,8 +30,9 @@ from beltdyn.parts.quantity import RPM
 from beltdyn.points.operating_points import Axes, labels_of
 from beltdyn.results import Run, Variable
 from beltdyn.results.belt_history import mid_span_displacements
-from beltdyn.results.mechanics import across
-from beltdyn.results.slip_safety import friction_used
+from beltdyn.results.mechanics import SpanTension, across
+from beltdyn.results.schema import SPAN_TENSIONS
+from beltdyn.results.slip_safety import grip_of_states
 from beltdyn.state.linearized import SmallMotions
 from beltdyn.system.build import drive_system
 from beltdyn.system.constant_drive import dry_friction_of
@@ -65,8 +66,8 @@ _GOLDEN = 0.5 * (5.0**0.5 - 1.0)
 class SteadyValues(NamedTuple):
     """What vibrations are about."""
 
-    tension: FloatArray
-    """Of spans, N."""
+    tension: SpanTension
+    """N."""
     speed: FloatArray
     """Of the belt in spans, m/s."""
     centers: FloatArray
@@ -79,7 +80,7 @@ class Range(NamedTuple):
     """How far vibrations at a speed are from what a linear response holds for."""
 
     ripple: FloatArray
-    """Sum of the amplitudes of each span tension over its mean: slack from 1 on."""
+    """Sum of the amplitudes of each span tension over its least value: slack from 1 on."""
     friction_used: FloatArray
     """Largest part of its friction that each pulley uses: the whole arc slides from 1 on, inf where a span is slack."""
     stop_used: FloatArray
@@ -106,7 +107,8 @@ def range_of(
     waves = np.exp(1j * np.outer(times, frequencies))
     swing, sums = (waves @ tensions).real, np.abs(tensions).sum(axis=0)
     largest = float(np.nanmax(sums, initial=0.0))
-    ripple = np.divide(sums, still.tension, out=np.full_like(sums, np.nan), where=still.tension > 0.0)
+    least = np.minimum.reduce(still.tension)
+    ripple = np.divide(sums, least, out=np.full_like(sums, np.nan), where=least > 0.0)
     used = np.array([_most_used(prepared, still, scale * swing) for scale in _SCALES])
     stop_used = _stop_used(prepared, still.positions, np.abs(positions).sum(axis=0))
     change = float(np.nanmax(np.abs(rubbed - sums), initial=0.0)) / largest if largest > 0.0 else 0.0
@@ -148,9 +150,9 @@ def instants(frequencies: Sequence[float]) -> FloatArray:
 
 def _most_used(prepared: Prepared, still: SteadyValues, swing: FloatArray) -> FloatArray:
     """Largest part of its friction that each pulley uses in a vibration of the tensions, shape (instants, spans)."""
-    tension, shape = still.tension + swing, (len(swing), 1)
-    used = friction_used(tension, np.tile(still.speed, shape), np.tile(still.centers, (*shape, 1)), prepared)
-    before, after = across(tension, prepared)
+    tension, shape = still.tension.each(lambda values: values + swing), (len(swing), 1)
+    grip = grip_of_states(tension, np.tile(still.speed, shape), np.tile(still.centers, (*shape, 1)), prepared)
+    used, (before, after) = grip.used, tension.at_arcs(prepared)
     slack = np.minimum(before, after) <= 0.0
     return np.asarray(np.where(slack, np.inf, used).max(axis=0))
 
@@ -175,7 +177,7 @@ def _stop_used(prepared: Prepared, positions: FloatArray, amplitudes: FloatArray
 
 _SMALL = 1e-6
 """Largest displacement of a node with which results are differenced, over the smallest radius."""
-_OBSERVED = ("pulley_torque", "shaft_torque", "hub_force", "span_tension", "belt_speed", "pulley_center")
+_OBSERVED = ("pulley_torque", "shaft_torque", "hub_force", *SPAN_TENSIONS, "belt_speed", "pulley_center")
 _ROUNDS, _SETTLED = 60, 1e-3
 """Rounds in which amplitudes with dry friction settle, at most, and the relative change that ends them."""
 
@@ -221,9 +223,8 @@ class ForcedMotion:
         )
         still, state = self._still, self._motions.state
         prepared, last = self._motions.prepared, state.position.size - self._motions.system.tensioners.size
-        values = SteadyValues(
-            still["span_tension"][0], still["belt_speed"][0], still["pulley_center"][0], state.position[last:]
-        )
+        tension = SpanTension.of(lambda name: still[name][0])
+        values = SteadyValues(tension, still["belt_speed"][0], still["pulley_center"][0], state.position[last:])
         rubbed = np.abs(tensions).sum(axis=0)
         if dry_tensioners(prepared).size:
             rubbed = np.abs(self._rubbed(excitations)).sum(axis=0)

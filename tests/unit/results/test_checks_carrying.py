@@ -1,18 +1,14 @@
-"""Belts that sag between idlers, and the tensions at the ends of arcs of a belt that carries."""
+"""Belts that sag between idlers."""
 
 from typing import Any
 
 import numpy as np
-import pytest
 
 import beltdyn as bd
 from beltdyn.arrays import FloatArray
-from beltdyn.model.path import span_directions
 from beltdyn.parts.messages import beyond
 from beltdyn.results.checks.evidence import Evidence
 from beltdyn.results.checks.machines import _on_support, sagging_belt
-from beltdyn.results.mechanics import pressing_at_arcs, tensions_at_arcs
-from beltdyn.results.slip_safety import friction_used, slip_safety_at_arcs
 
 RAMP = {"kind": "cosine_ramp", "start": 0.2, "end": 0.8, "value": 1.0}
 DRIVE = bd.Drive(
@@ -61,46 +57,6 @@ def test_where_nothing_is_carried_on_idlers_a_belt_may_hang() -> None:
     first = (PREPARED.laid.path.span_start(1) - PREPARED.laid.start) / PREPARED.laid.stretch % PREPARED.belt_length
     away = (place - first) % PREPARED.belt_length > 20.1
     assert not said(np.where(away, 1.0, 1e6) * np.ones((2, 1)))
-
-
-def recorded(before: FloatArray, after: FloatArray) -> dict[str, FloatArray]:
-    """Torque and hub forces of a belt that presses with some tensions, with the weight of its arcs."""
-    directions = span_directions(PREPARED.path.centers, PREPARED.path.radii, None)
-    reached, left = np.roll(directions, 1, axis=0), directions
-    weight = DRIVE.belt.mass_per_length * np.abs(PREPARED.path.radii) * PREPARED.path.wrap_angles * -9.81
-    hub = after[:, None] * left - before[:, None] * reached
-    hub[:, 1] += weight
-    return {
-        "pulley_torque": (after - before) * PREPARED.radii,
-        "hub_force": hub,
-        "pulley_center": PREPARED.path.centers,
-        "belt_speed": np.full(2, 3.0),
-    }
-
-
-def test_tensions_at_arcs_follow_from_torque_and_hub_force() -> None:
-    before, after = np.array([3000.0, 1200.0]), np.array([1000.0, 1150.0])
-    values = recorded(before, after)
-    found = pressing_at_arcs(values.__getitem__, PREPARED)
-    assert found is not None
-    np.testing.assert_allclose(found, (before, after), rtol=1e-9)
-    lifted = DRIVE.belt.mass_per_length * 9.0
-    np.testing.assert_allclose(tensions_at_arcs(values.__getitem__, PREPARED), (before + lifted, after + lifted))
-    safety = slip_safety_at_arcs(found, PREPARED.path.centers, PREPARED)
-    wrap = PREPARED.path.wrap_angles[0]
-    grip = float(PREPARED.frictions[0]) * wrap
-    assert safety[0] == pytest.approx(4000.0 * np.tanh(0.5 * grip) / 2000.0)
-    used = friction_used(np.zeros(2), np.zeros(2), PREPARED.path.centers, PREPARED, found)
-    assert used[0] == pytest.approx(np.log(3.0) / grip)
-
-
-def test_without_supports_the_tension_of_spans_says_the_same() -> None:
-    plain = bd.model.prepare(DRIVE.replace(support=[], goods=[]))
-    spans = {"span_tension": np.array([10.0, 20.0])}
-    assert pressing_at_arcs(spans.__getitem__, plain) is None
-    before, after = tensions_at_arcs(spans.__getitem__, plain)
-    np.testing.assert_array_equal(before, [20.0, 10.0])
-    np.testing.assert_array_equal(after, [10.0, 20.0])
 
 
 def test_a_batch_sags_where_it_is() -> None:

@@ -36,7 +36,7 @@ def test_a_run_is_judged_where_it_is_worst(make_run: Callable[..., Run]) -> None
 
 def test_without_load_there_is_no_slip_safety(make_run: Callable[..., Run]) -> None:
     """Equal tensions at both ends of an arc."""
-    run = make_run(span_tension=np.full((101, 2), 45.0))
+    run = make_run(span_tension=np.full((101, 2), 45.0), pulley_torque=np.zeros((101, 2)))
     safety = by_key(Run(run.dataset, run.drive.replace(limits=LIMITS)))["least_slip_safety"]
     assert math.isnan(safety.value)
     assert safety.passes is None

@@ -6,7 +6,10 @@ from typing import Any
 import numpy as np
 import pytest
 
-from beltdyn.results.slip_safety import slip_parts
+from beltdyn.arrays import FloatArray
+from beltdyn.results import slip_safety
+from beltdyn.results.mechanics import SpanTension
+from beltdyn.results.slip_safety import SlipParts
 from beltdyn.stretch import Green
 from beltdyn.theory.creep import entry_strain
 
@@ -34,6 +37,13 @@ TENSION = np.array([30.0, 50.0, 90.0])
 """Of the spans that leave the pulleys: the tight one reaches the first pulley, which drives."""
 RIM = np.array([10.0, 9.9, 9.95])
 NOTHING = np.zeros(3)
+
+
+def slip_parts(
+    rim: FloatArray, tension: FloatArray, gross: FloatArray, elapsed: FloatArray | float, prepared: Any
+) -> SlipParts:
+    """Of spans with the same tension all along."""
+    return slip_safety.slip_parts(rim, SpanTension.uniform(tension), gross, elapsed, prepared)
 
 
 def test_slip_is_what_the_rims_lose_and_its_parts_make_it_up() -> None:

@@ -8,6 +8,7 @@ import pytest
 import beltdyn as bd
 from beltdyn.arrays import ComplexArray, FloatArray
 from beltdyn.model import Drive, prepare
+from beltdyn.results.mechanics import SpanTension
 from beltdyn.vibration.response_answers import (
     RIPPLE_ERROR,
     Range,
@@ -28,7 +29,9 @@ def drive() -> Drive:
 
 def looked_at(drive: Drive, tensions: Any, frequencies: Any = (100.0,), **others: Any) -> Range:
     """The range of vibrations of the two spans about 500 and 300 N."""
-    still = SteadyValues(np.array([TIGHT, SLACK]), np.full(2, SPEED), drive.path.centers, np.zeros(0))
+    still = SteadyValues(
+        SpanTension.uniform(np.array([TIGHT, SLACK])), np.full(2, SPEED), drive.path.centers, np.zeros(0)
+    )
     amplitudes: ComplexArray = np.atleast_2d(np.asarray(tensions, dtype=complex))
     rubbed: FloatArray = others.get("rubbed", np.abs(amplitudes).sum(axis=0))
     return range_of(prepare(drive), still, frequencies, amplitudes, np.zeros((len(amplitudes), 0), complex), rubbed)
@@ -116,9 +119,8 @@ def test_stops_of_a_tensioner() -> None:
     assert tensioner.stops is not None
     way = tensioner.stops[1] - 0.25 * tensioner.stops[1]
     spans, pulleys = len(drive.spans), len(drive.pulleys)
-    still = SteadyValues(
-        np.full(spans, 300.0), np.full(spans, SPEED), drive.path.centers, np.array([0.25 * tensioner.stops[1]])
-    )
+    tension = SpanTension.uniform(np.full(spans, 300.0))
+    still = SteadyValues(tension, np.full(spans, SPEED), drive.path.centers, np.array([0.25 * tensioner.stops[1]]))
     tensions, places = np.full((1, spans), 3.0, complex), np.array([[2.0j * way]])
     found = range_of(prepare(drive), still, [100.0], tensions, places, np.full(spans, 3.0))
     nearer = min(way, 0.25 * tensioner.stops[1] - tensioner.stops[0])

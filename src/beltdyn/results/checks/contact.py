@@ -8,7 +8,7 @@ import numpy as np
 from beltdyn.arrays import FloatArray
 from beltdyn.parts.messages import NOTABLE, Finding, beyond, listing
 from beltdyn.results.checks.evidence import Evidence
-from beltdyn.results.mechanics import across
+from beltdyn.results.mechanics import SpanTension, across
 from beltdyn.results.schema import names
 
 STRAIN_LIMIT = 0.05
@@ -26,7 +26,7 @@ _INSTANTS = 40
 
 def slack_spans(evidence: Evidence) -> Iterator[Finding]:
     """Spans whose tension falls to zero at any time."""
-    tensions = np.asarray(evidence.recorded["span_tension"])
+    tensions = np.asarray(evidence.recorded["least_span_tension"])
     known = np.where(np.isfinite(tensions), tensions, np.inf)
     spans = np.flatnonzero(known.min(axis=0) <= 0.0).tolist()
     if not spans:
@@ -67,12 +67,11 @@ def lifted_by_speed(evidence: Evidence) -> Iterator[Finding]:
     prepared = evidence.prepared
     if prepared.ends:
         return
-    tension, speed = (np.asarray(evidence.recorded[name]) for name in ("span_tension", "belt_speed"))
+    tension, speed = SpanTension.of(lambda name: np.asarray(evidence.recorded[name])), evidence.recorded["belt_speed"]
     with np.errstate(invalid="ignore"):
-        bending = (
-            prepared.belt.mass_per_length * speed**2 / np.asarray(prepared.belt.stretch_parameters.stretch(tension))
-        )
-        mean, taken = (np.mean(across(one, prepared), axis=0) for one in (tension, bending))
+        stretch = np.asarray(prepared.belt.stretch_parameters.stretch(tension.mean))
+        bending = prepared.belt.mass_per_length * np.asarray(speed) ** 2 / stretch
+        mean, taken = (np.mean(ends, axis=0) for ends in (tension.at_arcs(prepared), across(bending, prepared)))
         lifted = (mean > 0.0) & (taken > LIFTED * mean)
     times = [
         f"{pulley.name} at t = {evidence.time[int(when.argmax())]:.4g} s"
@@ -128,9 +127,14 @@ def _deepest(evidence: Evidence) -> tuple[FloatArray, FloatArray]:
     return depths.max(axis=0), instants[rows][depths.argmax(axis=0)]
 
 
+def _largest(evidence: Evidence) -> FloatArray:
+    """Largest tension of each span, N, zero where the belt has left a pulley, shape (outputs, spans)."""
+    return np.nan_to_num(np.asarray(evidence.recorded["largest_span_tension"]))
+
+
 def large_tension(evidence: Evidence) -> Iterator[Finding]:
     """Spans whose tension exceeds the rating of the belt."""
-    most, tension = evidence.prepared.belt.largest_tension, np.nan_to_num(np.asarray(evidence.recorded["span_tension"]))
+    most, tension = evidence.prepared.belt.largest_tension, _largest(evidence)
     if most is not None and tension.max() >= most:
         row, span = np.unravel_index(int(tension.argmax()), tension.shape)
         wider = math.ceil(100.0 * tension.max() / most) / 100.0
@@ -145,7 +149,7 @@ def large_tension(evidence: Evidence) -> Iterator[Finding]:
 
 def large_strain(evidence: Evidence) -> Iterator[Finding]:
     """Spans with an unrealistic strain."""
-    tension = np.nan_to_num(np.asarray(evidence.recorded["span_tension"]))
+    tension = _largest(evidence)
     row, span = np.unravel_index(int(tension.argmax()), tension.shape)
     belt, most = evidence.prepared.belt, float(tension[row, span])
     strain = float(belt.stretch_parameters.stretch(most)) - 1.0

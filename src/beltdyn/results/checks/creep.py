@@ -11,8 +11,8 @@ from beltdyn.parts.messages import Finding, listing
 from beltdyn.results.checks.evidence import Evidence
 from beltdyn.results.cycles import SHORTEST
 from beltdyn.results.incidents import SLIDING_LIMIT, slides_through
-from beltdyn.results.mechanics import across, pressing_at_arcs, rim_speeds
-from beltdyn.results.slip_safety import STATE, friction_used
+from beltdyn.results.mechanics import SpanTension, rim_speeds
+from beltdyn.results.slip_safety import Grip
 from beltdyn.theory.creep import entry_creep
 
 SLIP_DEFECT = 5e-4
@@ -141,8 +141,8 @@ def _added_by_slope(evidence: Evidence, number: int) -> float:
     """Friction loss on a pulley in excess of Coulomb friction, W."""
     prepared, pulley = evidence.prepared, evidence.pulleys[number]
     radius, friction = float(prepared.radii[number]), float(prepared.frictions[number])
-    tensions = np.asarray(evidence.recorded["span_tension"][evidence.window.first :]).mean(axis=0)
-    tension, rim = 0.5 * float(sum(side[number] for side in across(tensions, prepared))), abs(pulley.speed) * radius
+    ends = SpanTension.of(partial(evidence.window.mean, evidence.recorded)).at_arcs(prepared)
+    tension, rim = 0.5 * float(ends[0][number] + ends[1][number]), abs(pulley.speed) * radius
     pressing, pull = tension - prepared.belt.mass_per_length * rim**2, abs(pulley.belt_torque) / radius
     if not min(rim, pressing, pull, friction) > 0.0:
         return 0.0
@@ -194,19 +194,18 @@ def near_gross_slip(evidence: Evidence) -> Iterator[Finding]:
     near = [
         (pulley, number)
         for number, pulley in enumerate(evidence.pulleys)
-        if number not in sliding and 0.0 < pulley.slip_safety < LEAST_SLIP_SAFETY
+        if number not in sliding and 0.0 < pulley.least_safety < LEAST_SLIP_SAFETY
     ]
     if evidence.prepared.ends or not near or not _driving_rim(evidence) > 0.0:
         return
-    worst, number = min(near, key=lambda one: one[0].slip_safety)
+    worst, _ = min(near, key=lambda one: one[0].least_safety)
     prepared = evidence.prepared
-    tension, speed, centers = (evidence.window.mean(evidence.recorded, name) for name in STATE)
-    at_arcs = pressing_at_arcs(partial(evidence.window.mean, evidence.recorded), prepared)
-    least = float(friction_used(tension, speed, centers, prepared, at_arcs)[number])
+    tension, speed = (evidence.window.mean(evidence.recorded, name) for name in ("span_tension", "belt_speed"))
+    least = float(Grip(np.array(worst.tension_ratio), np.array(worst.allowed_tension_ratio)).used)
     pressing = 1.0 - prepared.belt.mass_per_length * float(np.mean(speed**2)) / float(np.mean(tension))
-    missing = LEAST_SLIP_SAFETY / worst.slip_safety - 1.0
+    missing = LEAST_SLIP_SAFETY / worst.least_safety - 1.0
     held = listing([f"the tensioner of {one.pulley}" for one in prepared.moving_tensioners] or ["the belt"])
-    safeties = [f"{floor(100.0 * one.slip_safety) / 100.0:.2f} on {one.name}" for one, _ in near]
+    safeties = [f"{floor(100.0 * one.least_safety) / 100.0:.2f} on {one.name}" for one, _ in near]
     yield Finding(
         f"{listing([pulley.name for pulley, _ in near])} {'are' if near[1:] else 'is'} near gross slip: the slip "
         f"safety is {listing(safeties)}, less than {LEAST_SLIP_SAFETY:g}.",
@@ -214,7 +213,7 @@ def near_gross_slip(evidence: Evidence) -> Iterator[Finding]:
         f"{worst.name} loses its grip and these numbers no longer hold.",
         f"Raise the tension of {held} by about {_percent(missing * pressing)}, reduce the loads by "
         f"{_percent(missing / (1.0 + missing))}, or increase the wrap angle of {worst.name}.",
-        weight=1.0 / worst.slip_safety,
+        weight=1.0 / worst.least_safety,
     )
 
 

@@ -4,7 +4,7 @@ import numpy as np
 import xarray as xr
 
 from beltdyn.results.cycles import Cycle, Window, plain_window, turn_window
-from beltdyn.results.mechanics import rim_speeds, tensions_at_arcs
+from beltdyn.results.mechanics import SpanTension, rim_speeds
 from beltdyn.results.run import Run, labelled, window
 from beltdyn.results.slip_safety import slip_parts, slip_safety_of
 from beltdyn.results.tension_balance import Balance, power_balance
@@ -78,7 +78,7 @@ def balance(run: Run, start: float | None = None, end: float | None = None) -> B
 
 
 def span_tensions(run: Run, start: float | None = None, end: float | None = None) -> xr.Dataset:
-    """Mean, minimum and maximum tension of every span.
+    """Mean, minimum and maximum tension of every span, along it and over time.
 
     Parameters
     ----------
@@ -97,11 +97,11 @@ def span_tensions(run: Run, start: float | None = None, end: float | None = None
     >>> bd.derived.span_tensions(run, end=0.0)["mean"].values.round(2)  # N, at rest
     array([28.19, 28.19])
     """
-    tension = window(run, start, end)["span_tension"]
+    part = window(run, start, end)
     numbers = {
-        "mean": (tension.mean("time"), "Mean span tension"),
-        "min": (tension.min("time"), "Minimum span tension"),
-        "max": (tension.max("time"), "Maximum span tension"),
+        "mean": (part["span_tension"].mean("time"), "Mean span tension"),
+        "min": (part["least_span_tension"].min("time"), "Minimum span tension"),
+        "max": (part["largest_span_tension"].max("time"), "Maximum span tension"),
     }
     return xr.Dataset(
         {name: value.assign_attrs(units="N", long_name=meaning) for name, (value, meaning) in numbers.items()}
@@ -223,12 +223,12 @@ def slips(run: Run, start: float | None = None, end: float | None = None, *, tur
     dataset = run.dataset if turns else dataset
     over = turn_window(run.dataset, run.prepared) if turns else Window(dataset["time"].values, ())
     gross = over.running_means(dataset["sliding_speed"].values)
-    speed, tension = (over.running_means(dataset[name].values) for name in ("pulley_speed", "span_tension"))
+    speed = over.running_means(dataset["pulley_speed"].values)
+    tension = SpanTension.of(lambda name: over.running_means(dataset[name].values))
     rim = rim_speeds(speed, run.prepared)
     driver = np.abs(rim[:, run.drive.reference, None])
     rim = np.where(driver > _STANDING * np.max(driver, initial=0.0, where=np.isfinite(driver)), rim, 0.0)
-    at_arcs = tensions_at_arcs(lambda name: over.running_means(dataset[name].values), run.prepared)
-    parts = slip_parts(rim, tension, gross, np.ptp(run.dataset["time"].values), run.prepared, at_arcs)
+    parts = slip_parts(rim, tension, gross, np.ptp(run.dataset["time"].values), run.prepared)
     called = {
         "slip": (parts.slip, "Slip"),
         "creep": (parts.slip - parts.sliding, "Creep"),
@@ -307,8 +307,7 @@ def hub_loads(run: Run, start: float | None = None, end: float | None = None) ->
 def slip_safety(run: Run, start: float | None = None, end: float | None = None) -> xr.DataArray:
     """Slip safety: the factor on all loads at which each pulley reaches gross slip, at each instant.
 
-    See `beltdyn.results.slip_safety.slip_safety_of_states`: 1 at the edge of gross slip, NaN without load. Of a belt
-    that carries it is the factor on the difference of the tensions at the pulley, at their present sum.
+    See `beltdyn.results.slip_safety.slip_safety_of_states`: 1 at the edge of gross slip, NaN without load.
 
     Parameters
     ----------
@@ -327,13 +326,42 @@ def slip_safety(run: Run, start: float | None = None, end: float | None = None) 
     >>> bd.derived.slip_safety(run).dims
     ('time', 'pulley')
     """
+    return slip_safeties(run, start, end)["slip_safety"]
+
+
+def slip_safeties(run: Run, start: float | None = None, end: float | None = None) -> xr.Dataset:
+    """Slip safety by all loads, and by the load of each pulley alone, at each instant; see `slip_safety`.
+
+    Parameters
+    ----------
+    run : Run
+        The run.
+    start, end : float, optional
+        Time range, s.
+
+    Returns
+    -------
+    xarray.Dataset
+        ``slip_safety`` and ``own_load_safety``, over time and pulley.
+
+    Examples
+    --------
+    >>> sorted(bd.derived.slip_safeties(run))
+    ['own_load_safety', 'slip_safety']
+    """
     dataset = window(run, start, end)
     found = slip_safety_of(lambda name: dataset[name].values, run.prepared)
-    return labelled(found, dataset["wrap_angle"], "1", "Slip safety")
+    wrap = dataset["wrap_angle"]
+    return xr.Dataset(
+        {
+            "slip_safety": labelled(found.all_loads, wrap, "1", "Slip safety"),
+            "own_load_safety": labelled(found.own_load, wrap, "1", "Slip safety by the pulley's own load"),
+        }
+    )
 
 
 def tension_ratios(run: Run, start: float | None = None, end: float | None = None) -> xr.DataArray:
-    """Tension ratio at every pulley: the larger over the smaller tension of its two spans.
+    """Tension ratio at every pulley: the larger over the smaller tension at the ends of its arc.
 
     Parameters
     ----------
@@ -353,7 +381,7 @@ def tension_ratios(run: Run, start: float | None = None, end: float | None = Non
     array([1., 1.])
     """
     dataset = window(run, start, end)
-    before, after = tensions_at_arcs(lambda name: dataset[name].values, run.prepared)
+    before, after = SpanTension.of(lambda name: dataset[name].values).at_arcs(run.prepared)
     tight, slack = np.maximum(before, after), np.minimum(before, after)
     ratio = np.divide(tight, slack, out=np.full_like(slack, np.nan), where=slack > 0.0)
     return labelled(ratio, dataset["wrap_angle"], "1", "Tension ratio")
