@@ -4,6 +4,7 @@ from typing import Any
 
 import numpy as np
 
+from beltdyn.machines import Guide, Idlers
 from beltdyn.model import Drive
 from beltdyn.points.changed_drive import with_load
 
@@ -80,10 +81,14 @@ def scaled(drive: Drive, factor: float) -> Drive:
         drive.belt.mass_per_length + sum(one.mass_per_length for one in some) + _rotating(drive)
         for some in (drive.goods, goods)
     )
-    supports = [one.replace(friction=factor * one.friction * before / after) for one in drive.supports]
+    supports = [
+        one.replace(friction=factor * one.friction * before / after)
+        for one in drive.supports
+        if isinstance(one, Guide | Idlers)
+    ]
     return other.replace(goods=goods, support=supports)
 
 
 def _rotating(drive: Drive) -> float:
     """Mass of the rollers of idlers, which count in what they resist, kg/m."""
-    return float(sum(one.rotating_mass for one in drive.supports if hasattr(one, "idler_mass")))
+    return float(sum(one.rotating_mass for one in drive.supports if isinstance(one, Idlers)))

@@ -476,7 +476,7 @@ class _DriveSheet:
         if np.isfinite(free):
             rows["free"] = (np.nan, free, 0.0)
         for place, (name, change) in enumerate(longer.items()):
-            rows[name] = (length + change, float(states.positions[place, 0]), float(states.tension[place].mean()))
+            rows[name] = (length + change, float(states.positions[place, 0]), float(states.tension.mean[place].mean()))
         if np.isfinite(lower):
             change, tension = balance.held_at(0, lower)
             rows["load"] = (length + change, lower, tension)
@@ -532,7 +532,7 @@ class _DriveSheet:
             return
         longer = (np.array(standard) - nominal) / belt.measured_stretch
         states = self._steady.balance.under(np.zeros((longer.size, self._radii.size)), 0.0, longer).states()
-        tension = states.tension.mean(axis=1)
+        tension = states.tension.mean.mean(axis=1)
         held = np.isfinite(tension) & (tension > _SLACK * self._rest.tension)
         self.coordinates["standard"] = (Variable(_STANDARD, "m", "Standard nominal length"), standard)
         self.variables |= {

@@ -216,8 +216,7 @@ class Prepared:
         path = estimate.path
         turned = path.span_directions[path.leaving] - path.span_directions[path.reaching]
         tensions = np.full(path.spans, estimate.tension)
-        ends = np.repeat(tensions[:, None], 2, axis=1)
-        return self.installed(tensions, estimate.penetrations.copy(), estimate.tension * turned, positions.copy(), ends)
+        return self.installed(tensions, estimate.penetrations.copy(), estimate.tension * turned, positions.copy())
 
     def installed(
         self,
@@ -225,9 +224,11 @@ class Prepared:
         penetrations: FloatArray,
         hub_loads: FloatArray,
         positions: FloatArray,
-        end_tensions: FloatArray,
+        end_tensions: FloatArray | None = None,
     ) -> Installation:
-        """Describe the belt at rest in some state: arrays as those of an `Installation`."""
+        """Describe the belt at rest in some state: arrays as those of an `Installation`; by default without weight."""
+        if end_tensions is None:
+            end_tensions = np.repeat(span_tensions[:, None], 2, axis=1)
         belt, path = self.belt, moved(self.path, self.carriers, positions)
         laid = path.length / self.belt_length
         return Installation(

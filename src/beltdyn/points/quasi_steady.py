@@ -51,7 +51,8 @@ class QuasiSteady:
         self.prepared, self.rest, self.drive = prepared, rest, prepared.drive
         self.driver = driver_of(self.drive)
         still = np.zeros((1, prepared.path.spans))
-        tension = SpanTension(*rest.end_tensions.T[:, None], rest.span_tensions[None])
+        starts, ends = rest.end_tensions.T
+        tension = SpanTension(starts[None], ends[None], rest.span_tensions[None])
         self.balance = TensionBalance(prepared, tension, still, rest.path.centers[None])
         belt, self._radii = prepared.belt, np.asarray(prepared.path.radii)
         self._drag = compression_losses(prepared) + bending_loss(

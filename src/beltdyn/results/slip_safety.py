@@ -171,8 +171,8 @@ def slip_safety_of_states(
         before, after = flat.at_arcs(prepared)
         rise = balance.jumps()
         load = rise if torque is None else torque.reshape(-1, pulleys) / prepared.radii
-        loaded = np.minimum(np.abs(load), np.abs(rise)) > UNLOADED * np.abs(before + after)
-        loaded &= prepared.gripping
+        grown = np.minimum(np.abs(load), np.abs(rise)) > UNLOADED * np.abs(before + after)
+        loaded = np.asarray(grown & prepared.gripping)
         loaded[:, list(prepared.path.beside)] = False
         loaded &= np.isfinite(flat.mean).all(axis=1)[:, None]
         state, pulley = np.nonzero(loaded)
@@ -188,9 +188,8 @@ def slip_safety_of_states(
 
 def slip_safety_of(value_of: Callable[[str], FloatArray], prepared: Prepared) -> SlipSafety:
     """Slip safety of each pulley, see `slip_safety_of_states`; `value_of` gives recorded variables by name."""
-    return slip_safety_of_states(
-        SpanTension.of(value_of), *(value_of(name) for name in STATE[:2]), prepared, value_of(STATE[2])
-    )
+    speed, centers, torque = (value_of(name) for name in STATE)
+    return slip_safety_of_states(SpanTension.of(value_of), speed, centers, prepared, torque)
 
 
 class Grip(NamedTuple):
@@ -225,7 +224,7 @@ def grip_of_states(tension: SpanTension, belt_speed: FloatArray, centers: FloatA
 
 def grip_of(value_of: Callable[[str], FloatArray], prepared: Prepared) -> Grip:
     """Tension ratios, see `grip_of_states`; `value_of` gives recorded variables by name."""
-    return grip_of_states(SpanTension.of(value_of), *(value_of(name) for name in STATE[:2]), prepared)
+    return grip_of_states(SpanTension.of(value_of), value_of("belt_speed"), value_of("pulley_center"), prepared)
 
 
 # The edge of slip: a factor on loads at which friction carries all that it can

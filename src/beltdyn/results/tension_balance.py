@@ -221,7 +221,7 @@ class Loads(NamedTuple):
 
     def of(self, rows: IntArray | BoolArray) -> "Loads":
         """Some of them."""
-        return Loads(*(values[rows] for values in self))
+        return Loads(self.state[rows], self.start[rows], self.end[rows])
 
 
 class States(NamedTuple):
@@ -508,10 +508,12 @@ class TensionBalance:
         path, lifted = self._prepared.path, self._lifted[rows]
         first = self._belt_on(rows, tension, shape) if self._pulled is None else tension.mean[:, self._pulled]
         missing = [first]
-        pulls = self._pulls(tension, lifted, shape) if self._carriers else ()
+        if not self._carriers:
+            return first[:, None]
+        starting, ending = self._pulls(tension, lifted, shape)
         for number, one in enumerate(self._carriers):
             before, after = path.reaching[one.pulley], path.leaving[one.pulley]
-            pull = pulls[0][:, after] - pulls[1][:, before]
+            pull = starting[:, after] - ending[:, before]
             place = self._places[rows, number] + unknowns[:, 1 + number]
             missing.append(np.sum(pull * shape.slopes[:, number], axis=1) + _spring(one.tensioner, place))
         return np.column_stack(missing)

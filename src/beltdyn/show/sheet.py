@@ -2,7 +2,7 @@
 
 import math
 import re
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Iterable, Sequence
 from importlib import import_module
 from typing import TYPE_CHECKING, NamedTuple
 
@@ -180,7 +180,6 @@ def run_sheet(run: Run) -> Sheet:
         (
             _pulleys(f"Pulleys{over}", summary, run.drive.guides),
             *_teeth(run),
-            *_grip(over, summary),
             spans,
             *_steady_running(run),
             facts,
@@ -248,22 +247,11 @@ def _pulleys(title: str, summary: Summary, guides: BoolArray) -> Table:
         (_safety(one.least_safety) for one in pulleys),
         aligned([one.hub_load for one in pulleys]),
     )
-    return Table(title, (*headings, "slip\nsafety", "hub load\nN"), tuple(zip(*columns, strict=True)))
-
-
-def _grip(over: str, summary: Summary) -> Iterator[Table]:
-    """Tension ratios and slip safeties of the pulleys whose load friction carries, if there are any."""
-    loaded = [one for one in summary.pulleys if not math.isnan(one.least_safety)]
-    if loaded:
-        columns = (
-            (one.name for one in loaded),
-            (_safety(one.tension_ratio) for one in loaded),
-            (_safety(one.allowed_tension_ratio) for one in loaded),
-            (_safety(one.own_load_safety) for one in loaded),
-            (_safety(one.slip_safety) for one in loaded),
-        )
-        headings = ("", "tension\nratio", "allowed by\nfriction", "slip safety\nown load", "all loads")
-        yield Table(f"Grip{over}", headings, tuple(zip(*columns, strict=True)))
+    return Table(
+        title,
+        (*headings, "slip\nsafety", "hub load\nN"),
+        tuple(zip(*columns, strict=True)),
+    )
 
 
 def power_unit(powers: ArrayLike) -> tuple[str, float]:

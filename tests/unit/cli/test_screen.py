@@ -29,7 +29,7 @@ def test_summary(run: Run, capsys: pytest.CaptureFixture[str]) -> None:
         "29.25 W in, 29.1 W out",
         "96.04%",
         "1.2 W: friction 1.08 W, contact damping 0.12 W",
-        "driven-driver 60.00 60.00 60.00 0.9750",
+        "driven-driver 60.00 60.00 60.00 60.00 60.00 0.9750",
         "energy balance closes within 1.0e-04 of the energy",
         "time steps 1200 accepted, 14 rejected; 101 outputs",
     ):

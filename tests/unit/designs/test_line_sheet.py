@@ -38,7 +38,7 @@ def test_a_conveyor_has_the_pull_of_din_22101() -> None:
     wrap, least = float(head.wrap_angle), head.least_slack_tension.values
     expected = float(head.tension_before - head.tension_after) / np.expm1(np.array([0.7, 1.0, 1.3]) * 0.35 * wrap)
     np.testing.assert_allclose(least, expected + 25.0 * 3.998**2, rtol=1e-3)
-    np.testing.assert_allclose(upper.sag[0] * upper.least_tension[0] * 8.0, 129.0 * 9.81 * 1.2, rtol=1e-3)
+    np.testing.assert_allclose(upper.sag[0] * upper.least_span_tension[0] * 8.0, 129.0 * 9.81 * 1.2, rtol=1e-3)
     # the start: belt, goods, idlers and tail drum at 0.1571 m/s^2; the tail drum takes half of the stretch up
     mass = 25.0 * 2001.4 + 1000.11 * (104.0 * np.array([1.0, 0.0]) + 22.0 / 1.2 + 18.0 / 3.0) + 60.0 / 0.4**2
     np.testing.assert_allclose(found.moved_mass, mass, rtol=2e-3)

@@ -129,7 +129,7 @@ def _deepest(evidence: Evidence) -> tuple[FloatArray, FloatArray]:
 
 def _largest(evidence: Evidence) -> FloatArray:
     """Largest tension of each span, N, zero where the belt has left a pulley, shape (outputs, spans)."""
-    return np.nan_to_num(np.asarray(evidence.recorded["largest_span_tension"]))
+    return np.asarray(np.nan_to_num(np.asarray(evidence.recorded["largest_span_tension"])))
 
 
 def large_tension(evidence: Evidence) -> Iterator[Finding]:
