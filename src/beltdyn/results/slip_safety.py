@@ -171,10 +171,10 @@ def slip_safety_of_states(
         before, after = flat.at_arcs(prepared)
         rise = balance.jumps()
         load = rise if torque is None else torque.reshape(-1, pulleys) / prepared.radii
-        grown = np.minimum(np.abs(load), np.abs(rise)) > UNLOADED * np.abs(before + after)
-        loaded = np.asarray(grown & prepared.gripping)
+        loaded = np.zeros(rise.shape, dtype=bool)
+        loaded[:] = (np.minimum(np.abs(load), np.abs(rise)) > UNLOADED * np.abs(before + after)) & prepared.gripping
         loaded[:, list(prepared.path.beside)] = False
-        loaded &= np.isfinite(flat.mean).all(axis=1)[:, None]
+        loaded[~np.isfinite(flat.mean).all(axis=1)] = False
         state, pulley = np.nonzero(loaded)
         loads = [balance.all_loads().of(state), balance.own_loads().of(state * pulleys + pulley)]
         others = pulley != prepared.reference
