@@ -28,6 +28,8 @@ class Running(NamedTuple):
     """Of the belt, m/s, negative against the order of the pulleys, shape (n,)."""
     torque: FloatArray
     """On the shafts, N m, that of the driver from the balance, shape (n, P)."""
+    belt_torque: FloatArray
+    """Of the friction of the belt on pulleys, N m, shape (n, P)."""
     tension: FloatArray
     """Mean of spans, N, shape (n, spans); NaN where there is no balance."""
     ends: FloatArray
@@ -51,8 +53,9 @@ class QuasiSteady:
         self.prepared, self.rest, self.drive = prepared, rest, prepared.drive
         self.driver = driver_of(self.drive)
         still = np.zeros((1, prepared.path.spans))
-        starts, ends = rest.end_tensions.T
-        tension = SpanTension(starts[None], ends[None], rest.span_tensions[None])
+        mean, points = SpanTension.uniform(rest.span_tensions[None]), rest.path.span_points
+        below = (points.mean(axis=1, keepdims=True) - points) @ weight_of_meter(prepared, mean)[0]
+        tension = SpanTension(mean.mean + below[:, 0], mean.mean + below[:, 1], mean.mean)
         self.balance = TensionBalance(prepared, tension, still, rest.path.centers[None])
         belt, self._radii = prepared.belt, np.asarray(prepared.path.radii)
         self._drag = compression_losses(prepared) + bending_loss(
@@ -108,7 +111,8 @@ class QuasiSteady:
         weight = weight_of_meter(self.prepared, found.tension)
         arcs = (found.wrap * np.abs(self._radii))[:, :, None] * weight[:, None]
         hub = pulls[:, :, 0] - np.roll(pulls[:, :, 1], 1, axis=1) + arcs
-        return Running(speed, whole, found.tension.mean, ends, found.positions, found.centers, hub)
+        carried = -(pull + running * self._drag) * self._radii
+        return Running(speed, whole, carried, found.tension.mean, ends, found.positions, found.centers, hub)
 
     def slip_safety(self, states: Running, factors: FloatArray) -> SlipSafety:
         """Slip safety of each pulley with factors on all coefficients of friction, shape (factors, n, P)."""
@@ -120,8 +124,8 @@ class QuasiSteady:
         tension = SpanTension(tiled(states.ends[..., 0]), tiled(states.ends[..., 1]), tiled(states.tension))
         speed = tiled(np.repeat(states.speed[:, None], states.tension.shape[1], axis=1))
         frictions = np.repeat(factors[:, None] * self.prepared.frictions, known.sum(), axis=0)
-        torque = tiled(states.torque)
-        safety = slip_safety_of_states(tension, speed, tiled(states.centers), self.prepared, torque, frictions)
+        centers, torque = tiled(states.centers), tiled(states.belt_torque)
+        safety = slip_safety_of_states(tension, speed, centers, self.prepared, torque, frictions)
         found = SlipSafety(np.full(shape, np.nan), np.full(shape, np.nan))
         for place, values in zip(found, safety, strict=True):
             place[:, known] = values.reshape(factors.size, -1, shape[2])

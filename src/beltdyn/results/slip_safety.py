@@ -170,13 +170,14 @@ def slip_safety_of_states(
         balance = TensionBalance(prepared, flat, belt_speed.reshape(-1, spans), centers.reshape(-1, pulleys, 2), rough)
         before, after = flat.at_arcs(prepared)
         rise = balance.jumps()
-        load = rise if torque is None else torque.reshape(-1, pulleys) / prepared.radii
+        turning = np.sign(prepared.path.radii)
+        load = rise if torque is None else turning * torque.reshape(-1, pulleys) / prepared.radii
         loaded = np.zeros(rise.shape, dtype=bool)
         loaded[:] = (np.minimum(np.abs(load), np.abs(rise)) > UNLOADED * np.abs(before + after)) & prepared.gripping
         loaded[:, list(prepared.path.beside)] = False
         loaded[~np.isfinite(flat.mean).all(axis=1)] = False
         state, pulley = np.nonzero(loaded)
-        loads = [balance.all_loads().of(state), balance.own_loads().of(state * pulleys + pulley)]
+        loads = [balance.all_loads(load).of(state), balance.own_loads(load).of(state * pulleys + pulley)]
         others = pulley != prepared.reference
         both = Loads(*(np.concatenate([every, own[others]]) for every, own in zip(*loads, strict=True)))
         factors = _edges(balance, both, np.concatenate([pulley, pulley[others]]))

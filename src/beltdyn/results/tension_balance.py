@@ -345,15 +345,34 @@ class TensionBalance:
 
     # Loads and the edge of slip
 
-    def all_loads(self) -> Loads:
-        """All loads of each state: tensions less the weight of the belt below, about their mean."""
-        start, end = self._levels()
-        mean = 0.5 * (start + end).mean(axis=1, keepdims=True)
-        return Loads(np.arange(len(start)), start - mean, end - mean)
+    def all_loads(self, rise: FloatArray) -> Loads:
+        """All loads of each state: what arcs, and spans with supports or goods, add to the tension, about the mean.
 
-    def own_loads(self) -> Loads:
-        """The load of each pulley, taken up by the driver: rows are those of all pulleys of a state, then the next."""
-        rise, path, driver = self.jumps(), self._prepared.path, self._prepared.reference
+        `rise`: of the tension over each arc by friction, N, shape (n, pulleys); that over the driver closes the path.
+        """
+        path, prepared = self._prepared.path, self._prepared
+        carrying = {one.span for one in (*prepared.supports, *prepared.goods)}
+        start, end = self._levels()
+        along = np.where([span in carrying for span in prepared.spans], end - start, 0.0)
+        order, leaves = path.order.tolist(), dict(zip(path.leaving[path.on].tolist(), path.on.tolist(), strict=True))
+        driver = int(path.leaving[prepared.reference])
+        if path.ends is None:
+            first = order.index(driver)
+            order = order[first:] + order[:first]
+        level, starts = np.zeros(len(start)), np.zeros_like(start)
+        for span in order:
+            level = level + (0.0 if span == order[0] or span not in leaves else rise[:, leaves[span]])
+            starts[:, span] = level
+            level = level + along[:, span]
+        mean = (starts + 0.5 * along).mean(axis=1, keepdims=True)
+        return Loads(np.arange(len(start)), starts - mean, starts + along - mean)
+
+    def own_loads(self, rise: FloatArray) -> Loads:
+        """The load of each pulley, taken up by the driver: rows are those of all pulleys of a state, then the next.
+
+        `rise`: as for `all_loads`.
+        """
+        path, driver = self._prepared.path, self._prepared.reference
         spans, place = np.arange(path.spans), path.leaving
         between = np.zeros((path.count, path.spans))
         for pulley in path.on.tolist():
@@ -362,7 +381,7 @@ class TensionBalance:
                 first, last, sign = last, first, -1.0
             between[pulley] = np.where((spans >= first) & (spans < last), sign, 0.0)
         slopes = rise[:, :, None] * between
-        everything = self.all_loads()
+        everything = self.all_loads(rise)
         start, end = slopes.copy(), slopes.copy()
         start[:, driver], end[:, driver] = everything.start, everything.end
         states = np.repeat(everything.state, path.count)
