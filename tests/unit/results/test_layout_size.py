@@ -46,7 +46,7 @@ def test_a_run_of_twice_the_time_takes_twice_the_room(lasting: Lasting) -> None:
 def test_seldom_fields_save_most_of_the_room(lasting: Lasting) -> None:
     """Fields take the room of the mesh, all else that of a few numbers."""
     always, seldom = (expected_bytes(prepare(lasting(10.0, field_interval=interval))) for interval in (1e-3, 1e-2))
-    assert 0.1 * always < seldom < 0.2 * always
+    assert 0.1 * always < seldom < 0.21 * always
 
 
 @pytest.mark.parametrize(("duration", "outputs"), [(1.0, 1001), (10.0, 10001)])

@@ -10,7 +10,7 @@ def test_tables_say_what_suppliers_say() -> None:
     titles = [part.title for part in sheet(result).parts if isinstance(part, Table)]
     assert titles == [
         *("Pulleys", "Tensioner of tensioner", "Belts of standard length", "Operating points"),
-        "Tension N (peak, with acceleration and vibration)",
+        "Largest tension N (peak, with acceleration and vibration)",
         "Hub load N (peak), direction, slip safety",
         "Spans at rest",
         "First modes, at the largest power, with sliding tensioners",
