@@ -7,7 +7,7 @@ from pathlib import Path
 
 import pytest
 
-from tools.campaign import decoys, stops
+from tools.campaign import decoys, kills, stops
 from tools.campaign.stops import COMMANDS, Ending, fault_of, instants, prepare, run, stopped
 
 pytestmark = pytest.mark.skipif(not hasattr(os, "fork"), reason="groups of processes")
@@ -57,10 +57,26 @@ def test_commands_that_are_told_to_end(name: str, tmp_path: Path) -> None:
     assert {label: fault for label, fault in found.items() if fault} == {}
 
 
+def test_half_written_files_are_noticed(tmp_path: Path) -> None:
+    kills.prepare(tmp_path)
+    assert kills.unreadable(tmp_path) == ""
+    for name in ("drive-sweep.nc", "drive-optimize.toml", "drive.fmu"):
+        (tmp_path / name).write_bytes(b"[belt]\nwid")
+        assert kills.unreadable(tmp_path).startswith(name)
+        (tmp_path / name).unlink()
+
+
+@pytest.mark.slow
+def test_killed_commands_leave_whole_files_and_begin_again(tmp_path: Path) -> None:
+    pytest.importorskip("pythonfmu")
+    found = {label: work() for label, work in kills.trials(2, emptied, tmp_path / "killed")}
+    assert len(found) == 2 * len(kills.COMMANDS)
+    assert {label: fault for label, fault in found.items() if fault} == {}
+
+
 def test_modules_of_the_working_folder_are_not_run(tmp_path: Path) -> None:
-    """By the processes of a pool and of compilation; the trial notices those that are."""
-    for route in ("beside", "processes"):
-        assert decoys.foreign(route, emptied(tmp_path / route), None, open_for=0.0) == ""
+    """By the process of compilation; the trial notices those that are. The slow part has the other routes."""
+    assert decoys.foreign("beside", emptied(tmp_path / "beside"), None, open_for=0.0) == ""
     fault = decoys.foreign("unsafe", emptied(tmp_path / "unsafe"), None, open_for=0.0)
     assert fault.startswith("imported from the working folder: ")
 

@@ -1,6 +1,7 @@
 """Try beltdyn with random wrong, odd, damaged and hostile input and with kills, and print the figures.
 
-    python -m tools.campaign --seed 1 --mutants 20000 --damaged 2000 --odd 500 --kills 16 --stops 20 --decoys
+    python -m tools.campaign --seed 1 --mutants 20000 --damaged 2000 --odd 500 --kills 16
+    python -m tools.campaign --stops 20 --killed-commands 5 --decoys
 
 The same numbers give the same trials. Ends with 1 if any ended in a traceback, took too long, or was silently changed.
 Needs an operating system that can fork.
@@ -109,6 +110,12 @@ def stopped(count: int, folder: Path) -> Iterator[Trial]:
         yield label, attempt(work, _PATIENT, _PATIENT)
 
 
+def killed_commands(count: int, folder: Path) -> Iterator[Trial]:
+    """Commands that are killed, and are begun again."""
+    for label, work in kills.trials(count, _emptied, folder / "killed"):
+        yield label, attempt(work, _PATIENT, _PATIENT)
+
+
 def decoyed(folder: Path) -> Iterator[Trial]:
     """Commands in a folder with modules of other names, each with an empty cache of kernels."""
     for route in decoys.ROUTES:
@@ -127,6 +134,7 @@ def main(words: list[str] | None = None) -> int:
             "mutated drive files": mutants(asked.seed, asked.mutants, folder),
             "damaged files": damaged(asked.seed, asked.damaged, folder) if asked.damaged else iter(()),
             "commands told to end": stopped(asked.stops, folder) if asked.stops else iter(()),
+            "killed commands": killed_commands(asked.killed_commands, folder) if asked.killed_commands else iter(()),
             "folders of modules": decoyed(folder) if asked.decoys else iter(()),
             "killed and resumed runs": killed(asked.seed, asked.kills, folder) if asked.kills else iter(()),
             "odd drives, analyses": odd(asked.seed, asked.odd, folder) if asked.odd else iter(()),
@@ -190,6 +198,7 @@ def _parser() -> argparse.ArgumentParser:
     parser.add_argument("--kills", type=int, default=4, help="runs that are killed")
     parser.add_argument("--examples", default="", help="examples whose results all consumers read; all for every one")
     parser.add_argument("--stops", type=int, default=0, help="instants at which each of four commands is told to end")
+    parser.add_argument("--killed-commands", type=int, default=0, help="instants at which four others are killed")
     parser.add_argument("--decoys", action="store_true", help="try folders of modules, and compile all for each route")
     parser.add_argument("--hostile", action=argparse.BooleanOptionalAction, default=True, help="try hostile files")
     return parser

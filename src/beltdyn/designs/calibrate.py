@@ -20,7 +20,7 @@ from beltdyn.parts.options import ForceTolerance, takes_options
 from beltdyn.results import Result, Variable, build_result
 from beltdyn.results.atomic import locked_output
 from beltdyn.results.schema import VARIOUS
-from beltdyn.signals import closing
+from beltdyn.signals import closing, uninterrupted
 from beltdyn.solvers.run_progress import Report
 
 # Least squares between bounds (trust-region reflective, SciPy), and what the fit knows of its numbers
@@ -65,16 +65,27 @@ def fit(
     *,
     known: bool,
     most: int = 100,
+    keep: Callable[[Fit], None] | None = None,
 ) -> Fit:
     """Fit numbers between 0 and 1 to residuals over standard deviations, shape (m,), with derivatives of shape (m, n).
 
     Unless the standard deviations are `known`, one factor of them is estimated. An interruption ends the search where
-    it is, once derivatives at its start are known.
+    it is, once derivatives at its start are known. `keep` gets the fit of each iteration, as of an interruption.
     """
+
+    def reach(reached: _Reached) -> None:
+        if keep is not None:
+            keep(_fit_of(reached, confidence, known))
+
+    return _fit_of(_search(residuals, jacobian, start, most, reach), confidence, known)
+
+
+def _fit_of(reached: "_Reached", confidence: float, known: bool) -> Fit:
+    """The fit at numbers, from derivatives there."""
     from scipy import stats
 
-    numbers, away, slopes, interrupted = _search(residuals, jacobian, start, most)
-    left = away.size - start.size
+    numbers, away, slopes, interrupted = reached
+    left = away.size - numbers.size
     spread = float(np.sqrt(away @ away / left)) if left > 0 else np.nan
     sizes = np.linalg.norm(slopes, axis=0)
     scaled = slopes / np.where(sizes > 0.0, sizes, 1.0)
@@ -83,9 +94,9 @@ def fit(
     untold = tuple(np.flatnonzero((sizes == 0.0) | (left < 0) | (np.abs(unnoticed) > _INVOLVED).any(axis=0)).tolist())
     told = not untold
     inverse = (
-        rows.T / np.maximum(singular, np.finfo(float).tiny) if told else np.full((start.size, singular.size), np.inf)
+        rows.T / np.maximum(singular, np.finfo(float).tiny) if told else np.full((numbers.size, singular.size), np.inf)
     )
-    covariance = inverse @ inverse.T if told else np.diag(np.full(start.size, np.inf))
+    covariance = inverse @ inverse.T if told else np.diag(np.full(numbers.size, np.inf))
     deviations = np.sqrt(np.diag(covariance))
     correlation = covariance / np.outer(deviations, deviations) if told else np.full(covariance.shape, np.nan)
     factor = 1.0 if known else spread
@@ -109,6 +120,7 @@ def _search(
     jacobian: Callable[[FloatArray], FloatArray],
     start: FloatArray,
     most: int,
+    reach: Callable[[_Reached], None],
 ) -> _Reached:
     """Least squares, or the last numbers at which derivatives were taken where the search is interrupted."""
     from scipy.optimize import least_squares
@@ -121,6 +133,7 @@ def _search(
         nonlocal reached
         slopes = jacobian(numbers)
         reached = _Reached(numbers.copy(), residuals(numbers), slopes, True)
+        reach(reached)
         return slopes
 
     try:
@@ -246,12 +259,23 @@ def _calibrate(
     numbers = free_numbers(drive, given.numbers)
     fitting = Residuals(drive, numbers, given, base, force_tolerance, progress)
     first = fitting.start()
-    found = fit(fitting.residuals, fitting.jacobian, first, given.confidence, known=fitting.known, most=MOST)
-    result = _result(drive, numbers, fitting, found, given.confidence)
-    if path is not None:
-        with closing():
+
+    confidence, known = given.confidence, fitting.known
+
+    def save(result: Result) -> None:
+        if path is not None:
             result.save(path, overwrite)
             write_found(path, str(result.dataset.attrs["best_drive"]), overwrite)
+
+    def keep(found: Fit) -> None:
+        with uninterrupted():
+            save(_result(drive, numbers, fitting, found, confidence))
+
+    keeping = keep if path is not None else None
+    found = fit(fitting.residuals, fitting.jacobian, first, confidence, known=known, most=MOST, keep=keeping)
+    result = _result(drive, numbers, fitting, found, confidence)
+    with closing():
+        save(result)
     return result
 
 

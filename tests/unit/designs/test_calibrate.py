@@ -82,16 +82,19 @@ def test_what_cannot_be_computed_is_refused(drive: Drive, tmp_path: Path) -> Non
 
 
 def test_an_interrupted_calibration_keeps_what_it_has_come_to(drive: Drive, slips: FloatArray, tmp_path: Path) -> None:
-    """Its file says so, and the drive file beside it holds the numbers."""
+    """Its file says so, and the drive file beside it holds the numbers; they are there before, if it is killed."""
     write(tmp_path, slips)
+    before = list[Result]()
 
     def interrupt(progress: Progress) -> None:
         if progress.time >= 3.0:
+            before.append(open_result(tmp_path / "out.nc"))
             raise KeyboardInterrupt
 
     found = calibrate(drive, study=study_file(tmp_path), output=tmp_path / "out.nc", progress=interrupt)
     kept = open_result(tmp_path / "out.nc")
     assert found.status == kept.status == "interrupted"
+    assert before[0].dataset.fitted[0] == kept.dataset.fitted[0]
     assert any("the search was interrupted" in warning for warning in kept.warnings)
     assert abs(kept.dataset.fitted[0] / TRUE_MODULUS - 1.0) < abs(kept.dataset.start[0] / TRUE_MODULUS - 1.0)
     assert loads((tmp_path / "out.toml").read_text(encoding="utf-8")) == kept.drive

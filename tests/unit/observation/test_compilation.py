@@ -61,3 +61,21 @@ def test_a_second_process_compiles_what_observes_steady_running(tmp_path: Path) 
         text=True,
     )
     assert process.stdout.split() == ["1", "0"]
+
+
+@pytest.mark.slow
+def test_two_processes_that_compile_at_once_share_one_sound_cache(tmp_path: Path) -> None:
+    """Each kernel is compiled by one of them; a third process compiles none."""
+    command = [sys.executable, "-W", "error", "-c", COMPILE.format("truss")]
+    surroundings = {**os.environ, "BELTDYN_CACHE_DIR": str(tmp_path)}
+    pipes = {"stdout": subprocess.PIPE, "stderr": subprocess.PIPE, "text": True}
+    both = [subprocess.Popen(command, env=surroundings, **pipes) for _ in range(2)]  # type: ignore[call-overload]
+    for process in both:
+        output, errors = process.communicate(timeout=600)
+        assert (process.returncode, errors) == (0, "")
+        assert sum(int(count) for count in output.split()) == 1
+    kernels = {path.name: path.stat().st_mtime_ns for path in tmp_path.rglob("*.kernel")}
+    assert kernels
+    third = subprocess.run(command, env=surroundings, check=True, capture_output=True, text=True)
+    assert third.stdout.split() == ["1", "0"]
+    assert {path.name: path.stat().st_mtime_ns for path in tmp_path.rglob("*.kernel")} == kernels

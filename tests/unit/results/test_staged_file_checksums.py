@@ -1,6 +1,8 @@
 """Checksums behind a file: the last set that is whole counts, and files without any are told apart."""
 
 import io
+import os
+import time
 from pathlib import Path
 
 import numpy as np
@@ -78,3 +80,16 @@ def test_damage_is_told_by_its_place(path: Path, place: int) -> None:
 
 def test_pages() -> None:
     assert [page_count(end) for end in (0, 1, PAGE, PAGE + 1)] == [0, 1, 1, 2]
+
+
+@pytest.mark.parametrize("jump", [-1e5, 0.0, 1e5])
+def test_files_are_verified_whatever_the_clock_says(path: Path, tmp_path: Path, jump: float) -> None:
+    """Times of files may lie in the past or in the future, with a clock that was set, or of another computer."""
+    bare, damaged = tmp_path / "bare", tmp_path / "damaged"
+    bare.write_bytes(bytes(3 * PAGE))
+    damaged.write_bytes(bytes([path.read_bytes()[0] ^ 1]) + path.read_bytes()[1:])
+    for file in (path, bare, damaged):
+        os.utime(file, (time.time() + jump,) * 2)
+    assert (verify(path), verify(bare)) == (True, False)
+    with pytest.raises(DamageError):
+        verify(damaged)

@@ -9,6 +9,7 @@ import sys
 import time
 from collections.abc import Callable
 from importlib.resources import files
+from itertools import cycle
 from pathlib import Path
 
 import numpy as np
@@ -73,6 +74,22 @@ def test_an_interrupted_run_goes_on_to_the_bit(drive: str, request: pytest.Fixtu
     again.dataset.close()
     require_same(simulate(given, path, resume=True), whole)
     assert not checkpoint_file(path).exists()
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("jump", [-1e5, 1e5])
+def test_a_run_resumes_whatever_the_clock_says(
+    jump: float, travelling: Drive, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """The clock is set between two readings, and its files seem to be of another day, in the future or the past."""
+    whole, path, set_by = simulate(travelling), tmp_path / "run.nc", cycle((0.0, jump))
+    now, now_ns = time.time, time.time_ns
+    monkeypatch.setattr(time, "time", lambda: now() + next(set_by))
+    monkeypatch.setattr(time, "time_ns", lambda: now_ns() + int(1e9 * next(set_by)))
+    simulate(travelling, path, stopping_after(0.02), checkpoint=OFTEN).dataset.close()
+    for file in (path, checkpoint_file(path)):
+        os.utime(file, (now() + jump,) * 2)
+    require_same(simulate(travelling, path, resume=True), whole)
 
 
 @pytest.mark.slow
