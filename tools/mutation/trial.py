@@ -168,9 +168,10 @@ def functions_of(files: Iterable[str]) -> dict[str, list[FunctionType]]:
         import_module(".".join(module.parts).removesuffix(".__init__"))
     gc.unfreeze()  # the tests freeze what collection makes, and frozen objects are not listed
     for function in gc.get_objects():
-        if isinstance(function, functools._lru_cache_wrapper):
+        kind = type(function)  # of a weak reference too, whose object may be gone
+        if issubclass(kind, functools._lru_cache_wrapper):
             function.cache_clear()  # of results without a change
-        if isinstance(function, FunctionType):
+        if issubclass(kind, FunctionType):
             file = function.__code__.co_filename.removeprefix(f"{ROOT}/")
             functions.get(file, []).append(function)
     gc.freeze()  # copies of this process share its memory as long as no collection walks through it

@@ -255,11 +255,12 @@ class SteadySearch:
         seen = observe(self.constant, np.zeros(1), here.state.position[None], here.state.velocity[None])
         pulls = np.abs(seen.pulley_torque[0]) / self.prepared.radii
         worst = int(np.argmax(np.where(self.prepared.toothed, pulls, 0.0)))
+        tensions = seen.span_tension[np.isfinite(seen.span_tension)]  # a belt off its pulleys has none
+        spans = f" and spans have {tensions.min():.4g} to {tensions.max():.4g} N" if tensions.size else ""
         return (
             f"the search ends at {here.setting.load:.1%} of the loads, where "
-            f"`{self.prepared.pulleys[worst].name}` takes {abs(float(seen.pulley_torque[0, worst])):.4g} N m and spans "
-            f"have {float(np.nanmin(seen.span_tension)):.4g} to {float(np.nanmax(seen.span_tension)):.4g} N. The belt "
-            "goes slack or jumps beyond that: raise its tension, reduce the loads, or use a wider belt."
+            f"`{self.prepared.pulleys[worst].name}` takes {abs(float(seen.pulley_torque[0, worst])):.4g} N m{spans}. "
+            "The belt goes slack or jumps beyond that: raise its tension, reduce the loads, or use a wider belt."
         )
 
     def _here(self) -> Passed:

@@ -108,11 +108,10 @@ def _slipping(prepared: Prepared, asked: System, here: Passed, pulley: int, torq
 
 def _without_slip(prepared: Prepared, system: System, passed: Sequence[Passed], at: int, used: FloatArray) -> Refusal:
     """Say what ends the increase of the loads where no pulley slips: a tensioner without balance, or the search."""
-    here, drive, tensioners = passed[at], prepared.drive, prepared.moving_tensioners
+    here, tensioners = passed[at], prepared.moving_tensioners
     if tensioners and at < len(passed) - 1:
         places = here.state.position[here.state.position.size - len(tensioners) :].tolist()
-        centers = [np.array(drive.centers[drive.carried(one)]) for one in tensioners]
-        reaches = [one.reach(center) for one, center in zip(tensioners, centers, strict=True)]
+        reaches = [each.tensioner.reach(prepared.path.centers[each.pulley]) for each in prepared.carriers]
         moved = np.abs(np.multiply(places, reaches))
         number = int(np.argmax(moved))
         return Refusal(

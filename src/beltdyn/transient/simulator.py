@@ -332,11 +332,16 @@ def _kinds(value: Any) -> Any:
 
 
 def _same_sizes(saved: dict[str, Any], now: dict[str, Any]) -> bool:
-    """Whether arrays that inputs change have as many rows as those of now, and profiles the rows that they refer to."""
+    """Whether arrays that inputs change have as many rows as those of now, and profiles the rows that they refer to.
+
+    A moved center adds a body and a tensioner that carries its pulley.
+    """
     profiles, table = saved["profiles"], saved["profiles"].table
     rows = ((table.segment, profiles.segment), (table.harmonic, profiles.harmonic))
     return (
-        all(saved[name].shape == now[name].shape for name in _CHANGED[1:])
+        saved["pulleys"].shape == now["pulleys"].shape
+        and saved["bodies"].size - saved["tensioners"].size == now["bodies"].size - now["tensioners"].size
+        and saved["tensioners"].size <= saved["pulleys"].size
         and table.shape == now["profiles"].table.shape
         and all(first[-1] == len(those) and not np.any(np.diff(first, prepend=0) < 0) for first, those in rows)
     )

@@ -121,7 +121,7 @@ def test_the_tolerance_may_be_that_of_the_drive(drive: Drive) -> None:
     ("example", "tolerance", "message"),
     [
         ("band_brake", 0.01, "force_tolerance does not apply to an open belt"),
-        ("alternator_drive", 0.0, "force_tolerance = 0 must be between 0 and 1"),
+        ("alternator_drive", 0.0, "force_tolerance = 0.0 must be greater than 0"),
     ],
 )
 def test_a_tolerance_that_makes_no_sense(example: str, tolerance: float, message: str) -> None:
