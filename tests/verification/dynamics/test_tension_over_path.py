@@ -12,7 +12,8 @@ from beltdyn.results import Run, key_numbers, summarize
 from beltdyn.state.steady import steady_state
 from tests.lumped.drawn_heavy import GRAVITY, drawn_heavy
 
-QUICK, ALL = (0, 8), (2, 3, 4, 5, 6, 7, *range(9, 22), *range(23, 41))
+QUICK, ALL = (0, 8), (2, 3, 4, 5, 6, 7, *range(9, 22), *range(23, 35), *range(36, 41))
+"""Seeds; the belts of 1, 22 and 35 hang so deep that the installed tension needs one longer than the path."""
 WITHIN = 2e-3
 """Of the largest tension: bending takes part of it from the last elements of a span."""
 
