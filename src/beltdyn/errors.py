@@ -52,7 +52,7 @@ class ConvergenceError(SimulationError):
     ...     bd.steady_state(drive.with_({"pulley[driven].torque.value": -50.0}))
     ... except bd.ConvergenceError as error:
     ...     print(str(error).split(", which ")[1].split(" at this")[0])
-    transmits at most 5.654 N m of the 50 N m required
+    transmits at most 5.655 N m of the 50 N m required
     """
 
 

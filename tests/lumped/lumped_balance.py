@@ -168,10 +168,14 @@ class LumpedBalance:
                 break
 
         def beyond(part: float) -> float:
-            return float(self._solve(factor + part * step, here).use.max()) - 1.0
+            try:
+                return float(self._solve(factor + part * step, here).use.max()) - 1.0
+            except ArithmeticError:  # no balance is beyond what the drive transmits
+                return 1.0
 
         slack = not np.isfinite(ahead.use.max())
         part = self._bisect(beyond) if slack else brentq(beyond, 0.0, 1.0, xtol=1e-9)
+        part *= 1.0 - 1e-6
         there = self._solve(factor + part * step, here)
         return self._limit_at(factor + part * step, there, "slack" if slack else "friction")
 

@@ -220,7 +220,7 @@ def test_capstan_ratio(
     held, pulled = seen.belt_tension[0, [0, -1]]
     directions = np.arctan2(*state.nodes(system)[[0, -1], 3:1:-1].T)
     turned = (directions[1] - directions[0]) % (2 * pi)
-    expected = capstan_ratio(friction, sense * turned)
+    expected = capstan_ratio(friction, turned) ** sense
     measured(ratio=held / pulled, error=held / pulled / expected - 1.0)
     if contact.friction_law == "force_slope":
         place, label = np.degrees(turned), f"μ = {sense * friction:+g}"

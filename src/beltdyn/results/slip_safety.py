@@ -120,7 +120,7 @@ def _entry_loss(reaching: FloatArray, prepared: Prepared) -> FloatArray:
 
 STATE = ("belt_speed", "pulley_center", "pulley_torque")
 """What a slip safety follows from beside `SPAN_TENSIONS`, by the names of recorded variables."""
-_ACCURACY = 1e-6
+_ACCURACY = 1e-8
 """Of the factors on loads."""
 _SLACK = 1e-3
 """Tension that presses, over the mean one, at which a span counts as slack."""

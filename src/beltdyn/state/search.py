@@ -62,6 +62,8 @@ _FIRST_CHANGE, _SAME_SPEED, _MOST_SPEEDS = 1e-4, 1e-11, 30
 """Of the speed of a motor that drives a belt with teeth, relative, and how often it is changed at most."""
 _MOST_PRESSES = 20
 """Of rollers of nips that are loaded by forces."""
+_STALLED = 0.5
+"""Slip of a pulley that has stalled, beyond elastic creep: `slip_through` has 0.9, usable drives a few percent."""
 _SLIDES = 0.05
 """Difference of a prescribed speed of a rim from that of the belt, relative, from which the belt slides on it: friction
 grows there with the loads, in place of the difference, which would be passed in a thousandth of the way."""
@@ -191,9 +193,15 @@ class SteadySearch:
             raise self._refusal()
         if driver is not None:
             self._release(driver)
-        if not self._press():
+        if not self._press() or self._stalls():
             raise self._refusal()
         self._keep_content()
+
+    def _stalls(self) -> bool:
+        """Whether a pulley that ran with the belt without loads has come to a standstill, or nearly so, under them."""
+        if not self._passed or self.prepared.drive.is_web:
+            return False
+        return float(np.max(gross_slips(self.prepared, self.constant, [self._passed[0], self._here()]))) > _STALLED
 
     def _keep_content(self) -> None:
         """Take the content of a web line that was found for the length of its belt."""

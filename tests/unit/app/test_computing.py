@@ -36,9 +36,9 @@ def test_running_at_the_speed_and_loads_of_the_sliders(drive_text: str) -> None:
 
 
 def test_what_cannot_run_says_why_and_what_follows_runs_again(drive_text: str) -> None:
-    overloaded = drive_text.replace("value = 0.0 }", "value = -50.0 }")
-    assert overloaded != drive_text
-    found = answer(Asked("running", "c", overloaded, HERE))
+    stuck = drive_text.replace("inertia = 0.1", 'inertia = 0.1\nload = [{ kind = "resistance", constant = 50.0 }]')
+    assert stuck != drive_text
+    found = answer(Asked("running", "c", stuck, HERE))
     assert found.parts == ()
     assert "driven" in found.error or "driver" in found.error
     assert answer(Asked("running", "c", drive_text, HERE)).error == ""

@@ -16,7 +16,7 @@ def outputs(drive: Drive, times: list[float], sliding: float) -> dict[str, np.nd
         "sliding_speed": sliding * ones * [0.0, 1.0],
         "pulley_speed": 20.0 * ones,
         "pulley_torque": ones * [-3.0, 3.0],
-        "span_tension": ones * [80.0, 40.0],
+        **dict.fromkeys(("span_tension", "span_tension_at_start", "span_tension_at_end"), ones * [80.0, 40.0]),
     }
 
 

@@ -183,7 +183,7 @@ def test_a_handrail_is_pulled_through_its_guides(gravity: float) -> None:
     speed = float(run.dataset.belt_speed[-1].mean())
     power = float(run.dataset.shaft_torque[-1, 0] * run.dataset.shaft_speed[-1, 0])
     straight = sum(rubbing(drive, span) for span in range(4))
-    assert power / speed == pytest.approx(slipping.sum() / speed + straight, rel=3e-3)
+    assert power / speed == pytest.approx(slipping.sum() / speed + straight, rel=4e-3)
     safeties = [one.slip_safety for one in bd.summarize(run).pulleys]
     assert np.isnan(safeties[2:]).all()
     assert safeties[0] > 1.5

@@ -14,6 +14,6 @@ def test_slip_safeties_are_in_the_picture_of_loaded_and_of_safe_drives(power: st
     ax = bd.plot.sheet_slip_safety(found)
     lines = {str(line.get_label()): np.asarray(line.get_ydata(), dtype=float) for line in ax.get_lines()}
     dataset, top = found.dataset, ax.get_ylim()[1]
-    worst = str(dataset.pulley[int(np.argmin(np.fmin.reduce(dataset.least_slip_safety_over_speed.values)))].item())
+    worst = str(dataset.pulley[int(np.nanargmin(np.fmin.reduce(dataset.least_slip_safety_over_speed.values)))].item())
     assert np.nanmin(dataset.least_slip_safety_over_speed.sel(pulley=worst)) < top
     np.testing.assert_allclose(lines[worst], dataset.slip_safety_over_speed.sel(pulley=worst))

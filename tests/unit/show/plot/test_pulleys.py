@@ -98,7 +98,11 @@ def test_the_scale_of_slip_is_that_of_the_running_drive(make_run: MakeRun, run: 
 
 def test_safeties_that_vibrate_are_bands(make_run: MakeRun, run: Run, ax: Axes) -> None:
     ripple = np.where(np.arange(run.dataset.sizes["time"]) % 2, 5.0, -5.0)[:, None]
-    shaken = make_run(span_tension=run.dataset["span_tension"].values + ripple * [1.0, -1.0])
+    names = ("span_tension", "span_tension_at_start", "span_tension_at_end")
+    shaken = make_run(
+        pulley_torque=run.dataset["pulley_torque"].values[-1] + 0.0 * ripple,
+        **{name: run.dataset[name].values[-1] + ripple for name in names},
+    )
     plot.slip_safety(shaken, ax)
     assert ax.collections
 
