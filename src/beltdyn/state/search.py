@@ -199,9 +199,11 @@ class SteadySearch:
 
     def _stalls(self) -> bool:
         """Whether a pulley that ran with the belt without loads has come to a standstill, or nearly so, under them."""
-        if not self._passed or self.prepared.drive.is_web:
-            return False
-        return float(np.max(gross_slips(self.prepared, self.constant, [self._passed[0], self._here()]))) > _STALLED
+        return bool(self._passed) and not self.prepared.drive.is_web and self._largest_slip() > _STALLED
+
+    def _largest_slip(self) -> float:
+        """Largest slip of a pulley beyond elastic creep, against the first of the solutions that were passed."""
+        return float(np.max(gross_slips(self.prepared, self.constant, [*self._passed[:1], self._here()])))
 
     def _keep_content(self) -> None:
         """Take the content of a web line that was found for the length of its belt."""
@@ -436,7 +438,7 @@ class SteadySearch:
 
     def _is_lost(self) -> bool:
         """Whether a pulley slides so fast that a curve need not be followed any more."""
-        return bool(np.max(gross_slips(self.prepared, self.constant, [*self._passed[:1], self._here()])) > _LOST)
+        return self._largest_slip() > _LOST
 
     def _release(self, driver: int) -> None:
         """Let a driver turn as its torque says."""
