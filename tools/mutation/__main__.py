@@ -125,7 +125,7 @@ def _try_group(mutants: list[Mutant], asked: argparse.Namespace, name: str) -> N
 
 def _try_in_functions(items: list[pytest.Item], mutants: list[Mutant], asked: argparse.Namespace, kept: Path) -> None:
     """Try the mutants inside functions, which replace those of the imported modules."""
-    items = _first_cases(items, asked.cases)
+    items = _spread_cases(items, asked.cases)
     _warm_up(os.environ["NUMBA_DISABLE_JIT"] == "0")
     functions = functions_of({mutant.file for mutant in mutants})
     known = traces(items, asked.folders, asked.slowest, kept)
@@ -224,16 +224,16 @@ class _Trials:
         return chosen, time
 
 
-def _first_cases(items: list[pytest.Item], number: int) -> list[pytest.Item]:
-    """The first cases of each test function."""
-    seen: Counter[str] = Counter()
-    chosen = []
-    for item in items:
-        name = item.nodeid.partition("[")[0]
-        seen[name] += 1
-        if seen[name] <= number:
-            chosen.append(item)
-    return chosen
+def _spread_cases(items: list[pytest.Item], number: int) -> list[pytest.Item]:
+    """Cases of each test function from its first to its last, evenly spread: parameters vary slowly or quickly."""
+    cases: defaultdict[str, list[int]] = defaultdict(list)
+    for place, item in enumerate(items):
+        cases[item.nodeid.partition("[")[0]].append(place)
+    chosen = set[int]()
+    for places in cases.values():
+        kept = min(number, len(places))
+        chosen |= {places[round(k * (len(places) - 1) / max(kept - 1, 1))] for k in range(kept)}
+    return [items[place] for place in sorted(chosen)]
 
 
 def _tests_of_lines(known: dict[str, Trace]) -> defaultdict[tuple[str, int], list[str]]:
@@ -281,7 +281,7 @@ def _parser() -> argparse.ArgumentParser:
     parser.add_argument("--sample", type=int, help="try that many mutants of each folder, taken at random")
     parser.add_argument("--seed", type=int, default=1, help="seed of the sample")
     parser.add_argument("--jobs", type=int, default=1, help="mutants at a time")
-    parser.add_argument("--cases", type=int, default=4, help="first cases of each test function that are tried")
+    parser.add_argument("--cases", type=int, default=12, help="cases of each test function that are tried")
     parser.add_argument("--slowest", type=float, default=3.0, help="longest time of a test, s")
     parser.add_argument("--budget", type=float, default=10.0, help="longest time of all tests of a mutant, s")
     parser.add_argument("--out", type=Path, default=Path("mutation.json"), help="file of the answers")

@@ -111,6 +111,40 @@ def test_derivative_with_respect_to_the_speed(pulley: PulleyState, law: ContactL
     np.testing.assert_allclose(given, expected, atol=1e-6 * np.abs(expected).max())
 
 
+@pytest.mark.parametrize("follow_zone", [True, False], ids=["zone", "whole"])
+@pytest.mark.parametrize("degree", [3, 5])
+def test_tangent_of_a_belt_that_flows_through_the_curve(
+    any_pulley: PulleyState,
+    law: ContactLaw,
+    elevate: Callable[[FloatArray, int], FloatArray],
+    degree: int,
+    follow_zone: bool,
+) -> None:
+    """Velocities v = de/dt + c D e, D the derivative along the curve: by e, which moves them too, and by c."""
+    pulley, basis = any_pulley, np.eye(degree + 1)
+    vectors, rates = sunk(pulley, degree)
+    along = elevate(degree * np.diff(basis, axis=0), degree) / LENGTH
+    law, speed, work = law._replace(follow_zone=follow_zone), 2.0, contact_workspace(*basis.shape)
+    factors = ContactFactors(1.0, 300.0, 0.0, speed, 1.0, False)
+    contact_force(Curve(vectors, rates, basis, LENGTH), pulley, law, RULE, factors, work)
+
+    def difference(place: FloatArray, motion: FloatArray) -> FloatArray:
+        sides = (answer(vectors + sense * place, rates + sense * motion, basis, pulley, law) for sense in (1.0, -1.0))
+        return np.asarray(np.subtract(*sides))
+
+    direction, step = np.random.default_rng(6).normal(size=vectors.shape), 1e-8
+    x, y = direction.T
+    forces = np.stack([work.xx @ x + work.xy @ y, work.yx @ x + work.yy @ y], axis=1)
+    expected = np.append(forces.ravel(), np.sum(work.moment * direction))
+    moved = difference(step * direction, step * (300.0 * direction + speed * along @ direction)) / (2.0 * step)
+    scale = np.append(np.full(2 * degree + 2, np.abs(forces).max()), np.abs(expected[-1]))
+    np.testing.assert_allclose(moved / scale, expected / scale, atol=1e-5)
+    flow = np.append(work.by_flow.ravel(), work.moment_by_flow)
+    by_flow = difference(0.0 * vectors, 1e-5 * along @ vectors) / 2e-5
+    np.testing.assert_allclose(flow[:-1], by_flow[:-1], atol=1e-6 * np.abs(by_flow[:-1]).max())
+    assert work.moment_by_flow == pytest.approx(by_flow[-1], rel=1e-6)
+
+
 @pytest.mark.parametrize("arm_to_rim", [False, True], ids=["point", "rim"])
 @pytest.mark.parametrize("follow_zone", [True, False], ids=["zone", "whole"])
 @pytest.mark.parametrize(("by_angle", "by_speed"), [(1.0, 0.0), (0.0, 1.0), (1.0, 300.0)])

@@ -6,7 +6,14 @@ import numpy as np
 import pytest
 
 from beltdyn.arrays import FloatArray
-from beltdyn.contact.contact_zone import MAX_DEGREE, combine, fill_bernstein, fill_bernstein_rates, fill_shape_functions
+from beltdyn.contact.contact_zone import (
+    MAX_DEGREE,
+    combine,
+    fill_bernstein,
+    fill_bernstein_rates,
+    fill_shape_functions,
+    second_rate,
+)
 from beltdyn.elements.ancf.element import slopes
 from beltdyn.model import Belt
 from beltdyn.system.build import belt_system
@@ -48,6 +55,15 @@ def test_rates_are_derivatives(xi: float, degree: int) -> None:
     difference = (bernstein(xi + step, degree) - bernstein(xi - step, degree)) / (2 * step)
     # truncation: the third derivative, below (2 p)^3, times the step squared over six
     np.testing.assert_allclose(rates(xi, degree), difference, atol=1e-10 * degree**3)
+
+
+@pytest.mark.parametrize("degree", DEGREES)
+@pytest.mark.parametrize("xi", XI)
+def test_the_second_rate_of_a_curve_is_the_derivative_of_its_first(xi: float, degree: int) -> None:
+    control, step = np.random.default_rng(degree).normal(size=(degree + 1, 2)), 1e-5
+    difference = (rates(xi + step, degree) - rates(xi - step, degree)) @ control / (2 * step)
+    # truncation: the fourth derivative, below (2 p)^4, times the step squared over six
+    np.testing.assert_allclose(second_rate(control, xi, np.full(degree + 1, np.nan)), difference, atol=1e-9 * degree**4)
 
 
 @pytest.mark.parametrize("degree", DEGREES)

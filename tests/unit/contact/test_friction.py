@@ -15,6 +15,7 @@ from beltdyn.contact.friction import (
     as_common,
     friction_force,
 )
+from beltdyn.contact.friction.law import saturation_at
 
 MU = 0.5
 RIM = 0.8
@@ -63,6 +64,21 @@ def test_has_no_jump_at_break_away(friction: FrictionParameters, side: float) ->
     edge = side * break_away(friction, 200.0)
     below, above = (force_at(friction, edge * factor, 200.0)[0] for factor in (1 - 1e-12, 1 + 1e-12))
     assert above == pytest.approx(below, rel=1e-11)
+
+
+@pytest.mark.parametrize("states", [(), (2,)])
+def test_saturation_at_points_is_that_of_their_pulleys(friction: FrictionParameters, states: tuple[int, ...]) -> None:
+    """Three points on two pulleys whose speeds may differ from state to state; some touch none."""
+    chosen = np.broadcast_to([True, False, True], (*states, 3)).copy()
+    chosen[..., 1] = np.arange(chosen[..., 1].size).reshape(states) == 1
+    touched, normal = np.broadcast_to([1, 0, 0], chosen.shape), 100.0 + np.arange(chosen.size).reshape(chosen.shape)
+    mu, rim = np.array([0.3, 0.6]), 1.0 + np.arange(2.0 * chosen.size / 3.0).reshape(*states, 2)
+    expected = [
+        float(friction.saturation(normal[place], mu[touched[place]], rim[(*place[:-1], touched[place])]))
+        for place in np.ndindex(chosen.shape)
+        if chosen[place]
+    ]
+    np.testing.assert_array_equal(saturation_at(friction, chosen, touched, normal, mu, rim), expected)
 
 
 @pytest.mark.parametrize("ratio", [-3.0, -0.9, -0.1, 0.0, 0.4, 0.99, 1.01, 2.0])

@@ -8,7 +8,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from beltdyn.contact.law import PulleyState
-from beltdyn.contact.penetration import approach, slip_velocity
+from beltdyn.contact.penetration import Approach, approach, slip_velocity, tooth_approach
 
 Place = Callable[[PulleyState, float, float], tuple[float, float]]
 
@@ -48,8 +48,11 @@ def test_slip_is_measured_against_the_rim_at_any_depth(pulley: PulleyState, plac
     assert slip_velocity(here, pulley) == -pulley.speed * pulley.surface.radius
 
 
-def test_only_the_motion_against_the_centre_counts(pulley: PulleyState, place: Place) -> None:
+@pytest.mark.parametrize("kind", [approach, tooth_approach])
+def test_only_the_motion_against_the_centre_counts(
+    pulley: PulleyState, place: Place, kind: Callable[..., Approach]
+) -> None:
     x, y = place(pulley, 1e-3, 0.4)
-    still = approach(x, y, 0.3, -0.8, pulley)
-    moving = approach(x, y, 0.3 + 2.0, -0.8 - 5.0, pulley._replace(velocity_x=2.0, velocity_y=-5.0))
+    still = kind(x, y, 0.3, -0.8, pulley)
+    moving = kind(x, y, 0.3 + 2.0, -0.8 - 5.0, pulley._replace(velocity_x=2.0, velocity_y=-5.0))
     np.testing.assert_allclose(moving, still, rtol=1e-12)

@@ -7,11 +7,12 @@ from beltdyn.contact.point_force import CREEPING, rolling_resistance
 RHO = 0.02
 
 
+@pytest.mark.parametrize("normal", [0.5, 500.0])
 @pytest.mark.parametrize("velocity", [-30.0, -1.0, 1.0, 30.0])
-def test_a_share_of_the_normal_force_at_any_speed(velocity: float) -> None:
+def test_a_share_of_the_normal_force_at_any_speed(velocity: float, normal: float) -> None:
     """Less by v_0^2 / 2 v^2."""
-    found = rolling_resistance(RHO, 500.0, velocity).force
-    assert found == pytest.approx(-RHO * 500.0 * (1.0 if velocity > 0.0 else -1.0), rel=(CREEPING / velocity) ** 2)
+    found = rolling_resistance(RHO, normal, velocity).force
+    assert found == pytest.approx(-RHO * normal * (1.0 if velocity > 0.0 else -1.0), rel=(CREEPING / velocity) ** 2)
 
 
 @pytest.mark.parametrize("velocity", [-3.0, -0.01, 0.0, 0.02, 3.0])

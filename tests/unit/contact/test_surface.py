@@ -14,6 +14,7 @@ from beltdyn.contact.surface import (
     SHAPES,
     TEETH,
     Gap,
+    MeshingRims,
     PolygonRims,
     Round,
     Shaped,
@@ -22,6 +23,7 @@ from beltdyn.contact.surface import (
     shaped_gap,
     surface_at,
 )
+from beltdyn.contact.surface.polygon import polygon_seat
 
 RADIUS, ECCENTRICITY, DIRECTION = 0.1, 4e-3, 0.3
 POINTS = [(0.103, 0.02), (-0.06, 0.07), (0.01, -0.099), (-0.09, -0.05)]
@@ -132,6 +134,27 @@ def test_an_eccentric_rim_touches_where_a_circle_about_its_centre_does(
     np.testing.assert_allclose(shaped, circle, atol=1e-11)  # both to 1e-13, with cancellation in the squares
 
 
+def test_a_polygon_reaches_to_its_lands_or_to_its_teeth() -> None:
+    """Twelve lands of 0.8 of the radius: 0.2 R pi / (6 sin(pi / 12)) more than 0.8 R, and teeth of 10 mm."""
+    groove, land = np.pi / 6.0, 0.8 * RADIUS
+    for height in (0.0, 0.1 * RADIUS):
+        row = records(TEETH, stiffness=[1.0], groove=[groove], land=[land], height=[height])
+        surface = surface_at(PolygonRims(np.array([RADIUS]), row, np.zeros(1)), 0, 0.3)
+        farthest = land + 0.1 * RADIUS * groove / np.sin(0.5 * groove)
+        assert outer_radius(surface) == pytest.approx(max(farthest, RADIUS + height), rel=1e-12)
+        middle = outer_radius(surface) * np.array([np.cos(0.3 + 0.5 * groove), np.sin(0.3 + 0.5 * groove)])
+        assert shaped_gap(surface, *middle).penetration == pytest.approx(farthest - outer_radius(surface), abs=1e-15)
+
+
+def test_in_steady_running_a_phase_is_unknown_where_there_are_teeth_and_elsewhere_a_speed() -> None:
+    rows = records(TEETH, stiffness=[1.0, 0.0], groove=[0.1, 0.1])
+    none = np.zeros(0)
+    rims = MeshingRims(np.full(2, RADIUS), rows, none, np.array([0.4, 0.0]), none.astype(int), 0, np.zeros((3, 3)))
+    toothed, smooth = (surface_at(rims, pulley, 9.0, 5.0) for pulley in (0, 1))
+    assert (toothed.phase, toothed.by_flow, toothed.by_speed) == (0.4, 0.0, 0.0)
+    assert (smooth.by_flow, smooth.by_speed) == (0.0, 1.0)
+
+
 @pytest.mark.parametrize("teeth", [12, 20])
 def test_the_ripple_of_a_belt_on_a_polygon(teeth: int) -> None:
     """A straight belt unwinds at the distance of its line from the shaft, times the speed of the pulley."""
@@ -152,4 +175,5 @@ def test_the_ripple_of_a_belt_on_a_polygon(teeth: int) -> None:
     assert 1.0 - speeds[0] / speeds[2] == pytest.approx(1.0 - np.cos(np.pi / teeth), rel=1e-6)
     assert speeds[1] / speeds[2] == pytest.approx(np.cos(0.5 * np.pi / teeth), rel=1e-9)
     edge = 2.0 * speeds[2] * np.sin(np.pi / teeth)
+    assert polygon_seat(surface) == pytest.approx(arm(0.0), rel=1e-9)
     assert teeth * edge == pytest.approx(2.0 * np.pi * RADIUS, rel=1e-6)  # a turn is as long as that of the circle

@@ -208,6 +208,25 @@ def test_the_force_of_a_tooth_is_even_where_crests_meet_and_where_it_leaves() ->
     assert max(abs(leaving.traction), leaving.push) < 1e-4 * size
 
 
+@pytest.mark.parametrize("side", [-1.0, 1.0])
+def test_a_tooth_pulls_in_proportion_to_its_way_over_four_fifths_of_half_a_pitch(side: float) -> None:
+    one = pulley(phase=0.0, speed=0.0)
+    near, far, beyond = (pushed(one, side * part * 0.5 * GROOVE, RIM).traction / part for part in (0.1, 0.79, 0.9))
+    assert far == pytest.approx(near, rel=1e-9)
+    assert abs(beyond) < 0.99 * abs(near)
+
+
+def test_single_teeth_leave_no_force_to_the_points_between() -> None:
+    one = pulley(phase=0.0, spacing=0.0157)
+    here = approach(0.3 + RIM * np.cos(0.02), -0.2 + RIM * np.sin(0.02), 0.1, 0.2, one)
+    tooth = tooth_at(one.surface, here, 7.0, 0.0)
+    assert isinstance(one.surface, Toothed)
+    spread = tooth_of(one.surface, here, 7.0, 0.0)
+    kept = {"pitch_radius", "rate", "by_flow"}
+    assert {name for name, value in tooth._asdict().items() if value != 0.0} == kept
+    assert {name for name, value in spread._asdict().items() if value != 0.0} > kept
+
+
 def test_a_single_tooth_has_the_force_of_a_pitch_of_spread_ones() -> None:
     control, rates = sunk()
     one, around = pulley(spacing=0.0157), np.arange(4) * 0.0157

@@ -219,21 +219,19 @@ def nip_profile(run: Run, roller: str | int, time: float | None = None) -> xr.Da
     row, beside, on = _number(run, roller)
     instant, prepared = run.fields_at(time), run.prepared
     here = np.flatnonzero(instant["nip_normal_force"].values[row] > 0.0)
-    along = instant["belt_coordinate"].values[here]
     centers = instant["pulley_center"].values
     way = centers[beside] - centers[on]
     from_center = instant["contact_position"].values[here] - centers[on]
     across = (way[0] * from_center[:, 1] - way[1] * from_center[:, 0]) / np.hypot(*way)
-    ahead = np.sign(along[-1] - along[0]) * np.sign(float(rim_speeds(instant["pulley_speed"].values, prepared)[on]))
-    sense = np.sign(across[-1] - across[0]) * (ahead or 1.0)
-    forward = ahead or 1.0
+    forward = float(np.sign(rim_speeds(instant["pulley_speed"].values, prepared)[on])) or 1.0
+    # the belt touches its roller beside the path with the other face: forces there are along the clockwise tangent
+    turning = np.array([prepared.pulleys[one].turning for one in (beside, on)], dtype=float)
+    sense = turning[1] * forward
     values = {
         "pressure": ("normal_force", 1.0 / prepared.belt.width, "Pa", "Pressure in the nip"),
         "shear": ("friction_force", forward / prepared.belt.width, "Pa", "Shear in the nip"),
         "slip_velocity": ("slip_velocity", forward, "m/s", "Slip velocity in the nip"),
     }
-    # the belt touches its roller beside the path with the other face: forces there are along the clockwise tangent
-    turning = np.array([prepared.pulleys[one].turning for one in (beside, on)], dtype=float)
     order = np.argsort(sense * across)
     columns = {}
     for name, (variable, factor, units, long_name) in values.items():

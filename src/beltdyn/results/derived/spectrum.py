@@ -449,15 +449,16 @@ def order_spectrum(values: xr.DataArray, angle: xr.DataArray, window: str = "han
     2e-06
     """
     instants = instants_of(values)
-    turns = np.abs(np.interp(instants, angle["time"].values, angle.values - angle.values[0])) / (2.0 * np.pi)
-    whole = np.floor(turns[-1] - turns[0] + 1e-9)
+    angles = np.interp(instants, angle["time"].values, angle.values)
+    turns = np.abs(angles - angles[0]) / (2.0 * np.pi)
+    whole = int(turns[-1] + 1e-9)
     if whole < _FEWEST_TURNS or np.any(np.diff(turns) <= 0.0):
         raise ModelError(
-            f"the pulley makes {turns[-1] - turns[0]:.3g} turns without turning back; an order spectrum needs "
+            f"the pulley makes {turns[-1]:.3g} turns without turning back; an order spectrum needs "
             f"{_FEWEST_TURNS} or more. Make the run longer, or select a part of it."
         )
-    each = int(np.ceil((len(instants) - 1) / (turns[-1] - turns[0])))
-    steps = turns[0] + np.arange(int(whole) * each) / each
+    each = int(np.ceil((len(instants) - 1) / turns[-1]))
+    steps = np.arange(whole * each) / each
     laid = CubicSpline(turns, values.values, axis=0)(np.minimum(steps, turns[-1]))
     coordinates: dict[Any, Any] = {name: values[name] for name in values.dims[1:] if name in values.coords}
     even = xr.DataArray(laid, {**coordinates, "turn": steps}, ("turn", *values.dims[1:]), attrs=values.attrs)

@@ -23,7 +23,9 @@ def make_nip() -> MakeNip:
     return made
 
 
-def made(sense: float = 1.0, at: int = 0, friction: float | None = None, speed: float | None = None) -> Run:
+def made(
+    sense: float = 1.0, at: int = 0, friction: float | None = None, speed: float | None = None, middle: int = 2000
+) -> Run:
     """The belt runs over the drum with its coordinate (or against it); the press is on the left, its belt runs down.
 
     The pressure is centered some contact points behind the line of centers.
@@ -34,7 +36,10 @@ def made(sense: float = 1.0, at: int = 0, friction: float | None = None, speed: 
         drive = drive.replace(contact=drive.contact.replace(friction=friction))
     prepared = prepare(drive)
     coordinates = np.linspace(0.0, prepared.belt_length, 4001)[:-1]
-    along, place = coordinates - coordinates[2000 + at], coordinates - coordinates[2000]
+    half = 0.5 * prepared.belt_length
+    along, place = (
+        (coordinates - coordinates[point] + half) % prepared.belt_length - half for point in (middle + at, middle)
+    )
     pressure = np.where(np.abs(along) < HALF, PEAK * (1.0 - (along / HALF) ** 2), 0.0)
     radii, centers = prepared.radii, prepared.path.centers.copy()
     apart = radii[DRUM] + radii[PRESS] - DEPTH
@@ -124,10 +129,11 @@ def test_at_rest_forward_is_along_the_belt_coordinate(make_nip: MakeNip) -> None
     xr.testing.assert_equal(nip_profile(make_nip(speed=0.0), "press"), nip_profile(make_nip(), "press"))
 
 
+@pytest.mark.parametrize("middle", [2000, 0], ids=["within", "across the start of the belt"])
 @pytest.mark.parametrize("sense", [1.0, -1.0])
-def test_a_profile_runs_with_the_belt(make_nip: MakeNip, sense: float) -> None:
+def test_a_profile_runs_with_the_belt(make_nip: MakeNip, sense: float, middle: int) -> None:
     """From the entry to the exit; shear is positive where it pushes the belt on."""
-    run = make_nip(sense, at=2)
+    run = make_nip(sense, at=2, middle=middle)
     profile, width = nip_profile(run, "press"), run.prepared.belt.width
     distance = profile.distance.values
     assert profile.face.values.tolist() == ["press", "drum"]

@@ -401,6 +401,27 @@ def test_an_order_spectrum_depends_on_neither_sense_nor_beginning_of_a_rotation(
     assert float(found.where(np.abs(found["order"] - 7.0) > 0.1).max()) < 0.01
 
 
+@pytest.mark.parametrize(("turns", "enough"), [(2.0, True), (2.0 - 1e-6, False), (3.0, True)])
+def test_an_order_spectrum_needs_two_turns_and_takes_all_whole_ones(turns: float, enough: bool) -> None:
+    """To rounding; as many outputs in a turn as were recorded: orders end at half of 400 over the turns."""
+    time = np.linspace(0.0, 1.0, 401)
+    angle = series(time, 2.0 * np.pi * turns * time + 0.1)
+    if enough:
+        order = order_spectrum(series(time, np.cos(5.0 * angle.values)), angle)["order"].values
+        assert (order[1], order[-1]) == pytest.approx((1.0 / turns, 0.5 * np.ceil(400.0 / turns)), abs=0.5 / turns)
+        assert order[1] == pytest.approx(1.0 / turns, rel=1e-9)
+    else:
+        with pytest.raises(ModelError, match="makes 2 turns without turning back; an order spectrum needs 2 or more"):
+            order_spectrum(angle, angle)
+
+
+def test_a_pulley_that_turns_back_has_no_order_spectrum() -> None:
+    time = np.linspace(0.0, 1.0, 401)
+    there_and_back = series(time, 40.0 * np.sin(3.0 * time))
+    with pytest.raises(ModelError, match="without turning back"):
+        order_spectrum(there_and_back, there_and_back)
+
+
 def test_an_overall_level_is_that_of_all_its_waves() -> None:
     """Root mean square of two sinusoids, whatever the mean is: Parseval's theorem."""
     time = np.arange(0.0, 4.0, 1e-3)
