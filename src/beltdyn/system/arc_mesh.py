@@ -340,7 +340,7 @@ def _hold_arcs(
 ) -> None:
     """Let the node of each arc keep its place along the belt, against the center of its pulley.
 
-    Of accelerations where the mesh is moving, or of places.
+    Of accelerations where the mesh is moving, or of places. The third derivative of a center is left out.
     """
     arcs, first = frame.arcs, first_arc(frame, matrix.corner.shape[0])
     dof = len(system.scale)
@@ -357,16 +357,19 @@ def _hold_arcs(
             at = tensioner_coordinate(system, arcs.carrier[arc])
             item = system.tensioners[arcs.carrier[arc]]
             center = tensioner_center(item, motion.position[at])
-            along = tx * center.dx + ty * center.dy
+            along, bend = tx * center.dx + ty * center.dy, tx * center.ddx + ty * center.ddy
+            change = tie * along
             if moving:
-                square = motion.velocity[at] * motion.velocity[at]
-                value -= along * motion.acceleration[at] + (tx * center.ddx + ty * center.ddy) * square
+                speed, rate = motion.velocity[at], motion.acceleration[at]
+                value -= along * rate + bend * speed * speed
+                if factors.by_acceleration != 0.0:
+                    change += bend * (2.0 * factors.by_velocity * speed + factors.by_position * rate)
             else:
                 zero = tensioner_center(item, 0.0)
                 value -= tx * (center.x - zero.x) + ty * (center.y - zero.y)
             unknown = system.bodies[at - system.first_body].unknown
             if unknown >= 0 and tie != 0.0:
-                matrix.corner[row, unknown] = -tie * along
+                matrix.corner[row, unknown] = -change
         matrix.border_side[row] = value
 
 

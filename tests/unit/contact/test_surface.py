@@ -19,6 +19,7 @@ from beltdyn.contact.surface import (
     Round,
     Shaped,
     ShapedRims,
+    ToothedRims,
     outer_radius,
     shaped_gap,
     surface_at,
@@ -153,6 +154,14 @@ def test_in_steady_running_a_phase_is_unknown_where_there_are_teeth_and_elsewher
     toothed, smooth = (surface_at(rims, pulley, 9.0, 5.0) for pulley in (0, 1))
     assert (toothed.phase, toothed.by_flow, toothed.by_speed) == (0.4, 0.0, 0.0)
     assert (smooth.by_flow, smooth.by_speed) == (0.0, 1.0)
+
+
+def test_over_time_teeth_turn_with_their_pulley_and_against_the_belt_that_passes() -> None:
+    """A belt that passes at the pitch line of a pulley that turns leaves the phase as it is."""
+    rows, turned = records(TEETH, stiffness=[1.0], groove=[0.1], phase=[0.02], rate=[1.0 / RADIUS]), 0.7
+    surface = surface_at(ToothedRims(np.array([RADIUS]), rows, np.zeros(1)), 0, turned, RADIUS * turned)
+    assert surface.phase == pytest.approx(0.02)
+    assert (surface.by_flow, surface.by_speed) == (1.0, 1.0)
 
 
 @pytest.mark.parametrize("teeth", [12, 20])
