@@ -66,8 +66,8 @@ browser: install ## the page of `beltdyn app` in a real Chromium, which must be 
 	$(BIN)/pip install --quiet playwright
 	$(BIN)/pytest tests/browser
 
-bench: install ## benchmarks
-	for script in benchmarks/*.py; do $(BIN)/python $$script || exit 1; done
+bench: install ## benchmarks; all of them run, and it fails if any has failed
+	failed=0; for script in benchmarks/*.py; do $(BIN)/python $$script || failed=1; done; exit $$failed
 
 docs: install ## the documentation, in docs/_build/html
 	$(BIN)/sphinx-build -W --keep-going -b html docs docs/_build/html

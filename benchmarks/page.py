@@ -1,8 +1,9 @@
 """How quickly the page of `beltdyn app` starts, and how quickly the path of the belt follows a drag in a real browser.
 
-Needs Playwright and a Chromium, as `make browser` does; without them it says so and measures nothing.
+Needs Playwright and a Chromium, as `make browser` does (or BELTDYN_BROWSER names one); without them it fails.
 """
 
+import os
 import re
 import shutil
 import statistics
@@ -56,14 +57,13 @@ def drags(page: Any) -> list[float]:
 
 def main() -> None:
     """Measure both."""
-    browser = next(filter(None, map(shutil.which, _NAMES)), None)
+    browser = os.environ.get("BELTDYN_BROWSER") or next(filter(None, map(shutil.which, _NAMES)), None)
     try:
         from playwright.sync_api import sync_playwright
     except ModuleNotFoundError:
         browser = None
     if browser is None:
-        sys.stdout.write("page: no Playwright or no Chromium is installed\n")
-        return
+        raise SystemExit("page.py measures nothing: Playwright or Chromium is not installed. See `make browser`.")
     with tempfile.TemporaryDirectory() as name:
         folder = Path(name)
         text = files("beltdyn").joinpath("examples", "alternator_drive.toml").read_text(encoding="utf-8")
