@@ -71,7 +71,10 @@ def test_saturation_at_points_is_that_of_their_pulleys(friction: FrictionParamet
     """Three points on two pulleys whose speeds may differ from state to state; some touch none."""
     chosen = np.broadcast_to([True, False, True], (*states, 3)).copy()
     chosen[..., 1] = np.arange(chosen[..., 1].size).reshape(states) == 1
-    touched, normal = np.broadcast_to([1, 0, 0], chosen.shape), 100.0 + np.arange(chosen.size).reshape(chosen.shape)
+    touched, normal = (
+        np.broadcast_to([1, 0, 0], chosen.shape),
+        np.linspace(100.0, 200.0, chosen.size).reshape(chosen.shape),
+    )
     mu, rim = np.array([0.3, 0.6]), 1.0 + np.arange(2.0 * chosen.size / 3.0).reshape(*states, 2)
     expected = [
         float(friction.saturation(normal[place], mu[touched[place]], rim[(*place[:-1], touched[place])]))

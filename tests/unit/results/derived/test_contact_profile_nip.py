@@ -129,11 +129,11 @@ def test_at_rest_forward_is_along_the_belt_coordinate(make_nip: MakeNip) -> None
     xr.testing.assert_equal(nip_profile(make_nip(speed=0.0), "press"), nip_profile(make_nip(), "press"))
 
 
-@pytest.mark.parametrize("middle", [2000, 0], ids=["within", "across the start of the belt"])
+@pytest.mark.parametrize("center", [2000, 0], ids=["within", "across the start of the belt"])
 @pytest.mark.parametrize("sense", [1.0, -1.0])
-def test_a_profile_runs_with_the_belt(make_nip: MakeNip, sense: float, middle: int) -> None:
+def test_a_profile_runs_with_the_belt(make_nip: MakeNip, sense: float, center: int) -> None:
     """From the entry to the exit; shear is positive where it pushes the belt on."""
-    run = make_nip(sense, at=2, middle=middle)
+    run = make_nip(sense, at=2, middle=center)
     profile, width = nip_profile(run, "press"), run.prepared.belt.width
     distance = profile.distance.values
     assert profile.face.values.tolist() == ["press", "drum"]
