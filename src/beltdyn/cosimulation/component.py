@@ -13,7 +13,8 @@ from beltdyn.model import Drive, Pulley, RotaryTensioner, load
 from beltdyn.parts.messages import suggest
 from beltdyn.results import RECORDED
 from beltdyn.solvers.run_progress import Report
-from beltdyn.transient.checkpoint import STATE, Packing
+from beltdyn.transient.checkpoint import STATE
+from beltdyn.transient.packing import ForeignError, Packing
 from beltdyn.transient.simulator import Simulator, SimulatorState, output_names
 
 _FILE = "interface.json"
@@ -192,7 +193,7 @@ class ComponentState(NamedTuple):
     """None before the beginning."""
 
     def to_bytes(self) -> bytes:
-        """All of it, with a checksum."""
+        """All of it, with a checksum and a signature."""
         return _PACKING.pack(self)
 
     @classmethod
@@ -200,6 +201,8 @@ class ComponentState(NamedTuple):
         """The state of some bytes."""
         try:
             found = _PACKING.unpack(data)
+        except ForeignError as error:
+            raise ModelError(f"the state {error}, or begin the unit anew.") from error
         except ModelError as error:
             raise ModelError(f"the state is damaged ({error}). Give the bytes of a state unchanged.") from error
         if not isinstance(found, cls):

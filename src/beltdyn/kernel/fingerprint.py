@@ -106,14 +106,26 @@ def _prepare(chosen: Path, name: str) -> str:
         _copy(_SHIPPED / name, folder)
     folder.mkdir(mode=0o700, exist_ok=True)
     if hasattr(os, "getuid"):
-        trusted = (os.getuid(), 0)
-        fault = next(filter(None, (_fault(path, trusted, shared=True) for path in _way_to(folder))), "")
         own = (folder, *(Path(entry) for entry in os.scandir(folder) if entry.is_dir()))
-        fault = fault or next(filter(None, (_fault(path, trusted[:1]) for path in own)), "")
+        fault = _fault_of_way(folder) or next(filter(None, (_fault(path, (os.getuid(),)) for path in own)), "")
         if fault:
             return fault
     with tempfile.TemporaryFile(dir=folder):
         return ""
+
+
+def fault_of_file(path: Path) -> str:
+    """Why others can read or change a file of this user; empty if they cannot, or the system tells no owners."""
+    if not hasattr(os, "getuid"):
+        return ""
+    others = "" if not path.stat().st_mode & (stat.S_IRWXG | stat.S_IRWXO) else f"other users can read {path}"
+    return _fault_of_way(path) or _fault(path, (os.getuid(),)) or others
+
+
+def _fault_of_way(path: Path) -> str:
+    """Why others can lead a path elsewhere."""
+    trusted = (os.getuid(), 0)
+    return next(filter(None, (_fault(step, trusted, shared=True) for step in _way_to(path))), "")
 
 
 _MOST_LINKS = 40

@@ -19,7 +19,8 @@ from beltdyn.errors import ModelError
 from beltdyn.model import Drive, dumps, load
 from beltdyn.results import Run
 from beltdyn.solvers.run_progress import Progress
-from beltdyn.transient.checkpoint import CheckpointWarning, Packing, checkpoint_file, is_checkpoint, read_checkpoint
+from beltdyn.transient.checkpoint import CheckpointWarning, checkpoint_file, is_checkpoint, read_checkpoint
+from beltdyn.transient.packing import Packing
 from beltdyn.transient.simulate import simulate
 
 OFTEN = 1e-9

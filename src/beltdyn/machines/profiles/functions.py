@@ -1,7 +1,7 @@
 """Profiles as kernels see them: value, rate, integral and next kink at an instant (Eqs. 28 and 29)."""
 
 from collections.abc import Sequence
-from math import sin
+from math import nextafter, sin
 from typing import NamedTuple
 
 import numpy as np
@@ -74,7 +74,7 @@ def command_value(profiles: Profiles, number: int, time: float) -> float:
 @kernel
 def after_jump(time: float) -> float:
     """The next floating-point number after an instant (s), where a jump at the instant has happened."""
-    return float(np.nextafter(time, np.inf))
+    return nextafter(time, np.inf)
 
 
 @kernel

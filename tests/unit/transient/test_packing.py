@@ -14,8 +14,10 @@ from hypothesis.extra.numpy import array_shapes, arrays, scalar_dtypes
 
 from beltdyn.arrays import blank, record, records
 from beltdyn.errors import ModelError
+from beltdyn.kernel import user_key
+from beltdyn.kernel.user_key import signature
 from beltdyn.model import Drive
-from beltdyn.transient.checkpoint import Packing
+from beltdyn.transient.packing import ForeignError, Packing
 
 
 class Pair(NamedTuple):
@@ -33,6 +35,7 @@ class Unknown:
 
 
 PACKING = Packing((Pair, Frozen))
+DIGEST = hashlib.sha256().digest_size
 ROW = record(number="f8", whole="i8", place="(2,)f8", flag="?")
 
 
@@ -41,10 +44,11 @@ def again(value: Any) -> Any:
 
 
 def sealed(tree: Any, arrays: bytes = b"") -> bytes:
-    """Bytes of others, with a checksum that matches."""
+    """Bytes of a tree, with a signature and a checksum that match."""
     text = tree if isinstance(tree, bytes) else json.dumps(tree).encode()
     content = len(text).to_bytes(8, "little") + text + arrays
-    return hashlib.sha256(content).digest() + content
+    signed = signature(content) + content
+    return hashlib.sha256(signed).digest() + signed
 
 
 NUMBERS = scalar_dtypes().filter(lambda dtype: dtype.kind in "biufc" and dtype.itemsize <= 16 and dtype.isnative)
@@ -122,9 +126,21 @@ TREES: list[Any] = [
 
 
 @pytest.mark.parametrize("tree", TREES, ids=range(len(TREES)))
-def test_bytes_of_others_make_nothing(tree: Any) -> None:
+def test_trees_that_nobody_writes_make_nothing(tree: Any) -> None:
     with pytest.raises(ModelError):
         PACKING.unpack(sealed(tree, bytes(64)))
+
+
+def test_bytes_of_others_make_nothing(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Their checksum is right; a kernel would follow their numbers beyond its arrays, or to an address."""
+    data = PACKING.pack([1.0, np.zeros(3)])
+    content = data[2 * DIGEST :]
+    for forged in (bytes(DIGEST), hashlib.sha256(content).digest()):
+        with pytest.raises(ForeignError, match="not signed with the key"):
+            PACKING.unpack(hashlib.sha256(forged + content).digest() + forged + content)
+    monkeypatch.setattr(user_key, "_key", lambda: bytes(DIGEST))
+    with pytest.raises(ForeignError, match="not signed with the key"):
+        PACKING.unpack(data)
 
 
 @pytest.mark.parametrize(
