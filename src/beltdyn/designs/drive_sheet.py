@@ -572,7 +572,7 @@ class _DriveSheet:
             yield (
                 f"{names[pulley]} slips: its slip safety is {float(np.nanmin(safety)):.3g} at operating point "
                 f"{rows[row]}, {cases[case]}, with {float(self._options.factors[factor]):.3g} times the friction. "
-                "Raise the tension or the wrap angle, or use more ribs."
+                f"Raise the tension or the wrap angle, or use {self._drive.belt.wider}."
             )
         lost = [rows[row] for row, one in enumerate(self.variables["span_tension"][1]) if not np.isfinite(one).all()]
         if lost:
@@ -587,6 +587,6 @@ class _DriveSheet:
         most, peak = self._drive.belt.largest_tension, float(np.nanmax(self.variables["peak_tension"][1]))
         if most is not None and peak > most:
             yield (
-                f"the peak tension is {peak:.4g} N, but the belt is rated for {most:.4g} N. Use a larger belt, or more "
-                "ribs."
+                f"the peak tension is {peak:.4g} N, but the belt is rated for {most:.4g} N. Use "
+                f"{self._drive.belt.wider}, or reduce tension or load."
             )

@@ -263,7 +263,7 @@ def _fit(pair: _Pair, rating: Rating, length: float, speed: float, task: Task) -
     distance = hypot(path.span, pair.radii[1] - pair.radii[0])
     if not least <= distance <= largest:
         return None
-    one = RatedBelt(rating, 1, pair.entry.pulley_diameter == "datum", length)
+    one = RatedBelt(rating, 1, pair.entry.is_v_belt, length)
     diameters, loaded = 2.0 * np.array(pair.radii), np.ones(2, dtype=bool)
     power = float(one.on(diameters, np.array(path.wrap), speed, loaded).power.min())
     most = task.most_belts if one.in_set else 4 * task.most_belts

@@ -434,10 +434,23 @@ class Belt(Part):
         return read_catalogue(section.get("catalogue")).get(section["profile"])
 
     @property
+    def rib_count(self) -> int | None:
+        """Number of ribs, or of V-belts side by side; None for a belt that is sold by another measure."""
+        entry = self.entry
+        return (self._section or {}).get("ribs", 1 if entry is not None and entry.is_v_belt else None)
+
+    @property
     def v_belts(self) -> int:
         """Number of V-belts side by side; 1 for a belt in one piece."""
-        entry, section = self.entry, self._section
-        return section["ribs"] if section and entry and entry.pulley_diameter == "datum" else 1
+        entry = self.entry
+        return (self.rib_count or 1) if entry is not None and entry.is_v_belt else 1
+
+    @property
+    def wider(self) -> str:
+        """What carries more than this belt, in words."""
+        if self.entry is None or self.entry.sold_by != "ribs":
+            return "a larger belt"
+        return "more belts" if self.entry.is_v_belt else "more ribs"
 
     def rated(self, length: float) -> RatedBelt | RatedTeeth | None:
         """The belt as its profile is rated, with an unstretched length in m; None without a rating."""
@@ -446,8 +459,7 @@ class Belt(Part):
             return RatedTeeth(entry.tooth_rating, self.toothing, self.width, self.mass_per_length, self.largest_tension)
         if entry is None or entry.rating is None or self._section is None:
             return None
-        in_set = entry.pulley_diameter == "datum"
-        return RatedBelt(entry.rating, self._section["ribs"], in_set, self.nominal_length_of(length))
+        return RatedBelt(entry.rating, self.rib_count or 1, entry.is_v_belt, self.nominal_length_of(length))
 
     @property
     def measured_stretch(self) -> float:

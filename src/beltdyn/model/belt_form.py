@@ -73,7 +73,10 @@ class Sold(Part):
 
     profile: str = Field(description="the name of the belt's profile in the catalogue, as text")
     ribs: Count | None = Field(
-        None, ge=1, le=1000, description="the number of ribs of the profile, or of V-belts side by side"
+        None,
+        ge=1,
+        le=1000,
+        description="the number of ribs of the profile, or of V-belts side by side, by default one V-belt",
     )
     diameter: Length | None = Field(None, gt=0, description="the diameter of a round belt, in m")
     catalogue: str | None = Field(None, description="the path of your own catalogue, a TOML file, as text")
@@ -248,6 +251,8 @@ def _size(sold: Sold, entry: Entry, width: object) -> float:
                 f"{entry.sold_by}. Give {entry.sold_by} instead"
             )
     if given[entry.sold_by] is None:
+        if entry.is_v_belt:
+            return 1
         each = f", each {1e3 * entry.width:.3g} mm wide" if entry.sold_by == "ribs" else ""
         raise ValueError(
             f'{entry.sold_by} is missing: profile "{sold.profile}" is sold by {entry.sold_by}{each}. '

@@ -110,6 +110,11 @@ class Entry(Part):
     source: str = Field(min_length=1, description="the source of the values, as text")
 
     @property
+    def is_v_belt(self) -> bool:
+        """Whether it is a V-belt, several of which lie side by side."""
+        return self.pulley_diameter == "datum"
+
+    @property
     def measured_stretch(self) -> float:
         """Stretch of the belt while its nominal length is measured, with half of the force in each strand."""
         curve = self.stretch_curve

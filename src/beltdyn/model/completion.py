@@ -159,7 +159,7 @@ def _check_estimate(given: Given, nominal: str | None, pulleys: tuple[Pulley, ..
             f"{_asked(given, nominal)} would stretch the belt by less than {_SMALLEST_STRAIN:.0e} of its length, which "
             f"is below rounding. Give at least {least:.1g} N"
         )
-    check_length(length, path, tensioned=given.has_springs)
+    check_length(given.belt, length, path, tensioned=given.has_springs)
     if given.has_springs:
         _check_place(given, pulleys, estimate.path)
     if not estimate.tension > 0:

@@ -95,7 +95,7 @@ class Drive(Part):
     duty: tuple[DutyPoint, ...] = Field(
         (), description="the groups [[duty]], operating points with their shares of time"
     )
-    simulation: Simulation = Field(description="the group [simulation]")
+    simulation: Simulation = Field(default_factory=Simulation, description="the group [simulation]")
     steady: Steady = Field(default_factory=Steady, description="the group [steady], the mesh of steady running")
     limits: Limits = Field(
         default_factory=Limits, description="the group [limits], limits of results for reports; none by default"

@@ -134,7 +134,7 @@ def lay_out(given: Given) -> Layout:
         belt = given.belt.replace(installed_tension=tension)
         return Layout(given._replace(belt=belt), pulleys, path, nominal=nominal)
     if given.is_settled:
-        check_length(given.belt.given_length, path.length)
+        check_length(given.belt, given.belt.given_length, path.length)
     if given.belt.length is None or given.belt.installed_tension is None:
         return Layout(given, pulleys, path)
     given, choices = with_chosen_stiffness(given, path)
@@ -286,19 +286,24 @@ def _sized_by(belt: Belt) -> str:
     return "belt.length" if belt.teeth is None else "belt.teeth"
 
 
-def check_length(length: float, path: float, tensioned: bool = False) -> None:
+def check_length(belt: Belt, length: float, path: float, tensioned: bool = False) -> None:
     """Refuse a belt that is too long or too short for its path, with moving tensioners at rest."""
     where = "the path around the pulleys" + ", as placed by the tensioners" * tensioned
+    unstretched = f"belt.length = {length:.5g} m"
+    if belt.nominal_length is not None:
+        unstretched = f"belt.nominal_length = {1e3 * belt.nominal_length:.6g} mm ({length:.5g} m unstretched)"
+    elif belt.teeth is not None:
+        unstretched = f"belt.teeth = {belt.teeth} ({length:.5g} m unstretched)"
     if length >= path:
-        given, room = apart(length, path)
+        exact, room = apart(length, path)
         raise ValueError(
-            f"belt.length = {given} m is {'as long as' if length == path else 'longer than'} {where} ({room} m): the "
-            "belt would hang slack. Shorten it, or "
+            f"{unstretched.replace(f'{length:.5g}', exact, 1)} is {'as long as' if length == path else 'longer than'} "
+            f"{where} ({room} m): the belt would hang slack. Shorten it, or "
             f"{'increase the preload' if tensioned else 'move the pulleys apart'}."
         )
     if path / length - 1 > LARGEST_STRAIN:
         raise ValueError(
-            f"belt.length = {length:.5g} m is too short for {where} ({path:.5g} m): "
+            f"{unstretched} is too short for {where} ({path:.5g} m): "
             f"it would be stretched by {path / length - 1:.0%}; the limit is {LARGEST_STRAIN:.0%}. "
             f"Lengthen it, or {'reduce the preload' if tensioned else 'move the pulleys closer together'}."
         )

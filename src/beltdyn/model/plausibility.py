@@ -49,6 +49,7 @@ def judge_plausibility(drive: Drive, installation: Installation) -> Iterator[Fin
     yield from _off_nominal(drive, installation)
     yield from _light_preload(drive, installation)
     yield from _massless(drive)
+    yield from _driving_loads(drive, installation)
     yield from _sudden_start(drive, installation)
     yield from _few_teeth(drive, installation)
     yield from _stretched_teeth(drive, installation)
@@ -62,14 +63,15 @@ def judge_plausibility(drive: Drive, installation: Installation) -> Iterator[Fin
 def _tension(drive: Drive, installation: Installation) -> Iterator[Finding]:
     """Compare the tension with the rating, at rest or with the m v^2 that adds to it under a sprung tensioner."""
     belt, tension = drive.belt, installation.tension
-    most, ribs = belt.largest_tension, belt.value_of("ribs")
+    most, ribs = belt.largest_tension, belt.rib_count
+    unit = "belt" if belt.entry is not None and belt.entry.is_v_belt else "rib"
     speed = fastest_rim(drive.pulleys, drive.radii)
     sprung = bool(drive.layout.given.springs)
     running = tension + sprung * belt.mass_per_length * speed**2
     if most is None or running < most:
         return
-    each = (lambda force: f"{force:.4g} N ({force / ribs:.3g} N per rib or belt)") if ribs else "{:.4g} N".format
-    more = f"Use at least {math.ceil(ribs * tension / most)} of them, reduce" if ribs else "Use a larger belt, reduce"
+    each = (lambda force: f"{force:.4g} N ({force / ribs:.3g} N per {unit})") if ribs else "{:.4g} N".format
+    more = f"Use at least {math.ceil(ribs * tension / most)} {unit}s, reduce" if ribs else "Use a larger belt, reduce"
     if tension < most:
         limit = math.sqrt((most - tension) / belt.mass_per_length)
         yield Finding(
@@ -369,10 +371,30 @@ def _massless(drive: Drive) -> Iterator[Finding]:
         )
 
 
+def _driving_loads(drive: Drive, installation: Installation) -> Iterator[Finding]:
+    """Constant torques that turn the drive, which its driver brakes, as a load of the wrong sign does."""
+    driver = drive.driver
+    if driver is None or drive.pulleys[driver].speed is None:
+        return
+    powers = powers_drawn(drive, driver, installation)[0]
+    if powers.sum() >= 0.0:
+        return
+    for number in np.flatnonzero(powers < 0.0).tolist():
+        pulley = drive.pulleys[number]
+        torque = 0.0 if pulley.torque is None else float(pulley.torque.at([drive.simulation.end])[0])
+        if torque:
+            yield Finding(
+                f"the torque of {pulley.name}, {torque:.4g} N m, acts in its sense of rotation and "
+                f"drives the belt, so that {drive.pulleys[driver].name} brakes.",
+                "The tight and the slack span are exchanged if it is a load.",
+                f"Give a load the opposite sign: {-torque:.4g} N m.",
+            )
+
+
 def _sudden_start(drive: Drive, installation: Installation) -> Iterator[Finding]:
     """Prescribed speeds above zero at the start of a run from rest."""
     settings, belt = drive.simulation, drive.belt
-    if settings.start not in ("equilibrium", "laid"):
+    if settings.given_duration is None or settings.start not in ("equilibrium", "laid"):
         return
     radii = np.abs(drive.radii)
     speeds = {

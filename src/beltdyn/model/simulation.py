@@ -233,6 +233,10 @@ for _kind in (
     register(_kind)
 
 
+_LOOKED_AT = 10.0
+"""Time after which machines have usually started, s."""
+
+
 class Simulation(Part):
     """Settings of a transient simulation, from time zero or a later instant.
 
@@ -242,7 +246,13 @@ class Simulation(Part):
     0.2
     """
 
-    duration: Time = Field(gt=0, description="the simulated time, in s")
+    given_duration: Time | None = Field(
+        None,
+        alias="duration",
+        gt=0,
+        description="the simulated time, in s; runs over time need it, other analyses look at speeds and loads up to "
+        "then, by default 10 s",
+    )
     given_interval: Time | None = Field(
         None,
         alias="output_interval",
@@ -302,6 +312,11 @@ class Simulation(Part):
         wanted = self.duration / _FIELDS if self.field_interval is None else self.field_interval
         stride = max(1, floor(wanted / self.output_interval * (1.0 + 1e-9)))
         return Instants(self.output_interval, self.end, stride, self.begin)
+
+    @property
+    def duration(self) -> float:
+        """The simulated time, s; without one the time up to which analyses look at what is prescribed."""
+        return _LOOKED_AT if self.given_duration is None else self.given_duration
 
     @property
     def output_interval(self) -> float:
@@ -367,6 +382,8 @@ class Simulation(Part):
 
     @model_validator(mode="after")
     def _outputs_fit_the_duration(self) -> Self:
+        if self.given_duration is None:
+            return self
         if self.output_interval > self.duration:
             interval, duration = apart(self.output_interval, self.duration)
             raise ValueError(

@@ -23,8 +23,19 @@ _NUMBER = re.compile(r"\s*(?P<number>[+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?)\
 _UNIT = re.compile(r"(?:1 ?/)?(?:[^\W\d]+(?:(?:\*\*|\^)-?\d(?!\d))?|[*/·() ])+")
 _TOLERANCE = re.compile(r"\s*(?:±|\+/?-)\s*(?P<size>(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?)\s*(?P<percent>%?)\s*")
 _MARKS = re.compile(r"±|\+/?-")
-_MORE_UNITS = "newton_meter = newton * meter = Nm", "newton_millimeter = newton * millimeter = Nmm"
+_MORE_UNITS = (
+    "newton_meter = newton * meter = Nm",
+    "newton_millimeter = newton * millimeter = Nmm",
+    "kilopond = kilogram_force = kp",
+    "pferdestaerke = metric_horsepower = PS",
+    "foot_per_minute = foot / minute = fpm",
+)
 """Spellings of drive engineers; kNm etc. follow."""
+_HYPHEN = re.compile(r"(?<=[^\W\d])-(?=[^\W\d])")
+_POWER = re.compile(r"(?<=[^\W\d])([23])(?!\d)")
+_POUNDS = re.compile(r"\b(lb|oz)s?\b")
+"""Pounds and ounces, which are forces where a force is wanted."""
+_DECIMAL_COMMA = re.compile(r"\s*(?P<whole>[+-]?\d+),(?P<rest>\d+\b.*)", re.DOTALL)
 _TURNS = re.compile(r"(?:U|rev|1) ?/ ?min|min(?:\^|\*\*)?-1|min⁻¹")
 """Other spellings of rpm for angular speeds."""
 _SENSE = re.compile(r"(?P<rest>.*?)\s+(?P<sense>clockwise|cw|counter-clockwise|ccw)\s*", re.DOTALL)
@@ -32,7 +43,8 @@ _SENSE = re.compile(r"(?P<rest>.*?)\s+(?P<sense>clockwise|cw|counter-clockwise|c
 _CLOCKWISE = ("clockwise", "cw")
 _WITH_SENSE = frozenset({"rad/s", "N*m"})
 _CELSIUS = re.compile("°\\s?C")
-"""The degree Celsius, whose sign no name of a unit has."""
+_DEGREE = re.compile("°(?!\\s?[CF])")
+"""Degrees of temperature and of angle, whose sign no name of a unit has."""
 _LONGEST_TEXT = 60
 _LARGEST = 1e15
 _DUST = 1e-30
@@ -125,12 +137,14 @@ def to_si(text: str, unit: str) -> float:
         return to_si(match["rest"], unit) * (-1.0 if match["sense"] in _CLOCKWISE else 1.0)
     nominal, tolerance = _without_tolerance(text, unit)
     match = _NUMBER.fullmatch(nominal) if len(text) <= _LONGEST_TEXT else None
+    if match is not None and (comma := _DECIMAL_COMMA.fullmatch(nominal)):
+        raise ValueError(f'has a decimal comma. Write "{comma["whole"]}.{comma["rest"].strip()}"')
     if match is None:
         raise ValueError(f"must be a number{f' in {unit}' if unit else ''}")
     number, given = float(match["number"]), match["unit"]
     if unit == "rad/s" and _TURNS.fullmatch(given):
         given = "rpm"
-    given = _CELSIUS.sub("degC", given)
+    given = _spelled(given)
     if not unit and given == "%":
         if tolerance is not None and tolerance["percent"]:
             raise ValueError(
@@ -149,6 +163,12 @@ def to_si(text: str, unit: str) -> float:
     return _convert(number, given, unit)
 
 
+def _spelled(unit: str) -> str:
+    """A unit as the unit library reads it: "lb-ft", "cm2", "°"."""
+    unit = _DEGREE.sub("deg", _CELSIUS.sub("degC", unit))
+    return _POWER.sub(r"^\1", _HYPHEN.sub(" ", unit))
+
+
 def with_other_sense(text: str) -> str:
     """A number and its unit with the opposite sense behind it; any other text as it is."""
     match = _SENSE.fullmatch(text) if len(text) <= _LONGEST_TEXT else None
@@ -160,7 +180,7 @@ def with_other_sense(text: str) -> str:
 def is_unit(text: str) -> bool:
     """Whether a text is a known unit, such as ``"N m"``."""
     try:
-        text = _CELSIUS.sub("degC", text)
+        text = _spelled(text)
         known = _TURNS.fullmatch(text) or _UNIT.fullmatch(text)
         return bool(known and len(text) <= _LONGEST_TEXT and _registry().parse_units(text))
     except Exception:  # see _convert
@@ -230,6 +250,9 @@ def _convert(number: float, given: str, unit: str) -> float:
     try:
         parsed = _registry().parse_units(given)
         same = parsed.is_compatible_with(unit)
+        if not same and _POUNDS.search(given):
+            parsed = _registry().parse_units(_POUNDS.sub(r"\1f", given).replace("ozf", "force_ounce"))
+            same = parsed.is_compatible_with(unit)
         value = float(_registry().convert(number, parsed, unit)) if same else 0.0
     except Exception as error:  # the parser raises many unrelated types, down to those of Python's tokenizer
         raise ValueError(f'has an unknown unit "{given}". Write for example "{number:g} {unit}"') from error

@@ -286,8 +286,16 @@ def _facts(given: Drive, drive: Drive, installation: Installation) -> list[tuple
         ("element length", f"{1e3 * length / drive.elements:.3g} mm{_in_the_mean(drive)}"),
         *([("not used", f"{', '.join(unused)} (only for a travelling mesh)")] if unused else []),
         *_lost_in_the_belt(drive),
+        *(_run_facts(drive) if drive.simulation.given_duration is not None else []),
+    ]
+
+
+def _run_facts(drive: Drive) -> list[tuple[str, str]]:
+    """What a run over time needs."""
+    time = describe_time(drive)
+    return [
         ("result size", f"about {describe_size(prepare(drive))}"),
-        *([("computing time", time)] if (time := describe_time(drive)) else []),
+        *([("computing time", time)] if time else []),
     ]
 
 

@@ -116,6 +116,8 @@ def record_run(
 ) -> Run:
     """Simulate a drive over time, for an analysis that says something of its own about the run."""
     given = drive
+    if drive.simulation.given_duration is None:
+        raise ModelError('simulation.duration is missing, the time to be simulated. Give it, such as "1 s".')
     if compare_steady:
         require_steady(on_quintics(drive))
     integrator = integrator or choose_integrator(drive)

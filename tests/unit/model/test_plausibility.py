@@ -6,6 +6,8 @@ from typing import Any
 import numpy as np
 import pytest
 
+from beltdyn import simulate
+from beltdyn.errors import ModelError
 from beltdyn.model import Drive, advise, install, loads, prepare
 from beltdyn.model.plausibility import judge_plausibility, other_diameters
 
@@ -43,11 +45,43 @@ def test_a_rib_at_450_newton_and_more() -> None:
     assert told(two_pulleys(belt | {"installed_tension": 2650.0})) == []
     drive = two_pulleys(belt | {"installed_tension": 2850.0})
     (text,) = told(drive)
-    assert text.startswith("the tension at rest is 2850 N (475 N per rib or belt)")
-    assert "rated for 2700 N (450 N per rib or belt)" in text
-    assert "Use at least 7 of them" in text
+    assert text.startswith("the tension at rest is 2850 N (475 N per rib)")
+    assert "rated for 2700 N (450 N per rib)" in text
+    assert "Use at least 7 ribs" in text
     assert text in advise(drive, install(drive))
     assert told(two_pulleys(belt | {"installed_tension": 2850.0, "largest_tension": "3 kN"})) == []
+
+
+def test_a_load_that_drives_is_asked_about() -> None:
+    """A torque in the sense of rotation, so that the driver brakes; not one that another load outweighs."""
+    belt = {"profile": "SPB", "installed_tension": "800 N"}
+    drive = two_pulleys(belt, "200 mm", speed="1450 rpm").with_({"pulley[fan].diameter": "200 mm"})
+    steady = drive.with_({"simulation.start": "steady"})
+    for sense, rotation in ((1.0, "counter-clockwise"), (-1.0, "clockwise")):
+        turned = steady.with_({"rotation": rotation})
+        assert told(turned.with_({"pulley[fan].torque": -50.0})) == []
+        (text,) = told(turned.with_({"pulley[fan].torque": 50.0}))
+        assert text.startswith("the torque of fan, 50 N m, acts in its sense of rotation"), sense
+        assert text.endswith("Give a load the opposite sign: -50 N m.")
+
+
+def test_one_v_belt_where_no_number_is_said() -> None:
+    belt = {"profile": "SPB", "installed_tension": "4 kN"}
+    one, two = (two_pulleys(belt | ribs, "200 mm") for ribs in ({}, {"ribs": 2}))
+    assert two.belt.axial_stiffness == 2.0 * one.belt.axial_stiffness
+    (text,) = [each for each in told(one) if "is rated for" in each]
+    assert "(4e+03 N per belt)" in text
+    assert "Use at least 2 belts" in text
+
+
+def test_a_drive_without_a_run() -> None:
+    """A duration is needed by runs alone; analyses look at 10 s."""
+    belt = {"profile": "SPB", "installed_tension": "800 N"}
+    whole = two_pulleys(belt, "200 mm", speed={"kind": "ramp", "start": 0.0, "end": 5.0, "value": "1450 rpm"})
+    drive = Drive(belt=whole.belt, pulley=whole.pulleys)
+    assert drive.simulation.end == 10.0
+    with pytest.raises(ModelError, match=r"simulation.duration is missing.*such as \"1 s\""):
+        simulate(drive)
 
 
 def test_the_centrifugal_tension_of_a_belt_that_a_spring_takes_up() -> None:
@@ -58,7 +92,7 @@ def test_the_centrifugal_tension_of_a_belt_that_a_spring_takes_up() -> None:
     slow, fast = (drive.with_({"pulley[crank].speed.value": part * limit / crank.radius}) for part in (0.97, 1.05))
     assert told(slow) == []
     (text,) = told(fast)
-    assert "centrifugal; the belt is rated for 2700 N (450 N per rib or belt). " in text
+    assert "centrifugal; the belt is rated for 2700 N (450 N per rib). " in text
     assert f"Reduce the speed below {limit:.3g} m/s" in text
 
 

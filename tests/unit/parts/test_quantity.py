@@ -70,3 +70,29 @@ def test_a_number_is_written_with_the_unit_of_another(value: float, like: object
 def test_more_digits_are_written_where_they_are_asked_for() -> None:
     assert written_like(0.0123456789012, "1 mm", "m") == "12.34568 mm"
     assert written_like(0.0123456789012, "1 mm", "m", 10) == "12.3456789 mm"
+
+
+@pytest.mark.parametrize(
+    ("text", "like", "unit"),
+    [
+        *((text, "30 lbf ft", "N*m") for text in ("30 ft lb", "30 lb-ft", "30 ft-lbs", "30 lb ft")),
+        ("10 oz in", "0.625 lbf in", "N*m"),
+        ("30 lb", "30 lbf", "N"),
+        ("5 lb/in", "5 lbf/in", "N/m"),
+        ("30 lb", "30 pound", "kg"),
+        ("120 kp", "120 kgf", "N"),
+        ("10 PS", "7354.9875 kg m^2/s^3", "W"),
+        ("300 fpm", "5 ft/s", "m/s"),
+        ("8 kg cm2", "8 kg cm^2", "kg*m^2"),
+        ("5 N/mm2", "5 MPa", "Pa"),
+        ("35 °", "35 deg", "rad"),
+    ],
+)
+def test_other_spellings_mean_the_same(text: str, like: str, unit: str) -> None:
+    """Pounds are forces where a force is wanted."""
+    assert to_si(text, unit) == pytest.approx(to_si(like, unit), rel=1e-12)
+
+
+def test_a_decimal_comma_is_named() -> None:
+    with pytest.raises(ValueError, match=r'decimal comma. Write "3.5 mm"'):
+        to_si("3,5 mm", "m")
