@@ -2,7 +2,13 @@
 
 import os
 import traceback
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
 from pathlib import Path
+from types import TracebackType
+from typing import Any, Self, TypeVar
+
+T = TypeVar("T")
 
 
 class BeltdynError(Exception):
@@ -20,6 +26,8 @@ class BeltdynError(Exception):
     """
 
     exit_code = 2
+    completed: tuple[Any, ...] = ()
+    """What was completed nevertheless, such as the paths of other figures; see `Parts`."""
 
 
 class ModelError(BeltdynError, ValueError):
@@ -128,6 +136,68 @@ def cause_of(error: Exception, repeat: str = "") -> str:
 def is_internal(text: str) -> bool:
     """Whether a message, such as why a point failed, is that of an `InternalError`, or quotes one."""
     return f"{INTERNAL} in " in text
+
+
+class Parts:
+    """Does the parts of a whole, such as the figures of a result, each whatever becomes of the others.
+
+    As a context it ends with `end`.
+
+    Parameters
+    ----------
+    refuses : bool
+        Whether a refusal (`ModelError`) of a part before any other was done refuses the whole at once.
+    """
+
+    def __init__(self, *, refuses: bool = False) -> None:
+        self._refuses = refuses
+        self.completed: list[Any] = []
+        """What parts have completed, such as paths of files."""
+        self.errors: list[BeltdynError] = []
+        """What parts have raised."""
+
+    def __enter__(self) -> Self:
+        """Begin."""
+        return self
+
+    def __exit__(self, kind: type[BaseException] | None, error: BaseException | None, _: TracebackType | None) -> None:
+        """Raise what parts have raised, unless an error between parts goes before."""
+        if error is None:
+            self.end()
+
+    def end(self) -> None:
+        """Raise what parts have raised: a line for each, with the exit code of the gravest, and `completed`."""
+        if self.errors:
+            gravest = max(self.errors, key=lambda one: one.exit_code)
+            lines = "\n".join(dict.fromkeys(map(str, self.errors)))
+            raised = gravest if lines == str(gravest) else _with_exit_code(gravest.exit_code)(lines)
+            raised.completed = tuple(self.completed)
+            raise raised
+
+    @contextmanager
+    def part(self, repeat: str = "") -> Iterator[None]:
+        """Do a part; what it raises is kept for the end, with the input that repeats it."""
+        try:
+            yield
+        except Exception as error:
+            self.fail(classified(error, repeat))
+
+    def done(self, work: Callable[[], T], otherwise: T, repeat: str = "") -> T:
+        """Do a part that gives something; `otherwise` if it fails."""
+        with self.part(repeat):
+            return work()
+        return otherwise
+
+    def fail(self, error: BeltdynError) -> None:
+        """Keep the error of a part for the end."""
+        self.completed += error.completed
+        if self._refuses and isinstance(error, ModelError) and not (self.completed or self.errors):
+            raise error
+        self.errors.append(error)
+
+
+def _with_exit_code(code: int) -> type[BeltdynError]:
+    return next(one for one in (InternalError, SimulationError, ModelError) if one.exit_code == code)
 
 
 def _place_of(error: Exception) -> tuple[str, bool]:

@@ -11,6 +11,7 @@ from beltdyn.errors import (
     ConvergenceError,
     InternalError,
     ModelError,
+    Parts,
     SimulationError,
     cause_of,
     classified,
@@ -74,3 +75,26 @@ def test_a_full_disk_is_no_fault_of_beltdyn() -> None:
     told = classified(caught(lambda: Path("/no/such/file").stat()))
     assert type(told) is SimulationError
     assert "No such file" in str(told)
+
+
+def test_parts_are_done_whatever_becomes_of_the_others() -> None:
+    """And the gravest error gives the exit code; a refusal of the first is that of the whole."""
+
+    def parts_of(*errors: Exception | None, refuses: bool = False) -> None:
+        with Parts(refuses=refuses) as parts:
+            for number, error in enumerate(errors):
+                with parts.part("repeat"):
+                    if error is not None:
+                        raise error
+                    parts.completed.append(number)
+
+    parts_of(None, None)
+    told = caught(lambda: parts_of(None, ModelError("no"), SimulationError("stop"), None))
+    assert isinstance(told, SimulationError)
+    assert (str(told), told.completed) == ("no\nstop", (0, 3))
+    refused = caught(lambda: parts_of(ModelError("no"), None, refuses=True))
+    assert isinstance(refused, ModelError)
+    assert refused.completed == ()
+    assert caught(lambda: parts_of(None, ModelError("no"), None, refuses=True)).completed == (0, 2)  # type: ignore
+    whole = caught(lambda: parts_of(ConvergenceError("far"), None))
+    assert type(whole) is ConvergenceError

@@ -22,9 +22,14 @@ def _duty(drive: Drive, folder: Path) -> object:
     return bd.duty(drive, table=table_in(folder))
 
 
+def _width(drive: Drive) -> dict[str, object]:
+    """The belt's width as a free number."""
+    return {"path": "belt.width", "least": 0.8 * drive.belt.width, "largest": 1.2 * drive.belt.width}
+
+
 def _optimized(drive: Drive, folder: Path) -> object:
     study = OptimizationStudy(
-        number=[{"path": "belt.width", "least": "15 mm", "largest": "25 mm"}],
+        number=[_width(drive)],
         goal={"result": "hub_load"},
         requirement=[{"result": "slip_safety", "at_least": 1.5}],
     )
@@ -34,15 +39,15 @@ def _optimized(drive: Drive, folder: Path) -> object:
 def _calibrated(drive: Drive, folder: Path) -> object:
     table = folder / "measured.csv"
     table.write_text(f"{drive.pulleys[-1].name} torque [N m], efficiency\n-1, 0.95\n-2, 0.9\n", encoding="utf-8")
-    study = CalibrationStudy(
-        number=[{"path": "belt.width", "least": "15 mm", "largest": "25 mm"}], measurement=[{"table": str(table)}]
-    )
+    study = CalibrationStudy(number=[_width(drive)], measurement=[{"table": str(table)}])
     return bd.calibrate(drive, study=study)
 
 
 def _studied(drive: Drive, folder: Path) -> object:
     points = ParameterStudy(
-        analysis="steady_state", number=[{"path": "belt.width", "values": "15, 25 mm"}], results=["efficiency"]
+        analysis="steady_state",
+        number=[{"path": "belt.width", "values": [0.8 * drive.belt.width, drive.belt.width]}],
+        results=["efficiency"],
     )
     return bd.study(points, drive, jobs=1, output=folder / "study.nc")
 

@@ -5,9 +5,11 @@ gap, which is a picture, a table or a page that is empty and does not say why.
 """
 
 import re
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
+from contextlib import redirect_stderr, redirect_stdout
 from functools import partial
 from inspect import Parameter, signature
+from io import StringIO
 from pathlib import Path
 from random import Random
 from typing import Any
@@ -20,14 +22,13 @@ from matplotlib.figure import Figure
 import beltdyn as bd
 from beltdyn.analyses import ANALYSES
 from beltdyn.app.jobs import _outcome as page_outcome
+from beltdyn.cli.app import run as run_command
 from beltdyn.designs.study_columns import columns_of
 from beltdyn.errors import InternalError, ModelError
 from beltdyn.results import Result, derived, export, key_numbers, steady_comparison, summarize
 from beltdyn.results.export import FORMATS
-from beltdyn.show import plot
-from beltdyn.show.plot.figures import FIGURES, Choice
+from beltdyn.show.plot.figures import FIGURES, Choice, chosen_by_default
 from beltdyn.show.plot.gaps import has_values
-from beltdyn.show.report import write_report
 from beltdyn.show.sheet import as_text, sheet
 
 Consumer = Callable[[Result, Path], str]
@@ -38,11 +39,6 @@ _NAN = re.compile(r"(?<![\w.])-?(nan|inf)(?![\w.])", re.IGNORECASE)
 _BETWEEN = re.compile(r"<(script|style)\b.*?</\1>|<[^>]*>", re.DOTALL)
 """Parts of a page that nobody reads."""
 _REDUCED = ("largest", "least", "mean", "deviation", "swing", "last")
-
-
-def figures(result: Result, folder: Path) -> str:
-    """Figures that are drawn by default."""
-    return "" if plot.save_all(result, folder / "figures", overwrite=True) else "no figure, and no word"
 
 
 def every_figure(result: Result, _: Path) -> str:
@@ -66,9 +62,20 @@ def other_figures(result: Result, _: Path) -> str:
 
 
 def report(result: Result, folder: Path) -> str:
-    """A report; its words are read."""
-    text = write_report(result, folder / "report.html", overwrite=True).read_text(encoding="utf-8")
-    return _nan_in(_BETWEEN.sub(" ", text))
+    """The page of `beltdyn app`, which writes a report; words of both are read."""
+    ended = page_outcome(result, folder / "page.nc")
+    text = "" if ended.report is None else _BETWEEN.sub(" ", ended.report.read_text(encoding="utf-8"))
+    return _nan_in(text + "\n".join(map(str, ended.parts)))
+
+
+def commands(result: Result, folder: Path) -> str:
+    """The commands `plot`, for the first figure drawn by default, and `export`, of the result file."""
+    if result.path is None:
+        return ""
+    file, figures = str(result.path), chosen_by_default([result])
+    first = ["--figures", figures[0]] if figures else []
+    faults = _command("plot", file, "-o", str(folder / "figures"), "--force", *first)
+    return "; ".join([*faults, *_command("export", file, "--csv", "-o", str(folder), "--force")])
 
 
 def sheet_text(result: Result, _: Path) -> str:
@@ -80,11 +87,6 @@ def sheet_text(result: Result, _: Path) -> str:
 def notebook(result: Result, _: Path) -> str:
     """What a notebook shows."""
     return _nan_in(_BETWEEN.sub(" ", result._repr_html_()) + repr(result))
-
-
-def page(result: Result, folder: Path) -> str:
-    """What the page of `beltdyn app` shows."""
-    return _nan_in("\n".join(map(str, page_outcome(result, folder / "page.nc").parts)))
 
 
 def exported(form: str, result: Result, folder: Path) -> str:
@@ -122,13 +124,12 @@ def analyses(result: Result, folder: Path) -> str:
 
 
 CONSUMERS: Mapping[str, Consumer] = {
-    "figures": figures,
     "every figure": every_figure,
     "figures of other kinds": other_figures,
-    "report": report,
+    "report and page": report,
     "sheet": sheet_text,
     "notebook": notebook,
-    "page": page,
+    "commands": commands,
     **{f"export to {name}": partial(exported, name) for name in FORMATS},
     "file": saved,
     "numbers of a study": columns,
@@ -146,14 +147,24 @@ _NEEDED: dict[str, dict[str, Any]] = {"response": {"speed": "500, 1000 rpm"}}
 """Options without which an analysis is refused at once."""
 
 
-def pairs(results: Sequence[Result], folder: Path) -> str:
-    """Figures and a report of several results together: drawn, or refused with the reason."""
-    faults = _fault("figures", partial(plot.save_all, results, folder / "pair", overwrite=True), empty=True)
-    faults += _fault("report", partial(write_report, results, folder / "pair.html", True))
-    return "; ".join(faults)
+def pair(results: Sequence[Result], folder: Path) -> str:
+    """The commands `report`, which draws all that compares, and `plot`, of several results together."""
+    files, page, figures = [str(one.path) for one in results], str(folder / "pair.html"), chosen_by_default(results)
+    first = ["--figures", figures[0]] if figures else []
+    faults = _command("report", *files, "-o", page, "--force")
+    return "; ".join([*faults, *_command("plot", *files, "-o", str(folder / "pair"), "--force", *first)])
 
 
-def with_gaps(result: Result, seed: int) -> Result | None:
+def _command(*words: str) -> list[str]:
+    """The fault of a command: an internal error, an exit code of its own, or an end without a word."""
+    with redirect_stdout(StringIO()) as said, redirect_stderr(StringIO()) as errors:
+        code = run_command(list(words))
+    if code not in (0, 2):
+        return [f"{words[0]}: exit code {code}: {errors.getvalue()[:300]}"]
+    return [] if (errors if code else said).getvalue().strip() else [f"{words[0]}: exit code {code}, and no word"]
+
+
+def with_gaps(result: Result, seed: int | str) -> Result | None:
     """A result whose points failed in part, at random; None where it has no points.
 
     The share of failed points is random, too, and in one of four cases all are. In a study single results miss others.
@@ -190,10 +201,10 @@ def _of_runs(result: Result, functions: Mapping[str, Callable[..., object]]) -> 
     return "; ".join(faults)
 
 
-def _fault(name: str, work: Callable[[], object], empty: bool = False) -> list[str]:
+def _fault(name: str, work: Callable[[], object]) -> list[str]:
     """The fault of some work, with its name; a refusal is none."""
     try:
-        found = work()
+        work()
     except bd.BeltdynError as error:
         if isinstance(error, InternalError):
             return [f"{name}: {error}"]
@@ -204,7 +215,7 @@ def _fault(name: str, work: Callable[[], object], empty: bool = False) -> list[s
             place = place.tb_next
         where = "" if place is None else f"{Path(place.tb_frame.f_code.co_filename).name}:{place.tb_lineno}"
         return [f"{name}: {type(error).__name__}: {str(error)[:150]} ({where})"]
-    return [f"{name}: nothing, and no word"] if empty and not found else []
+    return []
 
 
 def _refuses(draw: Callable[[], object]) -> bool:
@@ -221,7 +232,6 @@ def _gaps_of(draw: Callable[[], Figure]) -> str:
     faults = _fault("", lambda: pages.append(draw()))
     pyplot.close("all")
     for one in pages:
-        one.draw_without_rendering()
         empty = [ax for ax in one.axes if ax.get_visible() and not has_values(ax) and not ax.texts]
         faults += [f"{len(empty)} panels are empty without a word"] if empty else []
     return ", ".join(fault.removeprefix(": ") for fault in faults)
@@ -230,9 +240,3 @@ def _gaps_of(draw: Callable[[], Figure]) -> str:
 def _nan_in(text: str) -> str:
     found = _NAN.search(text)
     return "" if found is None else f"says {text[max(found.start() - 60, 0) : found.end() + 20]!r}"
-
-
-def results_in(folder: Path) -> Iterator[tuple[str, Result]]:
-    """Result files of a folder by their names."""
-    for path in sorted(folder.glob("*.nc")):
-        yield path.stem, bd.open_result(path)

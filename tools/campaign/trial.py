@@ -8,8 +8,11 @@ import signal
 import time
 import traceback
 from collections.abc import Callable
+from contextlib import redirect_stderr, redirect_stdout
 from dataclasses import dataclass
+from io import StringIO
 from pathlib import Path
+from typing import NoReturn
 
 from beltdyn.errors import BeltdynError, InternalError
 
@@ -62,6 +65,32 @@ def attempt(work: Callable[[], str], seconds: float, wall: float = 0.0) -> Outco
     return Outcome("died", f"by signal {ended}" if ended else "without an answer", used)
 
 
+class _TooLong(BaseException):
+    """The processor time of a trial in this process is over."""
+
+
+def attempt_here(work: Callable[[], str], seconds: float) -> Outcome:
+    """Do something in this process, with what it has loaded; parameters as for `attempt`.
+
+    A trial that ends the process ends all.
+    """
+
+    def end(*_: object) -> NoReturn:
+        raise _TooLong
+
+    used, before = time.process_time(), signal.signal(signal.SIGPROF, end)
+    signal.setitimer(signal.ITIMER_PROF, seconds)
+    try:
+        with redirect_stdout(StringIO()), redirect_stderr(StringIO()):
+            kind, text = outcome(work)
+    except _TooLong:
+        kind, text = "too long", f"ended after {seconds:g} s"
+    finally:
+        signal.setitimer(signal.ITIMER_PROF, 0.0)
+        signal.signal(signal.SIGPROF, before)
+    return Outcome(kind, text, time.process_time() - used)
+
+
 def _work_and_leave(work: Callable[[], str], seconds: float, wall: float, writer: int) -> None:
     """Work in the copy of this process, tell what came of it, and end."""
     try:
@@ -90,6 +119,8 @@ def outcome(work: Callable[[], str]) -> tuple[str, str]:
         return ("refused", str(error)[:200]) if 0 < length < _LONGEST_MESSAGE else ("fault", f"a message of {length}")
     except SystemExit as end:
         return ("refused" if end.code else "fine", "") if end.code in EXIT_CODES else ("fault", f"exit code {end.code}")
+    except (_TooLong, KeyboardInterrupt):
+        raise
     except BaseException as error:
         place = traceback.extract_tb(error.__traceback__)[-1]
         return "traceback", f"{type(error).__name__}: {str(error)[:150]} ({Path(place.filename).name}:{place.lineno})"

@@ -13,7 +13,7 @@ from beltdyn.analyses import ANALYSES
 from beltdyn.app.computing import Counted, in_words, tell_of_compilation
 from beltdyn.app.findings import Findings, findings_of
 from beltdyn.designs.processes import SPAWN, heeding, new_event, start_process, start_worker, working
-from beltdyn.errors import cause_of
+from beltdyn.errors import Parts, cause_of
 from beltdyn.model import loads
 from beltdyn.show.sheet import Facts, Table
 
@@ -195,16 +195,26 @@ def _outcome(found: Any, result: Path) -> Outcome:
 
     if isinstance(found, Run) and not found.outputs:
         return Outcome(found.status)
-    report = write_report(found, result.with_suffix(".html"), overwrite=True)
+    parts = Parts()
+    with parts.part():
+        parts.completed.append(write_report(found, result.with_suffix(".html"), overwrite=True))
+    report = next(iter(parts.completed), None)
     best = result.with_suffix(".toml")
     written = best if best.is_file() else None
-    shown = sheet(found).parts, tuple(found.warnings), result, report, written, findings_of(found), _pictures(found)
-    return Outcome(found.status, "", *shown)
+    findings, pictures = parts.done(lambda: findings_of(found), Findings()), _pictures(found, parts)
+    shown = sheet(found)
+    faults = dict.fromkeys(map(str, (*shown.errors, *parts.errors)))
+    warnings = (*found.warnings, *(line for fault in faults for line in fault.splitlines()))
+    return Outcome(found.status, "", shown.parts, warnings, result, report, written, findings, pictures)
 
 
-def _pictures(found: Any) -> tuple[str, ...]:
+def _pictures(found: Any, parts: Parts) -> tuple[str, ...]:
     """The first figures of a result as a report has them, but for those that the page draws itself."""
-    from beltdyn.show.plot.figures import FIGURES, Choice, chosen_by_default, data_uri
+    from beltdyn.show.plot.figures import FIGURES, Choice, chosen_by_default, data_uri, repeated
 
     names = [name for name in chosen_by_default([found]) if name not in _DRAWN][:_MOST_PICTURES]
-    return tuple(data_uri(FIGURES[name].arrange(found, Choice())) for name in names)
+    drawn = (
+        parts.done(lambda name=name: data_uri(FIGURES[name].arrange(found, Choice())), "", repeated([found], name))  # type: ignore[misc]
+        for name in names
+    )
+    return tuple(picture for picture in drawn if picture)

@@ -7,7 +7,15 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 from beltdyn.analyses import RUN, Analysis
 from beltdyn.cli.console import show, show_error, show_facts, show_table, show_warnings
 from beltdyn.cli.progress import progress_bar
-from beltdyn.errors import InternalError, LostOutputError, ModelError, SimulationError, is_internal
+from beltdyn.errors import (
+    BeltdynError,
+    InternalError,
+    LostOutputError,
+    ModelError,
+    Parts,
+    SimulationError,
+    is_internal,
+)
 from beltdyn.signals import exit_code
 
 if TYPE_CHECKING:
@@ -19,11 +27,14 @@ if TYPE_CHECKING:
 # A result on the screen: its sheet, and its warnings
 
 
-def show_result(result: "Result") -> None:
-    """Write tables and facts of a result: 100 columns, and as few lines as a drive of seven pulleys needs to fit."""
+def show_result(result: "Result") -> tuple[BeltdynError, ...]:
+    """Write tables and facts of a result, 100 columns and as few lines as a drive of seven pulleys needs to fit.
+
+    Returns the errors of parts that have a fault.
+    """
     from beltdyn.show.sheet import Table, sheet
 
-    title, parts = sheet(result)
+    title, parts, errors = sheet(result)
     if title:
         show(f"\n{title}")
     if parts:
@@ -32,6 +43,7 @@ def show_result(result: "Result") -> None:
     if result.warnings and not (parts and not isinstance(parts[-1], Table)):
         show()
     show_warnings(result.warnings)
+    return errors
 
 
 def show_parts(parts: "Sequence[Table | Facts]") -> None:
@@ -81,17 +93,23 @@ def require_output(path: Path, files: Iterable[Path], extras: Extras, force: boo
         require_report(report_file([path]), force)
 
 
-def write_extras(result: "Result", path: Path, extras: Extras, force: bool) -> None:
+def write_extras(result: "Result", path: Path, extras: Extras, force: bool, whole: Parts) -> None:
     """Write the requested tables and report beside a result file, and show their names."""
     from beltdyn.results import open_result
     from beltdyn.results.tables import tables_folder, write_csv
 
     if extras.csv:
-        show(f"Tables: {', '.join(str(table) for table in write_csv(result, tables_folder(path), force))}")
+        before = len(whole.completed)
+        with whole.part(f"bd.write_csv(bd.open_result({str(path)!r}), 'tables')"):
+            whole.completed += write_csv(result, tables_folder(path), force)
+        show(f"Tables: {', '.join(map(str, whole.completed[before:])) or 'none'}")
     if extras.report:
         from beltdyn.show.report import report_file, write_report
 
-        show(f"Report: {write_report(open_result(path), report_file([path]), force)}")
+        before = len(whole.completed)
+        with whole.part(f"bd.write_report(bd.open_result({str(path)!r}), 'report.html')"):
+            whole.completed.append(write_report(open_result(path), report_file([path]), force))
+        show(f"Report: {', '.join(map(str, whole.completed[before:])) or 'none'}")
 
 
 def analyse_to(
@@ -115,20 +133,28 @@ def analyse_to(
     except SimulationError:
         show(nothing_kept(path) if stamp(path) in (before, None) else f"The results computed so far are in {path}")
         raise
-    show_result(result)
-    if stamp(path) == before and result.status == "completed":
+    with Parts() as parts:
+        parts.errors += show_result(result)
+        if not _tell_end(analysis, result, path, is_same=stamp(path) == before):
+            return result
+        show(f"\nResults: {path}   (figures: beltdyn plot {path})")
+        write_extras(result, path, extras, force, parts)
+    return result
+
+
+def _tell_end(analysis: Analysis, result: "Result", path: Path, *, is_same: bool) -> bool:
+    """Say how an analysis ended: whether there are results in its file."""
+    if is_same and result.status == "completed":
         show(f"\n{path} is complete: there was nothing left to compute.")
-    elif stamp(path) == before:
+    elif is_same:
         show(f"\nInterrupted. {nothing_kept(path)}")
-        return result
+        return False
     if result.status == "interrupted":
         from beltdyn.transient.checkpoint import checkpoint_file
 
         goes_on = f" Resume with: beltdyn {analysis.command} --resume {path}" if checkpoint_file(path).exists() else ""
         show(f"\nInterrupted. The results computed so far are kept.{goes_on}")
-    show(f"\nResults: {path}   (figures: beltdyn plot {path})")
-    write_extras(result, path, extras, force)
-    return result
+    return True
 
 
 def nothing_kept(path: Path) -> str:

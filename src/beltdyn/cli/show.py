@@ -10,7 +10,7 @@ from beltdyn.analyses import ANALYSES, SIMULATE
 from beltdyn.cli.console import show
 from beltdyn.cli.new import refuse_existing, write_text
 from beltdyn.cli.output import analyse_to, ended
-from beltdyn.errors import ModelError
+from beltdyn.errors import ModelError, Parts
 
 if TYPE_CHECKING:
     from beltdyn.results import Result
@@ -62,8 +62,10 @@ def export(
         raise ModelError(f"export needs a format: one or more of {', '.join(f'--{name}' for name in wanted)}.")
     result = open_result(file)
     folder = file.parent if output is None else make_folder(output)
-    written = export_result(result, formats, folder / file.name, force)
-    show(f"Written: {', '.join(str(path) for path in written)}")
+    with Parts(refuses=True) as parts:
+        with parts.part():
+            parts.completed += export_result(result, formats, folder / file.name, force)
+        show(f"Written: {', '.join(map(str, parts.completed)) or 'nothing'}")
 
 
 # `beltdyn report`
@@ -97,7 +99,11 @@ def report(
 
     path = output or report_file((file, *more))
     require_report(path, force)
-    show(f"Report: {write_report([open_result(one) for one in (file, *more)], path, force)}")
+    results = [open_result(one) for one in (file, *more)]
+    with Parts(refuses=True) as parts:
+        with parts.part():
+            parts.completed.append(write_report(results, path, force))
+        show(f"Report: {path if parts.completed else 'none'}")
 
 
 # `beltdyn plot`
@@ -168,15 +174,18 @@ def draw(
     if animation and not ((isinstance(first, Run) or first.kind == "modes") and len(results) == 1):
         these = f"results of {first.kind}" if len(results) == 1 else f"{len(results)} results"
         raise ModelError(f"--animate needs the results of one run, or modes, not {these}. Omit it.")
-    paths = plot.save_all(results, folder, **choice)
-    if animation:
-        path, film = animation
-        overwrite = bool(choice.get("overwrite"))
-        if isinstance(first, Run):
-            paths.append(plot.animate(first, path, overwrite=overwrite, **film))
-        else:
-            paths.append(plot.animate_modes(first, path, overwrite=overwrite))
-    show(f"Figures in {folder}: {', '.join(path.name for path in paths)}")
+    with Parts(refuses=True) as parts:
+        with parts.part():
+            parts.completed += plot.save_all(results, folder, **choice)
+        if animation:
+            path, film = animation
+            overwrite = bool(choice.get("overwrite"))
+            with parts.part(f"bd.plot.animate({first.source}, {path.name!r})"):
+                if isinstance(first, Run):
+                    parts.completed.append(plot.animate(first, path, overwrite=overwrite, **film))
+                else:
+                    parts.completed.append(plot.animate_modes(first, path, overwrite=overwrite))
+        show(f"Figures in {folder}: {', '.join(path.name for path in parts.completed) or 'none'}")
 
 
 def _names(figures: str | None) -> list[str] | None:

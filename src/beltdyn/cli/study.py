@@ -13,7 +13,7 @@ from beltdyn.analyses import Analysis
 from beltdyn.cli.console import lines_of_file, show, show_error, show_table, show_warnings
 from beltdyn.cli.output import Extras, doubt, ended, require_output, show_result, write_extras
 from beltdyn.cli.progress import progress_bar, runs_bar
-from beltdyn.errors import InternalError, ModelError, SimulationError, is_internal
+from beltdyn.errors import InternalError, ModelError, Parts, SimulationError, is_internal
 from beltdyn.signals import exit_code
 
 if TYPE_CHECKING:
@@ -73,16 +73,17 @@ def study(
             bar(progress)
 
         result = compute(file, jobs=jobs, scheduler=scheduler, retry=retry, output=path, progress=tell, overwrite=force)
-    show_result(result)
-    if not begun:
-        show(f"\n{path} is complete: there was nothing left to compute.")
-    if stamp(path) == before:
-        show(f"\nInterrupted. {nothing_kept(path)}")
-        return exit_code()
-    if result.status == "interrupted":
-        show("\nInterrupted. The results computed so far are kept; the same command resumes the study.")
-    show(f"\nResults: {path}, {path.with_suffix('.csv')}   (figures: beltdyn plot {path})")
-    write_extras(result, path, Extras(csv=False, report=report), force)
+    with Parts() as parts:
+        parts.errors += show_result(result)
+        if not begun:
+            show(f"\n{path} is complete: there was nothing left to compute.")
+        if stamp(path) == before:
+            show(f"\nInterrupted. {nothing_kept(path)}")
+            return exit_code()
+        if result.status == "interrupted":
+            show("\nInterrupted. The results computed so far are kept; the same command resumes the study.")
+        show(f"\nResults: {path}, {path.with_suffix('.csv')}   (figures: beltdyn plot {path})")
+        write_extras(result, path, Extras(csv=False, report=report), force, parts)
     if code := ended(result):
         return code
     if result.dataset.sizes["point"] == int((result.dataset["failure"] != "").sum()):
@@ -216,8 +217,10 @@ def _write_all_extras(ends: Mapping[Path, "Ending"], results: Mapping[Path, Path
     """Write tables and reports of all drives with results."""
     from beltdyn.results import open_result
 
-    for file, end in ends.items():
-        if end.kept:
-            result = open_result(results[file])
-            write_extras(result, results[file], extras, force)
-            result.dataset.close()
+    with Parts() as parts:
+        for file, end in ends.items():
+            if end.kept:
+                with parts.part():
+                    result = open_result(results[file])
+                    write_extras(result, results[file], extras, force, parts)
+                    result.dataset.close()

@@ -15,7 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from beltdyn.arrays import FloatArray, IntArray
-from beltdyn.errors import ModelError
+from beltdyn.errors import ModelError, Parts
 from beltdyn.results.atomic import MARK, atomic_path, is_marked, make_folder, require_replaceable
 from beltdyn.results.mechanics import curve_points, element_lengths, present_lengths, recorded_kind
 from beltdyn.results.result import Result
@@ -360,12 +360,23 @@ def write_mat(result: Result, path: Path | str, overwrite: bool = False) -> Path
 
     path = Path(path)
     require_mat(path, overwrite)
-    content = {name: _structure(table) for name, table in tables_of(result).items()}
-    with atomic_path(path, is_marked, overwrite) as temporary:
-        savemat(temporary, content, appendmat=False, long_field_names=True, do_compression=True, oned_as="column")
-        with temporary.open("r+b") as file:
-            file.write(_HEADER.ljust(_HEADER_BYTES))
+    with Parts() as parts:
+        content = {name: _structure(table) for name, table in _tables(result, "mat", parts).items()}
+        with atomic_path(path, is_marked, overwrite) as temporary:
+            savemat(temporary, content, appendmat=False, long_field_names=True, do_compression=True, oned_as="column")
+            with temporary.open("r+b") as file:
+                file.write(_HEADER.ljust(_HEADER_BYTES))
+        parts.completed.append(path)
     return path
+
+
+def _tables(result: Result, form: str, parts: Parts) -> dict[str, Table]:
+    """The tables of a result but for those that have a fault, which is among the errors of `parts`."""
+    tables = dict[str, Table]()
+    for name, table in tables_of(result).items():
+        with parts.part(f"bd.export({result.source}, {form!r}), table {name}"):
+            tables[name] = table()
+    return tables
 
 
 def mat_file(path: Path) -> Path:
@@ -385,20 +396,19 @@ def write_parquet(result: Result, folder: Path | str, overwrite: bool = False) -
     import pyarrow as pa
     from pyarrow import parquet
 
-    tables = tables_of(result)
     make_folder(folder)
-    paths = []
-    for name, table in tables.items():
-        columns = [pa.array(values) for _, values in table]
-        schema = pa.schema(
-            [(heading, column.type) for (heading, _), column in zip(table, columns, strict=True)],
-            metadata={_MAKER: MARK.encode()},
-        )
-        path = folder / f"{name}.parquet"
-        with atomic_path(path, _is_parquet, overwrite) as temporary:
-            parquet.write_table(pa.Table.from_arrays(columns, schema=schema), temporary)
-        paths.append(path)
-    return paths
+    with Parts() as parts:
+        for name, table in _tables(result, "parquet", parts).items():
+            columns = [pa.array(values) for _, values in table]
+            schema = pa.schema(
+                [(heading, column.type) for (heading, _), column in zip(table, columns, strict=True)],
+                metadata={_MAKER: MARK.encode()},
+            )
+            path = folder / f"{name}.parquet"
+            with atomic_path(path, _is_parquet, overwrite) as temporary:
+                parquet.write_table(pa.Table.from_arrays(columns, schema=schema), temporary)
+            parts.completed.append(path)
+    return parts.completed
 
 
 def require_parquet(folder: Path, overwrite: bool = False) -> None:
@@ -429,7 +439,8 @@ def write_xlsx(result: Result, path: Path | str, overwrite: bool = False) -> Pat
     require_xlsx(path, overwrite)
     from xlsxwriter import Workbook
 
-    tables = tables_of(result)
+    parts = Parts()
+    tables = _tables(result, "xlsx", parts)
     longest = max((len(column) for table in tables.values() for _, column in table), default=0)
     if longest > _MOST_ROWS:
         raise ModelError(f"{path} would have {longest} rows, and a sheet has {_MOST_ROWS}. Write CSV or Parquet.")
@@ -445,6 +456,8 @@ def write_xlsx(result: Result, path: Path | str, overwrite: bool = False) -> Pat
                     sheet.write_column(1, column, _cells(values))
         with ZipFile(temporary, "a") as archive:
             archive.comment = MARK.encode()
+    parts.completed.append(path)
+    parts.end()
     return path
 
 
@@ -540,7 +553,9 @@ def export(
     ------
     ModelError
         If a format is unknown, does not fit the result, or needs a missing package; or if a file cannot be written, or
-        would replace a file of another program. Files completed before the error remain.
+        would replace a file of another program.
+    InternalError
+        If a table has a fault; all others are written, to the files that are its `completed`.
 
     Examples
     --------
@@ -552,11 +567,12 @@ def export(
     _require(result, names)
     for name in names:
         FORMATS[name].require(FORMATS[name].place(path), overwrite)
-    files: list[Path] = []
-    for name in names:
-        written = FORMATS[name].write(result, FORMATS[name].place(path), overwrite)
-        files += written if isinstance(written, list) else [written]
-    return files
+    with Parts(refuses=True) as parts:
+        for name in names:
+            with parts.part(f"bd.export({result.source}, {name!r})"):
+                written = FORMATS[name].write(result, FORMATS[name].place(path), overwrite)
+                parts.completed += written if isinstance(written, list) else [written]
+    return parts.completed
 
 
 def _base(result: Result, path: Path | str | None) -> Path:

@@ -116,6 +116,11 @@ class Result:
         return kind_of(self.dataset)
 
     @property
+    def source(self) -> str:
+        """Python that gives this result, such as ``bd.open_result("drive.nc")``."""
+        return "result" if self.path is None else f"bd.open_result({str(self.path)!r})"
+
+    @property
     def warnings(self) -> list[str]:
         """The warnings: faults and remedies; empty for a sound result."""
         return str(self.dataset.attrs.get("warnings", "")).splitlines()

@@ -1,15 +1,17 @@
 """Tables of a result as CSV files."""
 
 import csv
-from collections.abc import Iterable, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from contextlib import suppress
 from dataclasses import astuple
+from functools import cache, partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import NDArray
 
+from beltdyn.errors import Parts
 from beltdyn.results.atomic import atomic_path, make_folder, require_replaceable
 from beltdyn.results.result import Result
 from beltdyn.results.run import Run
@@ -100,6 +102,9 @@ Column = tuple[str, NDArray[Any]]
 
 Table = Sequence[Column]
 
+MakeTable = Callable[[], Table]
+"""Makes a table."""
+
 
 def write_csv(run: Result, folder: Path | str, overwrite: bool = False) -> list[Path]:
     """Write tables of a result.
@@ -139,7 +144,11 @@ def write_csv(run: Result, folder: Path | str, overwrite: bool = False) -> list[
     require_tables(folder, overwrite)
     tables = tables_of(run)
     folder = make_folder(Path(folder))
-    return [_write(folder / f"{name}.csv", overwrite, table) for name, table in tables.items()]
+    with Parts() as parts:
+        for name, table in tables.items():
+            with parts.part(f"bd.write_csv({run.source}, {str(folder)!r}), table {name}"):
+                parts.completed.append(_write(folder / f"{name}.csv", overwrite, table()))
+    return parts.completed
 
 
 def tables_folder(path: Path) -> Path:
@@ -147,17 +156,17 @@ def tables_folder(path: Path) -> Path:
     return path.with_name(f"{path.stem}-tables")
 
 
-def tables_of(result: Result) -> dict[str, Table]:
-    """Tables of a result by name, such as "pulleys": headings and their columns, as `write_csv` writes them."""
+def tables_of(result: Result) -> Mapping[str, MakeTable]:
+    """Tables of a result by name, such as "pulleys", as `write_csv` writes them; each is made by itself."""
     if not isinstance(result, Run):
         return _tables_of_names(result.dataset)
     result.require_output()
     return _tables_of_run(result)
 
 
-def _tables_of_run(run: Run) -> dict[str, Table]:
+def _tables_of_run(run: Run) -> Mapping[str, MakeTable]:
     """Tables over time, and of the means."""
-    dataset = _with_derived(run)
+    dataset, summary = cache(partial(_with_derived, run)), cache(partial(summarize, run))
     over_time = {
         "pulleys": _with_others(_PULLEYS, "pulley"),
         "spans": _with_others(_SPANS, "span"),
@@ -166,30 +175,41 @@ def _tables_of_run(run: Run) -> dict[str, Table]:
         "carriage": _CARRIAGE,
         "rolls": _with_others((), "roll"),
     }
-    tables: dict[str, Table] = {
-        name: list(_columns(dataset, ("time", *variables)))
+    tables: dict[str, MakeTable] = {
+        name: lambda names=variables: list(_columns(dataset(), ("time", *names)))  # type: ignore[misc]
         for name, variables in over_time.items()
-        if variables[0] in dataset
+        if variables[0] in run.dataset
     }
-    tables["contact"] = list(_columns(run.fields_at(), ("belt_coordinate", *_CONTACT)))
-    return tables | _summaries(summarize(run), run)
+    return tables | {
+        "contact": lambda: list(_columns(run.fields_at(), ("belt_coordinate", *_CONTACT))),
+        "pulley_summary": lambda: _table(_PULLEY_SUMMARY, map(astuple, summary().pulleys)),
+        "span_summary": lambda: _table(_SPAN_SUMMARY, map(astuple, summary().spans)),
+        "losses": lambda: _table(_LOSS_SUMMARY, _losses(summary(), run)),
+    }
 
 
-def _tables_of_names(dataset: "xr.Dataset") -> dict[str, Table]:
+def _tables_of_names(dataset: "xr.Dataset") -> Mapping[str, MakeTable]:
     """A table of operating points, and one for each other dimension that has names."""
     axes = str(dataset.attrs.get("axes", "")).split()
-    found: dict[str, Table] = {}
-    if axes:
-        points = dataset.stack(point=axes, create_index=False)
-        numbers = np.arange(1, points.sizes["point"] + 1)
-        names = [*axes, *(name for name in (*points.coords, *points.data_vars) if name not in axes)]
-        along = [str(name) for name in names if "point" in points[name].dims]
-        found["point"] = [("point", numbers), *_columns(points.transpose("point", ...), along)]
+    found: dict[str, MakeTable] = {"point": partial(_table_of_points, dataset, axes)} if axes else {}
     for dim in (str(dim) for dim in dataset.dims if dim in dataset.coords and dim not in axes):
         columns = [str(name) for name, one in dataset.data_vars.items() if one.dims[:1] == (dim,)]
         if columns:
-            found[dim] = [(dim, dataset[dim].values), *_columns(dataset, columns)]
+            found[dim] = partial(_table_of_names, dataset, dim, columns)
     return found
+
+
+def _table_of_points(dataset: "xr.Dataset", axes: Sequence[str]) -> Table:
+    """A row for each operating point."""
+    points = dataset.stack(point=axes, create_index=False)
+    numbers = np.arange(1, points.sizes["point"] + 1)
+    names = [*axes, *(name for name in (*points.coords, *points.data_vars) if name not in axes)]
+    along = [str(name) for name in names if "point" in points[name].dims]
+    return [("point", numbers), *_columns(points.transpose("point", ...), along)]
+
+
+def _table_of_names(dataset: "xr.Dataset", dim: str, columns: Sequence[str]) -> Table:
+    return [(dim, dataset[dim].values), *_columns(dataset, columns)]
 
 
 def require_tables(folder: Path | str, overwrite: bool = False) -> None:
@@ -206,18 +226,13 @@ def _is_table(path: Path) -> bool:
     return False
 
 
-def _summaries(summary: Summary, run: Run) -> dict[str, Table]:
-    """Tables of the means over the end of the run."""
+def _losses(summary: Summary, run: Run) -> list[tuple[Any, ...]]:
+    """Rows of the table of losses."""
     balance = summary.balance
-    losses = [
+    return [
         (cause, power, power / balance.power_in if balance.power_in > 0.0 else np.nan, float(run.dataset[name][-1]))
         for (name, cause), power in zip(losses_of(run.dataset).items(), balance.losses.values(), strict=True)
     ]
-    return {
-        "pulley_summary": _table(_PULLEY_SUMMARY, map(astuple, summary.pulleys)),
-        "span_summary": _table(_SPAN_SUMMARY, map(astuple, summary.spans)),
-        "losses": _table(_LOSS_SUMMARY, losses),
-    }
 
 
 def _with_derived(run: Run) -> "xr.Dataset":

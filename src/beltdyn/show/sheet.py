@@ -2,7 +2,8 @@
 
 import math
 import re
-from collections.abc import Iterable, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
+from functools import cache, partial
 from importlib import import_module
 from typing import TYPE_CHECKING, NamedTuple
 
@@ -11,6 +12,7 @@ from numpy.typing import ArrayLike
 
 from beltdyn.analyses import STUDY
 from beltdyn.arrays import BoolArray, FloatArray
+from beltdyn.errors import BeltdynError, classified
 from beltdyn.parts.messages import aligned
 from beltdyn.parts.quantity import RPM, SHOWN_UNITS
 from beltdyn.results.provenance import Resolution, mesh_facts
@@ -59,6 +61,23 @@ class Sheet(NamedTuple):
     """The name of the drive, or what the result is; may be empty."""
     parts: tuple[Table | Facts, ...]
     """In the order in which they are read."""
+    errors: tuple[BeltdynError, ...] = ()
+    """Of parts that have a fault, each of which stands among the facts, too."""
+
+
+Pieces = tuple[Table | Facts, ...]
+
+
+def sheet_of(title: str, pieces: Iterable[Callable[[], Pieces]], source: str) -> Sheet:
+    """A sheet of pieces; in place of one that has a fault stands what repeats it."""
+    made, errors = list[Table | Facts](), list[BeltdynError]()
+    for piece in pieces:
+        try:
+            made += piece()
+        except Exception as error:
+            errors.append(classified(error, f"from beltdyn.show.sheet import sheet; sheet({source})"))
+            made.append(Facts((("not shown", str(errors[-1])),)))
+    return Sheet(title, tuple(made), tuple(errors))
 
 
 def as_text(sheet: Sheet) -> str:
@@ -90,18 +109,21 @@ _MOST = 40
 """Results in the table."""
 
 
-def study_sheet(result: Result) -> Sheet:
-    """Give the sheet of a study."""
-    dataset = result.dataset
+def _study_pieces(dataset: "xr.Dataset") -> Iterator[Callable[[], Pieces]]:
+    """Facts of a study, and tables of its numbers and results."""
     names = str(dataset.attrs["results"]).splitlines()
-    numbers = [_row(dataset[path]) for path in str(dataset.attrs["numbers"]).splitlines()]
-    tables = [Table("", ("number", "", "min", "max"), tuple(numbers))]
+    numbers = str(dataset.attrs["numbers"]).splitlines()
+    yield lambda: (Facts(tuple(_facts(dataset, names))),)
+    yield lambda: (Table("", ("number", "", "min", "max"), tuple(_row(dataset[path]) for path in numbers)),)
     if names:
-        rows = [_result_row(dataset[name]) for name in names[:_MOST]]
-        table = Table("", ("result", "", "min", "at point", "mean", "max", "at point"), tuple(rows))
-        known = [np.isfinite(dataset[name].values) for name in names[:_MOST]]
-        tables.append(table if np.all(known) else _with_points(table, known))
-    return Sheet(str(dataset.attrs["title"]), (Facts(tuple(_facts(dataset, names))), *tables))
+        yield lambda: (_table_of_results(dataset, names[:_MOST]),)
+
+
+def _table_of_results(dataset: "xr.Dataset", names: Sequence[str]) -> Table:
+    rows = tuple(_result_row(dataset[name]) for name in names)
+    table = Table("", ("result", "", "min", "at point", "mean", "max", "at point"), rows)
+    known = [np.isfinite(dataset[name].values) for name in names]
+    return table if np.all(known) else _with_points(table, known)
 
 
 def _facts(dataset: "xr.Dataset", names: list[str]) -> list[tuple[str, str]]:
@@ -165,26 +187,22 @@ def run_sheet(run: Run) -> Sheet:
     """Summarize a run in tables and facts."""
     if run.outputs == 0:
         return Sheet("The run ended before its first output.", ())
-    summary = summarize(run)
-    over = _window(run, summary)
-    spans = Table(
-        f"Spans{over}",
-        ("", "tension\nmean N", "min\nN", "max\nN", "at start\nN", "at end\nN", "belt speed\nm/s"),
-        tuple(_spans(summary)),
-    )
-    facts = Facts(
-        (*_power(summary), *_tensioners(summary), *_rolls(run), *_run_up(run), *_mesh_used(run), *_solver(summary))
-    )
-    return Sheet(
-        run.drive.name or "",
-        (
-            _pulleys(f"Pulleys{over}", summary, run.drive.guides),
-            *_teeth(run),
-            spans,
-            *_steady_running(run),
-            facts,
+    summary = cache(partial(summarize, run))
+    pieces: tuple[Callable[[], Pieces], ...] = (
+        lambda: (_pulleys(f"Pulleys{_window(run, summary())}", summary(), run.drive.guides),),
+        lambda: _teeth(run),
+        lambda: (_spans(run, summary()),),
+        lambda: _steady_running(run),
+        lambda: (
+            Facts(
+                (
+                    *(*_power(summary()), *_tensioners(summary()), *_rolls(run), *_run_up(run)),
+                    *(*_mesh_used(run), *_solver(summary())),
+                )
+            ),
         ),
     )
+    return sheet_of(run.drive.name or "", pieces, run.source)
 
 
 def _teeth(run: Run) -> tuple[Table, ...]:
@@ -290,7 +308,13 @@ def _safety(safety: float) -> str:
     return f"{safety:.3g}" if safety < _LARGEST_SAFETY else f"> {_LARGEST_SAFETY:.0f}"
 
 
-def _spans(summary: Summary) -> Iterable[tuple[str, ...]]:
+def _spans(run: Run, summary: Summary) -> Table:
+    """The table of spans."""
+    headings = ("", "tension\nmean N", "min\nN", "max\nN", "at start\nN", "at end\nN", "belt speed\nm/s")
+    return Table(f"Spans{_window(run, summary)}", headings, tuple(_span_rows(summary)))
+
+
+def _span_rows(summary: Summary) -> Iterable[tuple[str, ...]]:
     """Span rows, with the same number of decimals in all tension columns.
 
     A span has no tension or speed while the belt has left one of its pulleys; a warning says so.
@@ -425,53 +449,64 @@ def sheet(result: Result) -> Sheet:
     """Give the sheet of a result: the summary of a run, or the values and tables of another analysis."""
     if isinstance(result, Run):
         return run_sheet(result)
+    title = str(result.dataset.attrs["title"])
     if result.kind == STUDY:
-        return study_sheet(result)
+        return sheet_of(title, _study_pieces(result.dataset), result.source)
     if result.kind in OF_KINDS:
         module, _, name = OF_KINDS[result.kind].partition(":")
-        found: Sheet = getattr(import_module(module), name)(result)
-        return found
-    dataset = result.dataset
+        return sheet_of(title, [lambda: getattr(import_module(module), name)(result).parts], result.source)
+    return sheet_of(title, _pieces(result.dataset), result.source)
+
+
+def _pieces(dataset: "xr.Dataset") -> Iterator[Callable[[], Pieces]]:
+    """Numbers, and tables along each dimension."""
     variables = dataset.data_vars.values()
-    numbers = [(str(one.attrs["long_name"]), _single(one)) for one in variables if not one.dims]
-    numbers += mesh_facts(dataset.attrs)
+    yield partial(_numbers, dataset)
     axes = tuple(str(dataset.attrs.get("axes", "")).split())
-    tables, left_out = list[Table](), _AMONG_WARNINGS | {dataset.attrs.get("tables_by")}
+    left_out = _AMONG_WARNINGS | {dataset.attrs.get("tables_by")}
     for dims in dict.fromkeys([axes, *((str(dimension),) for dimension in dataset.dims)]):
         columns = [one for one in variables if dims and one.dims == dims and one.name not in left_out]
         if columns and all(dimension in dataset.coords for dimension in dims):
             labels = [one for one in dataset.coords.values() if one.dims and set(one.dims) <= set(dims)]
             shown = [*(one.broadcast_like(columns[0]) for one in labels), *columns]
-            tables += _tables(shown, dataset.get(dataset.attrs.get("tables_by")))
+            yield partial(_tables, shown, dataset.get(dataset.attrs.get("tables_by")))
     across = dataset.attrs.get("columns_by")
-    tables += [_table_across(one) for one in variables if across and one.dims == (*axes, across)]
-    return Sheet(str(dataset.attrs["title"]), (*([Facts(tuple(numbers))] if numbers else []), *tables))
+    for variable in variables:
+        if across and variable.dims == (*axes, across):
+            yield partial(_table_across, variable)
 
 
-def _tables(shown: "Sequence[xr.DataArray]", group: "xr.DataArray | None") -> list[Table]:
+def _numbers(dataset: "xr.Dataset") -> Pieces:
+    """Single numbers."""
+    single = [one for one in dataset.data_vars.values() if not one.dims]
+    facts = [*((str(one.attrs["long_name"]), _single(one)) for one in single), *mesh_facts(dataset.attrs)]
+    return (Facts(tuple(facts)),) if facts else ()
+
+
+def _tables(shown: "Sequence[xr.DataArray]", group: "xr.DataArray | None") -> Pieces:
     """A table of columns; or one for each word of a variable along their rows, below that word."""
     headings, rows = tuple(map(_heading, shown)), list(zip(*map(_column, shown), strict=True))
     if group is None or group.dims != shown[0].dims:
-        return [Table("", headings, tuple(rows))]
+        return (Table("", headings, tuple(rows)),)
     words = [str(one) for one in group.values]
-    return [
+    return tuple(
         Table(
             word[:1].upper() + word[1:],
             headings,
             tuple(row for row, own in zip(rows, words, strict=True) if own == word),
         )
         for word in dict.fromkeys(words)
-    ]
+    )
 
 
-def _table_across(variable: "xr.DataArray") -> Table:
+def _table_across(variable: "xr.DataArray") -> Pieces:
     """A table of a variable along two dimensions: rows of the first, columns of the second."""
     rows, columns = (variable.coords[dimension] for dimension in variable.dims)
     name, (unit, _) = _FIRST_PART.split(str(variable.attrs["long_name"]))[0], shown_unit(variable)
     words = [f"{_heading(columns)} {one}" for one in _column(columns)]
     cells = [_column(variable[:, number]) for number in range(columns.size)]
     title = f"{name}, {unit}" if unit else name
-    return Table(title, (_heading(rows), *words), tuple(zip(_column(rows), *cells, strict=True)))
+    return (Table(title, (_heading(rows), *words), tuple(zip(_column(rows), *cells, strict=True))),)
 
 
 def _single(variable: "xr.DataArray") -> str:

@@ -24,7 +24,7 @@ def result_file(saved_run: Path, tmp_path: Path) -> Path:
 def _quick_page(monkeypatch: pytest.MonkeyPatch) -> None:
     """A page of its mark alone: what is on it is tested elsewhere."""
     page = '<meta name="generator" content="beltdyn report">{}'
-    monkeypatch.setattr("beltdyn.show.report.report._page", lambda results: page.format(len(results)))
+    monkeypatch.setattr("beltdyn.show.report.report._page", lambda results, _: page.format(len(results)))
 
 
 @pytest.mark.usefixtures("_quick_page")

@@ -15,7 +15,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from beltdyn.analyses import RUN
-from beltdyn.errors import ModelError
+from beltdyn.errors import ModelError, Parts
 from beltdyn.kinds import Registry
 from beltdyn.results import Result, Run, derived
 from beltdyn.results.atomic import MARK, atomic_path, is_marked, make_folder, require_replaceable
@@ -252,6 +252,8 @@ def save_all(
     ModelError
         If a figure, the pulley or the variable is not known or cannot be drawn, there is nothing to draw, a file cannot
         be written, or would replace one that is no figure of ours.
+    InternalError
+        If a figure has a fault; the others are written, and are its `completed`.
 
     Examples
     --------
@@ -277,9 +279,25 @@ def save_all(
     paths = {name: Path(folder) / f"{name}.png" for name in chosen}
     for path in paths.values():
         require_replaceable(path, is_marked, overwrite)
-    drawn = {name: FIGURES[name].arrange(results, choice) for name in chosen}
-    make_folder(Path(folder))
-    return [save(figure, paths[name], overwrite) for name, figure in drawn.items()]
+    with Parts(refuses=True) as parts:
+        drawn = dict[str, Figure]()
+        for name in chosen:
+            with parts.part(repeated(results, name, pulley, variable)):
+                drawn[name] = FIGURES[name].arrange(results, choice)
+        if drawn:
+            make_folder(Path(folder))
+        for name, page in drawn.items():
+            with parts.part(repeated(results, name, pulley, variable)):
+                parts.completed.append(save(page, paths[name], overwrite))
+    return parts.completed
+
+
+def repeated(
+    results: Sequence[Result], name: str, pulley: str | int | None = None, variable: str = Choice().variable
+) -> str:
+    """Python that draws a figure of results again."""
+    sources = results[0].source if len(results) == 1 else f"[{', '.join(one.source for one in results)}]"
+    return f"bd.plot.save_all({sources}, 'figures', [{name!r}], {pulley!r}, {variable!r})"
 
 
 def _number(results: Sequence[Result], pulley: str | int) -> int:

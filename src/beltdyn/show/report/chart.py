@@ -18,9 +18,9 @@ from matplotlib.text import Annotation
 from matplotlib.transforms import Transform
 from numpy.typing import ArrayLike, NDArray
 
-from beltdyn.errors import ModelError
+from beltdyn.errors import ModelError, Parts, classified
 from beltdyn.results import Result
-from beltdyn.show.plot.figures import FIGURES, Choice, chosen_by_default, data_uri, why_no_figure
+from beltdyn.show.plot.figures import FIGURES, Choice, chosen_by_default, data_uri, repeated, why_no_figure
 from beltdyn.show.plot.gaps import of_data
 from beltdyn.show.plot.style import LIMIT, NOTE, RESERVATION, styled
 
@@ -390,8 +390,10 @@ class Shown(NamedTuple):
 
 
 @styled
-def charted(results: Sequence[Result], names: Sequence[str] | None = None) -> tuple[list[Shown], dict[str, Any]]:
-    """Draw figures of results."""
+def charted(
+    results: Sequence[Result], parts: Parts, names: Sequence[str] | None = None
+) -> tuple[list[Shown], dict[str, Any]]:
+    """Draw figures of results; one that has a fault says so, and is among the errors of `parts`."""
     shown: list[Shown] = []
     models: dict[str, Any] = {}
     if unknown := [name for name in names or () if name not in FIGURES]:
@@ -403,11 +405,15 @@ def charted(results: Sequence[Result], names: Sequence[str] | None = None) -> tu
         title = name.replace("_", " ").capitalize()
         try:
             drawn = FIGURES[name].arrange(results, Choice())
-        except ModelError as error:
-            shown.append(Shown(title, "", [], str(error)))
+            places = {f"{name}-{number}": chart for number, chart in enumerate(charts(drawn))}
+            picture, notes = _picture(drawn), _notes(drawn)
+        except Exception as error:
+            told = classified(error, repeated(results, name))
+            shown.append(Shown(title, "", [], str(told)))
+            if not isinstance(told, ModelError):
+                parts.fail(told)
             continue
-        places = {f"{name}-{number}": chart for number, chart in enumerate(charts(drawn))}
-        shown.append(Shown(title, _picture(drawn), list(places), "", _notes(drawn), drawn.get_figwidth() > _WIDE))
+        shown.append(Shown(title, picture, list(places), "", notes, drawn.get_figwidth() > _WIDE))
         models |= places
     return shown, models
 

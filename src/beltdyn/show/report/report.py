@@ -2,7 +2,8 @@
 
 import hashlib
 import json
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
+from functools import partial
 from html import escape
 from importlib.resources import files
 from pathlib import Path
@@ -12,7 +13,7 @@ import numpy as np
 from jinja2 import ChoiceLoader, Environment, FunctionLoader, PackageLoader, StrictUndefined
 from matplotlib.colors import to_hex
 
-from beltdyn.errors import ModelError
+from beltdyn.errors import ModelError, Parts
 from beltdyn.model.alignment import is_given
 from beltdyn.parts.messages import listing, show
 from beltdyn.parts.text_file import as_text
@@ -26,7 +27,7 @@ from beltdyn.show.plot.headline import given_keys, headlines, name_of, names_of_
 from beltdyn.show.plot.style import tension_colors
 from beltdyn.show.report.chart import Shown, charted
 from beltdyn.show.report.replay import motion, swinging
-from beltdyn.show.rest_sheet import alignment_table, tensioning
+from beltdyn.show.rest_sheet import Tensioning, alignment_table, tensioning
 from beltdyn.show.sheet import Table, sheet
 
 # The charting library of the page (Bokeh, BSD license), taken from its installation, and what it is given
@@ -225,6 +226,8 @@ def write_report(results: Result | Sequence[Result], path: Path | str, overwrite
     ------
     ModelError
         If there is no result, a run holds no output, or the file cannot be written or would replace another one.
+    InternalError
+        If a figure or a table has a fault; the page is written, and says so in its place.
 
     Examples
     --------
@@ -238,9 +241,11 @@ def write_report(results: Result | Sequence[Result], path: Path | str, overwrite
     for one in several:
         if isinstance(one, Run):
             one.require_output()
-    text = _page(several)
-    with atomic_path(path, _is_report, overwrite) as temporary:
-        temporary.write_text(text, encoding="utf-8")
+    with Parts() as parts:
+        text = _page(several, parts)
+        with atomic_path(path, _is_report, overwrite) as temporary:
+            temporary.write_text(text, encoding="utf-8")
+        parts.completed.append(path)
     return path
 
 
@@ -273,10 +278,17 @@ def environment() -> Environment:
     return made
 
 
-def _page(results: Sequence[Result]) -> str:
+def _page(results: Sequence[Result], parts: Parts) -> str:
+    """The page; what of it has a fault is left out, and is among the errors of `parts`."""
+    sources = results[0].source if len(results) == 1 else f"[{', '.join(one.source for one in results)}]"
+    done: Callable[..., Any] = partial(parts.done, repeat=f"bd.write_report({sources}, 'report.html')")
     names = names_of_results(results) if len(results) > 1 else [name_of(results[0]) or results[0].drive.title]
-    drawn, charts = charted(results)
-    moving = {f"motion-{number}": found for number, one in enumerate(results) if (found := _moving(one, len(results)))}
+    drawn, charts = charted(results, parts)
+    motions = [done(partial(_moving, one, len(results)), {}) for one in results]
+    moving = {f"motion-{number}": found for number, found in enumerate(motions) if found}
+    pages = [
+        _part(name, number, one, moving, parts) for number, (name, one) in enumerate(zip(names, results, strict=True))
+    ]
     return (
         environment()
         .get_template("page.html.jinja")
@@ -285,15 +297,14 @@ def _page(results: Sequence[Result]) -> str:
             mark=_SAYS_WHO_MADE_IT,
             compares=len(results) > 1,
             kinds={one.kind for one in results},
-            verdict=verdict(results),
-            lead="" if len(results) > 1 else headlines(results).removeprefix(f"{names[0]}: "),
-            parts=[
-                _part(name, number, one, moving) for number, (name, one) in enumerate(zip(names, results, strict=True))
-            ],
-            numbers=compared(results),
-            differences=differing_keys(results),
+            verdict=done(partial(verdict, results), ("open", "No verdict")),
+            lead=done(lambda: "" if len(results) > 1 else headlines(results).removeprefix(f"{names[0]}: "), ""),
+            parts=pages,
+            numbers=done(partial(compared, results), []),
+            differences=done(partial(differing_keys, results), []),
             names=names,
             figures=drawn,
+            faults=list(dict.fromkeys(map(str, parts.errors))),
             motions=embedded(moving),
             colors=json.dumps([to_hex(shade) for shade in tension_colors()(np.linspace(0.0, 1.0, _SHADES))]),
             charts=embedded(charts),
@@ -313,12 +324,16 @@ def _moving(result: Result, results: int) -> dict[str, Any]:
     return {}
 
 
-def _part(name: str, number: int, result: Result, moving: Mapping[str, Any]) -> dict[str, Any]:
+def _part(name: str, number: int, result: Result, moving: Mapping[str, Any], parts: Parts) -> dict[str, Any]:
     """What the page shows of one result."""
-    tables = [part for part in sheet(result).parts if isinstance(part, Table)]
+    done: Callable[..., Any] = partial(parts.done, repeat=f"bd.write_report({result.source}, 'report.html')")
+    shown = sheet(result)
+    for error in shown.errors:
+        parts.fail(error)
+    tables = [part for part in shown.parts if isinstance(part, Table)]
     if isinstance(result, Run | StaticResult) and not result.drive.ends and is_given(result.drive):
-        tables.append(alignment_table(result.drive, result.drive.path))
-    facts = [fact for part in sheet(result).parts if not isinstance(part, Table) for fact in part.facts]
+        tables += done(lambda: [alignment_table(result.drive, result.drive.path)], [])
+    facts = [fact for part in shown.parts if not isinstance(part, Table) for fact in part.facts]
     target = f"motion-{number}"
     return {
         "name": name,
@@ -326,20 +341,25 @@ def _part(name: str, number: int, result: Result, moving: Mapping[str, Any]) -> 
         "title": result.dataset.attrs["title"],
         "status": result.status,
         "description": result.drive.description or "",
-        "picture": picture(result.drive),
+        "picture": done(lambda: picture(result.drive), None),
         "motion": target if target in moving else "",
         "swings": "modes" in moving.get(target, {}),
-        "findings": result.findings if isinstance(result, Run) else [],
+        "findings": done(lambda: result.findings if isinstance(result, Run) else [], []),
         "warnings": result.warnings,
         "tables": tables,
         "facts": facts,
-        "origin": origin(result),
+        "origin": done(lambda: origin(result), []),
         "about": _about(result),
-        "tensioning": tensioning(result.drive, given_keys(result).get("belt.installed_tension"))
-        if isinstance(result, Run | StaticResult)
-        else None,
+        "tensioning": done(lambda: _tensioning(result), None),
         "drive": result.drive_as_given,
     }
+
+
+def _tensioning(result: Result) -> Tensioning | None:
+    """How the belt is tensioned in the workshop; nothing of other results."""
+    if not isinstance(result, Run | StaticResult):
+        return None
+    return tensioning(result.drive, given_keys(result).get("belt.installed_tension"))
 
 
 def _about(result: Result) -> list[tuple[str, str]]:
@@ -408,7 +428,10 @@ def interactive(results: Result | Sequence[Result], *names: str) -> InteractiveF
     InteractiveFigures(Slip, Span tensions)
     """
     several = [results] if isinstance(results, Result) else list(results)
-    shown, charts = charted(several, names or None)
+    parts = Parts()
+    shown, charts = charted(several, parts, names or None)
+    if names:
+        parts.end()
     if missing := [one.missing for one in shown if one.missing and names]:
         raise ModelError(missing[0])
     page = environment().get_template("interactive.html.jinja")

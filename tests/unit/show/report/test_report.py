@@ -265,7 +265,7 @@ def test_a_drive_that_stands_still_does_not_move(make_run: Callable[..., Run], t
 
 def test_only_a_report_is_replaced(limited: Run, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(
-        "beltdyn.show.report.report._page", lambda _: '<meta name="generator" content="beltdyn report">'
+        "beltdyn.show.report.report._page", lambda *_: '<meta name="generator" content="beltdyn report">'
     )
     path = tmp_path / "report.html"
     assert write_report(limited, path) == write_report(limited, path) == path
@@ -282,7 +282,7 @@ def test_an_error_leaves_no_file(limited: Run, tmp_path: Path, monkeypatch: pyte
     empty = Run(limited.dataset.isel(time=slice(0)), limited.drive)
     with pytest.raises(ModelError, match="ended before its first output"):
         write_report(empty, tmp_path / "report.html")
-    monkeypatch.setattr("beltdyn.show.report.report._page", lambda _: "")
+    monkeypatch.setattr("beltdyn.show.report.report._page", lambda *_: "")
     with pytest.raises(ModelError, match="cannot be written"):
         write_report(limited, tmp_path / "missing" / "report.html")
     assert list(tmp_path.iterdir()) == []
