@@ -30,6 +30,7 @@ from beltdyn.system.constant_drive import (
     guess_hubs,
     operating_point,
     own_torque,
+    rigid_links,
     twists,
     with_speeds_unknown,
 )
@@ -96,6 +97,7 @@ class SteadySearch:
         self._wanted = self.constant.profiles.segment.offset.copy()
         self._uniform, self._tension = self._wanted[: system.pulleys.size], 0.0
         self._prescribed = self.constant.bodies.unknown[self.constant.pulleys.shaft] < 0
+        self._has_clutches = not np.all(rigid_links(self.constant))
         self._hold(None)
 
     def _hold(self, pulley: int | None) -> None:
@@ -480,22 +482,33 @@ class SteadySearch:
         """Look for steady running at a setting from the state that there is, which stays where that fails.
 
         The first corrections are by the tangent that is factorized already, if it is.  The tolerance is that of the
-        search by default.
+        search by default.  Behind a clutch that begins to slip, speeds jump from those of the rim to near standstill:
+        where Newton's method fails, it starts anew with those that balance their loads.
         """
-        state, system = self.state, self.at(setting)
-        before = self.unknowns()
+        before, system = self.unknowns(), self.at(setting)
+        allowed = (self.tolerance if tolerance is None else tolerance) * float(np.min(self.prepared.radii))
+        for balanced in (False, True) if self._has_clutches else (False,):
+            if balanced:
+                guess_hubs(system, self.state.velocity)
+            speed = self.belt_parameter
+            if self._converges(system, allowed, factorised and not balanced) and not (
+                balanced and abs(self.belt_parameter - speed) > _SLIDES * abs(speed)
+            ):
+                fitted(self.constant, self.state.position)
+                self.setting, self._moments = setting, self.work.equations.forces.moment.copy()
+                return True
+            self.place(before)
+        return False
+
+    def _converges(self, system: System, allowed: float, factorised: bool) -> bool:
+        """Whether Newton's method leads from the state to steady running, up to an error of nodes, m."""
+        state = self.state
         drive_shafts(system, state.velocity)
         mesh_speeds(system, state.velocity)
-        allowed = (self.tolerance if tolerance is None else tolerance) * float(np.min(self.prepared.radii))
         anchor = anchor_at(state, False)
         status, iterations = find_steady(system, state.at(0.0), anchor, allowed, _MOST, factorised, self.work)
         self.iterations += iterations
-        if status == FOUND and not self._runs_away():
-            fitted(self.constant, self.state.position)
-            self.setting, self._moments = setting, self.work.equations.forces.moment.copy()
-            return True
-        self.place(before)
-        return False
+        return status == FOUND and not self._runs_away()
 
     def _runs_away(self) -> bool:
         """Whether a web runs backwards, or faster than all rims that drive it, lifted off by its own inertia."""

@@ -10,6 +10,7 @@ import pytest
 from beltdyn import load, steady_state
 from beltdyn.errors import ConvergenceError
 from beltdyn.points.changed_drive import held_at, with_load
+from beltdyn.results import Run
 from tests.lumped.drawn_drives import SEED, drawn_arm_drive
 from tests.lumped.lumped_balance import LumpedBalance
 from tests.verification.dynamics.test_drawn_drives import SURE
@@ -84,11 +85,22 @@ def test_a_sweep_of_loads_has_no_hole(seeds: range, measured: Callable[..., None
 
 @pytest.mark.parametrize("name", ["alternator_drive", "accessory_drive", "tensioner_stop"])
 def test_examples_run_up_to_the_limit_of_the_balance(name: str) -> None:
-    """Their loads depend little on speed; the drag of clutches, and the weight of the arm, are left out."""
+    """Their loads depend little on speed; the drag of clutches, and the weight of the arm, are left out.
+
+    Beyond it loads that fall with speed let a drive run on with gross slip, which its warnings tell.
+    """
     drive = load(str(files("beltdyn") / "examples" / f"{name}.toml"))
     held = held_at(steady_state(drive).drive, None)
     limit = LumpedBalance.of(held).limit()
     for part in (0.3, 0.6, 0.9, 0.95):
-        steady_state(with_load(held, part * limit.factor))
-    with pytest.raises(ConvergenceError, match="slips on"):
-        steady_state(with_load(held, 1.05 * limit.factor))
+        assert not slips_grossly(steady_state(with_load(held, part * limit.factor)))
+    try:
+        beyond = steady_state(with_load(held, 1.05 * limit.factor))
+    except ConvergenceError as error:
+        assert "slips on" in str(error)
+    else:
+        assert slips_grossly(beyond)
+
+
+def slips_grossly(run: Run) -> bool:
+    return any("gross slip: the belt slides on the whole arc" in warning for warning in run.warnings)
