@@ -258,8 +258,9 @@ def are_clear(centers: FloatArray, radii: FloatArray) -> bool:
     return bool(np.all(between[~np.eye(radii.size, dtype=bool)] > 0.0))
 
 
-_LEAST_TENSION = 0.03
-"""T' of the slackest span at the limit, over that of the tightest: below it bending decides."""
+_MOST_BENDING = 0.5
+"""EI / (T' R^2) of the slackest span on the smallest pulley at the limit, at most.  From 1 on, where the balance has no
+arc left there, its tensions are 3 % off; slackest spans have down to 0.4 % of the tension of the tightest."""
 _CHECKED = 6
 """Loads up to the limit at which the belt must be clear of other pulleys."""
 
@@ -268,7 +269,7 @@ def _is_clear_up_to(limit: Limit, drive: Drive) -> bool:
     """Whether pulleys and spans keep clear of each other up to the limit."""
     balance, near = LumpedBalance.of(drive), None
     pressed = limit.state.tensions - balance.lifted
-    if min(pressed) < _LEAST_TENSION * max(pressed):
+    if balance.bending > _MOST_BENDING * min(pressed) * float(np.min(balance.radii**2)):
         return False
     for factor in np.linspace(0.0, limit.factor, _CHECKED):
         near = balance.at(float(factor), near) if factor < limit.factor else limit.state

@@ -14,9 +14,10 @@ from beltdyn.arrays import FloatArray
 from beltdyn.errors import ConvergenceError, ModelError
 from beltdyn.model import Drive, Prepared
 from beltdyn.parts.messages import listing
+from beltdyn.results.checks.machines import FRICTION_USED
 from beltdyn.solvers.continuation import Solution, extrapolated, follow, turn
 from beltdyn.state.newton import FOUND, SteadyWork, find_steady, make_step, steady_work
-from beltdyn.state.slip_limit import GROSS, Passed, Refusal, Setting, gross_slips, slip_limit
+from beltdyn.state.slip_limit import GROSS, Passed, Refusal, Setting, Tensions, gross_slips, slack, slip_limit
 from beltdyn.state.staying import TOLERANCE, Standing, transfer
 from beltdyn.state.way import Way
 from beltdyn.system.arc_mesh import fitted, shifts_of
@@ -86,6 +87,7 @@ class SteadySearch:
         self.state, self.iterations, self.setting = state, 0, Setting()
         self.tolerance, self.is_limited = TOLERANCE, has_teeth(system)
         self._passed = list[Passed]()
+        self._loading: Way | None = None
         self._held: int | None = None
         self._motor: int | None = None
         self._supported: int | None = None
@@ -201,7 +203,16 @@ class SteadySearch:
 
     def _stalls(self) -> bool:
         """Whether a pulley that ran with the belt without loads has come to a standstill, or nearly so, under them."""
-        return bool(self._passed) and not self.prepared.drive.is_web and self._largest_slip() > _STALLED
+        rims = self.state.velocity[self.system.first_body :][: self._uniform.size]
+        slow = np.abs(rims) < (1.0 - _STALLED) * np.abs(self._uniform)
+        if self.prepared.drive.is_web or self._loading is None or not np.any(slow):
+            return False
+        if not self._passed:
+            here, setting = self.unknowns(), self.setting
+            self._passed = [self._seen(self._loading, solution) for solution in self._loading.solutions]
+            self.place(here)
+            self.setting = setting
+        return self._largest_slip() > _STALLED
 
     def _largest_slip(self) -> float:
         """Largest slip of a pulley beyond elastic creep, against the first of the solutions that were passed."""
@@ -263,16 +274,19 @@ class SteadySearch:
 
     def _jump(self) -> str:
         """Say which pulley is the first to lose a belt with teeth: that with the largest pull over an arc."""
-        here = (self._passed or [self._here()])[-1]
+        here = self._here()
         seen = observe(self.constant, np.zeros(1), here.state.position[None], here.state.velocity[None])
         pulls = np.abs(seen.pulley_torque[0]) / self.prepared.radii
         worst = int(np.argmax(np.where(self.prepared.toothed, pulls, 0.0)))
-        tensions = seen.span_tension[np.isfinite(seen.span_tension)]  # a belt off its pulleys has none
-        spans = f" and spans have {tensions.min():.4g} to {tensions.max():.4g} N" if tensions.size else ""
+        torque = abs(float(seen.pulley_torque[0, worst]))
+        ends = f"the search ends at {here.setting.load:.1%} of the loads, where"
+        if not np.isfinite(seen.span_tension[0]).all():  # a belt off its pulleys has no spans
+            return f"{ends} `{self.prepared.pulleys[worst].name}` takes {torque:.4g} N m. The belt jumps beyond that."
+        tensions = Tensions.of(self.prepared, self.constant, [here])
+        reason = slack(self.prepared, tensions) or f"`{self.prepared.pulleys[worst].name}` takes {torque:.4g} N m"
         return (
-            f"the search ends at {here.setting.load:.1%} of the loads, where "
-            f"`{self.prepared.pulleys[worst].name}` takes {abs(float(seen.pulley_torque[0, worst])):.4g} N m{spans}. "
-            "The belt goes slack or jumps beyond that: raise its tension, reduce the loads, or use a wider belt."
+            f"{ends} {reason} and spans have {seen.span_tension.min():.4g} to {seen.span_tension.max():.4g} N. The "
+            "belt jumps beyond that. Raise its tension, reduce the loads, or use a wider belt."
         )
 
     def _here(self) -> Passed:
@@ -306,8 +320,9 @@ class SteadySearch:
         """Ends of the bands in which dry friction may hold tensioners, m or rad; empty without friction.
 
         "tensioner_position_after_tensioning" and "tensioner_position_after_yielding" have shape (K,): the path had
-        become longer before, or shorter. "tensioner_factor_after_..." are ways to the ends over those by the tangent;
-        with such of a neighbor in `known`, the ends follow from the tangent and these factors.
+        become longer before, or shorter. Where the belt slips on the way, or the tensioner loses its balance, the end
+        is there, and "friction_used_after_..." the part of dry friction that held it. "tensioner_factor_after_..." are
+        ways to other ends over those by the tangent; with such of a neighbor in `known`, the ends follow from these.
         """
         found, count = dict[str, FloatArray](), self.constant.tensioners.size
         tensioners = slice(self.state.position.size - count, self.state.position.size)
@@ -323,35 +338,41 @@ class SteadySearch:
             factor = None if known is None or mark not in known else np.atleast_1d(known[mark])
             if factor is None:
                 end = self._pushed(push, way, ends)
-                if end is None:
+                position = end.unknowns[tensioners]
+                found[f"tensioner_position_after_{name}"] = position
+                if end.place < 1.0:
+                    found[f"{FRICTION_USED}{name}"] = np.array(end.place)
                     continue
-                ends.append((push, end))
-                moved = end[tensioners] - here
-                factor = np.divide(moved, way[tensioners], out=np.ones(count), where=way[tensioners] != 0.0)
+                ends.append((push, end.unknowns))
+                factor = np.divide(position - here, way[tensioners], out=np.ones(count), where=way[tensioners] != 0.0)
             found |= {f"tensioner_position_after_{name}": here + factor * way[tensioners], mark: factor}
         return found
 
-    def _pushed(
-        self, push: FloatArray, way: FloatArray, ends: Sequence[tuple[FloatArray, FloatArray]]
-    ) -> FloatArray | None:
-        """Unknowns where tensioners are pushed, N or N m; None if the way there ends before.
+    def _pushed(self, push: FloatArray, way: FloatArray, ends: Sequence[tuple[FloatArray, FloatArray]]) -> Solution:
+        """Unknowns where tensioners are pushed, N or N m, or by the largest part of it without gross slip.
 
         The way there to first order, and ends that are known, each with its push, serve the guesses.
         """
         begin, moments, own = self.unknowns(), self._moments, self.constant.tensioners.push
         given = own.copy()
+        reached, first = Solution(0.0, begin), self._here()
 
         def solve(part: float, guess: FloatArray) -> FloatArray | None:
+            nonlocal reached
             own[:] = given + part * push
-            return self.solve(self.setting, guess, part)
+            found = self.solve(self.setting, guess, part)
+            if found is None or np.max(gross_slips(self.prepared, self.constant, [first, self._here()])) > GROSS:
+                return None
+            reached = Solution(part, found)
+            return found
 
         parts = [(float(other @ push) / float(push @ push), other, end) for other, end in ends]
         known = [Solution(part, end) for part, other, end in parts if np.allclose(other, part * push)]
         nearest = Solution(_NEAR, begin + _NEAR * way)
-        end = follow(solve, *known, Solution(0.0, begin), nearest, step=0.5)
+        follow(solve, *known, reached, nearest, step=0.5)
         own[:], self._moments = given, moments
         self.place(begin)
-        return end
+        return reached
 
     def _pushed_by_tangent(self, pushes: Iterable[FloatArray]) -> list[FloatArray]:
         """By how much unknowns change where tensioners are pushed, N or N m, to first order."""
@@ -403,6 +424,8 @@ class SteadySearch:
         if self.setting == target:
             return True
         way = Way(self, self.setting, target)
+        if target.load > self.setting.load:
+            self._loading = way
         if follow(way.solve, *way.solutions, tangent=way.tangent) is not None:
             return True
         if has_teeth(self.constant) or self.setting.smoothing != 1.0 or target.smoothing != 1.0:

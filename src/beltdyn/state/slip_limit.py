@@ -29,6 +29,11 @@ GROSS = 0.01
 took from the pressure on the pulleys, and limits come out 4 % too large."""
 
 
+SLACK = 0.02
+"""Effective tension of the slackest span over that of the tightest one below which it is slack: infinite friction would
+transmit 2 % more."""
+
+
 class Setting(NamedTuple):
     """Distance of a drive from the required one."""
 
@@ -87,10 +92,66 @@ def slip_limit(prepared: Prepared, system: System, asked: System, passed: Sequen
         before, slip = _transmitted(system, passed[at - 1])[0], slips[at - 1 : at + 1, worst]
         part = (min(GROSS, slip[1]) - slip[0]) / (slip[1] - slip[0]) if slip[1] > slip[0] else 1.0
         torque = abs(float(before[worst] + part * (torques[worst] - before[worst])))
-    return Refusal(_slipping(prepared, asked, passed[at], worst, torque, slips[at]), not prepared.drive.is_web)
+    tensions = Tensions.of(prepared, system, passed[: at + 1])
+    reason = _slipping(prepared, asked, passed[at], worst, torque, slips[at], tensions)
+    return Refusal(reason, not prepared.drive.is_web)
 
 
-def _slipping(prepared: Prepared, asked: System, here: Passed, pulley: int, torque: float, slips: FloatArray) -> str:
+class Tensions(NamedTuple):
+    """Effective tensions of the spans on the way to a limit, T - m v^2, N."""
+
+    inertia: float
+    """m v^2, N."""
+    first: FloatArray
+    """Of the first solution."""
+    last: FloatArray
+    sets_tension: bool
+    """Whether the first solution has no loads, and the tension without loads is that of a belt of constant length."""
+
+    @classmethod
+    def of(cls, prepared: Prepared, system: System, passed: Sequence[Passed]) -> "Tensions":
+        """From solutions."""
+        inertia = prepared.belt.mass_per_length * passed[-1].belt_parameter ** 2
+        first, last = (_span_tensions(system, one) - inertia for one in (passed[0], passed[-1]))
+        fixed = not (prepared.moving_tensioners or prepared.drive.is_web or prepared.drive.carries)
+        return cls(inertia, first, last, fixed and passed[0].setting.load == 0.0)
+
+    @property
+    def slack_span(self) -> int | None:
+        """Number of the span that is slack; None without one."""
+        span = int(np.nanargmin(self.last))
+        return span if self.last[span] < SLACK * np.nanmax(self.last) else None
+
+    def remedy(self, factor: float) -> str:
+        """Tension without loads with which a pulley transmits so many times the torque."""
+        if not self.sets_tension or factor <= 1.0:
+            return "Raise the tension"
+        tension = float(np.nanmean(self.first))
+        least = f"{factor * tension + self.inertia:.4g} N"
+        return f"Raise the tension without loads from {tension + self.inertia:.4g} N to at least {least}"
+
+
+def _span_tensions(system: System, one: Passed) -> FloatArray:
+    return np.asarray(observe(system, np.zeros(1), one.state.position[None], one.state.velocity[None]).span_tension[0])
+
+
+def slack(prepared: Prepared, tensions: Tensions) -> str | None:
+    """Say which span goes slack; None without one."""
+    span = tensions.slack_span
+    if span is None:
+        return None
+    return "the span from `{}` to `{}` goes slack".format(*prepared.drive.spans[span])
+
+
+def _slipping(
+    prepared: Prepared,
+    asked: System,
+    here: Passed,
+    pulley: int,
+    torque: float,
+    slips: FloatArray,
+    tensions: Tensions,
+) -> str:
     """Say that a pulley slips at a torque (N m)."""
     wanted = abs(_asked_of(prepared, asked, here, slips, pulley))
     of = f" of the {wanted:.4g} N m required" if wanted > torque else ""
@@ -100,10 +161,14 @@ def _slipping(prepared: Prepared, asked: System, here: Passed, pulley: int, torq
             f"the belt slips in the nip of `{prepared.pulleys[pulley].name}`, which transmits at most {torque:.4g} N m"
             f"{of} by this force of the nip. Raise it or the friction, or reduce the load."
         )
-    return (
+    slips_on = (
         f"the belt slips on `{prepared.pulleys[pulley].name}`, which transmits at most {torque:.4g} N m{of} at this "
-        f"tension ({speed:.4g} rpm). Raise the tension, the friction or the wrap angle, or reduce the load."
+        f"tension ({speed:.4g} rpm)"
     )
+    remedy, goes_slack = tensions.remedy(wanted / torque if torque > 0.0 else 1.0), slack(prepared, tensions)
+    if goes_slack:
+        return f"{slips_on}, as {goes_slack}. {remedy}, or reduce the load; more friction does not help."
+    return f"{slips_on}. {remedy}, the friction or the wrap angle, or reduce the load."
 
 
 def _without_slip(prepared: Prepared, system: System, passed: Sequence[Passed], at: int, used: FloatArray) -> Refusal:

@@ -67,3 +67,52 @@ def test_solutions_on_the_way_are_exact_enough_for_what_is_transmitted(monkeypat
     told = most()
     monkeypatch.setattr(search, "_ON_THE_WAY", TOLERANCE)
     assert told == pytest.approx(most(), rel=5e-4)
+
+
+ADVICE = re.compile(r"Raise the tension without loads from (\S+) N to at least (\S+) N")
+
+
+@pytest.mark.parametrize(("friction", "speed", "torque"), [(0.3, 10.0, 40.0), (0.2, 400.0, 20.0)])
+def test_the_least_tension_that_is_stated_is_the_one_with_which_a_drive_runs(
+    friction: float, speed: float, torque: float
+) -> None:
+    """At low speed, and where inertia takes a part of the tension; there a belt that slips runs on, pressed by less."""
+    slipping = drive(torque={"kind": "constant", "value": -torque}).with_(
+        {"contact.friction": friction, "pulley[motor].speed.value": speed}
+    )
+    with pytest.raises(ConvergenceError) as caught:
+        steady_state(slipping)
+    advice = ADVICE.search(str(caught.value))
+    assert advice, str(caught.value)
+    before, least = map(float, advice.groups())
+    assert before == pytest.approx(200.0, rel=0.02)
+    assert not slips_grossly(slipping.with_({"belt.installed_tension": 1.03 * least}))
+    assert slips_grossly(slipping.with_({"belt.installed_tension": 0.97 * least}))
+
+
+def slips_grossly(slipping: Drive) -> bool:
+    """Whether a drive is refused, or runs with gross slip."""
+    try:
+        return any("gross slip: the belt slides" in warning for warning in steady_state(slipping).warnings)
+    except ConvergenceError:
+        return True
+
+
+def test_a_pulley_that_nearly_stands_still_is_refused() -> None:
+    """At this tension the belt, which sheds its inertia as it slows down, would drive it at a fifth of its speed."""
+    stalled = drive(torque={"kind": "constant", "value": -20.0}).with_(
+        {"contact.friction": 0.2, "pulley[motor].speed.value": 400.0, "belt.installed_tension": 248.0}
+    )
+    with pytest.raises(ConvergenceError, match="slips on `"):
+        steady_state(stalled)
+
+
+def test_a_slack_span_is_named_where_more_friction_does_not_help() -> None:
+    """With a factor of 2.6 in the grooves the slack span has 1/1000 of the tension of the other one."""
+    slipping = drive(torque={"kind": "constant", "value": -160.0}).with_(
+        {"contact.friction": 0.9, "pulley[motor].speed.value": 10.0}
+    )
+    with pytest.raises(ConvergenceError, match="as the span from `motor` to `driven` goes slack") as caught:
+        steady_state(slipping)
+    assert "more friction does not help" in str(caught.value)
+    assert ADVICE.search(str(caught.value)), str(caught.value)

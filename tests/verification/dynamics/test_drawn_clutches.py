@@ -43,9 +43,7 @@ def clutched(drawn: Drawn, rng: np.random.Generator) -> tuple[Drive, LumpedBalan
 
 
 @pytest.mark.parametrize("seeds", [range(4), pytest.param(range(4, 300), marks=SLOW)], ids=len)
-def test_every_drive_runs_with_the_tensions_of_the_limited_torques(
-    seeds: range, measured: Callable[..., None]
-) -> None:
+def test_every_drive_runs_with_the_tensions_of_the_limited_torques(seeds: range, measured: Callable[..., None]) -> None:
     """Whether no clutch slips, some do, or all; one of 1000 may be refused."""
     errors, refused = dict[int, float](), dict[int, str]()
     for seed in seeds:

@@ -29,6 +29,7 @@ from beltdyn.results.checks.creep import (
 from beltdyn.results.checks.ending import NOTHING_RECORDED, empty_rolls, unfinished, unsettled
 from beltdyn.results.checks.evidence import Check, Evidence
 from beltdyn.results.checks.machines import (
+    held_too_far,
     jumped_teeth,
     lifted_teeth,
     overloaded_teeth,
@@ -86,6 +87,7 @@ CHECKS: tuple[Check, ...] = (
     unstable_tensioners,
     unstable_control,
     stopped_tensioners,
+    held_too_far,
     unresolved_by_mesh,
 )
 """All checks, in the order in which their findings are shown."""

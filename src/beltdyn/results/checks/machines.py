@@ -15,6 +15,8 @@ from beltdyn.theory.span import sag_ratio
 
 GROWTH = "growth"
 """Attribute of steady running: the fastest growing motion about it, growth rate and angular frequency, 1/s."""
+FRICTION_USED = "friction_used_after_"
+"""Attributes of steady running, for tensioning and yielding: part of dry friction of tensioners at which it ends."""
 
 
 def unstable_tensioners(evidence: Evidence) -> Iterator[Finding]:
@@ -37,6 +39,20 @@ def unstable_control(evidence: Evidence) -> Iterator[Finding]:
             if swing > 0.0
             else "Reverse the sign of the gain: rollers before the sensor need a negative one for their speed.",
         )
+
+
+def held_too_far(evidence: Evidence) -> Iterator[Finding]:
+    """Tensioners that dry friction may hold where there is no steady running."""
+    for name in ("tensioning", "yielding"):
+        used = evidence.recorded.attrs.get(f"{FRICTION_USED}{name}")
+        if used is not None:
+            pulleys = [one.pulley for one in evidence.prepared.moving_tensioners if getattr(one, f"{name}_friction")]
+            yield Finding(
+                f"dry friction may hold the tensioner of {listing(pulleys)} where the belt does not run under these "
+                f"loads: {float(used):.0%} of its friction after {name} suffice.",
+                "The belt slips there, or goes slack; the slip safety is that of a tensioner without dry friction.",
+                "Reduce the dry friction of the tensioner, raise its preload, or reduce the loads.",
+            )
 
 
 def stopped_tensioners(evidence: Evidence) -> Iterator[Finding]:
