@@ -2,6 +2,7 @@
 
 import ast
 import copy
+import re
 from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path
@@ -121,8 +122,8 @@ def mutants_of(path: Path, root: Path) -> Iterator[tuple[Mutant, ast.Module]]:
 
 
 def has_kernels(path: Path) -> bool:
-    """Whether a file makes compiled functions: the package compiles them anew after any change of it."""
-    return "beltdyn.kernel" in path.read_text(encoding="utf-8")
+    """Whether a file makes compiled functions, or chooses among them."""
+    return re.search(r"^@kernel\b|\b(by_type|choice)\(", path.read_text(encoding="utf-8"), re.MULTILINE) is not None
 
 
 def control(path: Path, root: Path, lines: set[int]) -> tuple[Mutant, ast.Module] | None:
