@@ -53,7 +53,7 @@ def test_modes_are_followed(found: bd.Result) -> None:
     assert not [one for one in found.warnings if "grows" in one or "doubtful" in one]
 
 
-def test_critical_speeds_lie_on_both_lines(found: bd.Result) -> None:
+def test_critical_speeds_lie_on_both_lines(found: bd.Result, loaded: Drive) -> None:
     dataset = found.dataset
     assert dataset.sizes["critical"] >= 2
     for number in range(dataset.sizes["critical"]):
@@ -65,6 +65,10 @@ def test_critical_speeds_lie_on_both_lines(found: bd.Result) -> None:
         line = np.interp(float(one.critical_speed), SPEEDS, dataset.frequency.values[:, mode])
         assert float(one.critical_frequency) == pytest.approx(line)
         assert float(one.critical_damping_ratio) < 0.71
+        nearest = dataset.isel(speed=int(np.argmin(np.abs(SPEEDS - float(one.critical_speed)))), mode=mode)
+        parts = {"-".join(span): share for span, share in zip(loaded.spans, nearest.span_share.values, strict=True)}
+        parts |= dict(zip(nearest.pulley.values.tolist(), nearest.pulley_share.values, strict=True))
+        assert str(one.critical_parts.values).split(", ")[0] == max(parts, key=lambda part: parts[part])
 
 
 def test_flutter_is_not_found_where_nothing_grows(found: bd.Result) -> None:

@@ -58,9 +58,29 @@ def test_what_agrees_with_none_begins_a_column_and_high_modes_are_left_out() -> 
     assert angular(tracks, 2) == [[1.0, 0.0], [1.0, 0.5]]
 
 
-def test_a_shape_alone_does_not_make_it_another_mode() -> None:
-    """Of ten times the frequency it is another one."""
+@pytest.mark.parametrize(("before", "after"), [(1.0, 10.0), (1.0, 3.5), (3.5, 1.0)])
+def test_a_shape_alone_does_not_make_it_another_mode(before: float, after: float) -> None:
+    """Of more than three times the frequency, or less than a third, it is another one."""
     tracks = Tracks(1)
-    tracks.take(seen([1.0], [[1, 0]]))
-    tracks.take(seen([10.0], [[1, 0]]))
-    assert angular(tracks, 2) == [[1.0, 0.0], [0.0, 10.0]]
+    tracks.take(seen([before], [[1, 0]]))
+    tracks.take(seen([after], [[1, 0]]))
+    assert angular(tracks, 2) == [[before, 0.0], [0.0, after]]
+
+
+def test_modes_are_followed_while_their_shapes_turn() -> None:
+    """By 40 degrees from state to state: in the third each is nearer to what the other was."""
+    tracks = Tracks(2)
+    for state in range(3):
+        cosine, sine = np.cos(state * np.radians(40.0)), np.sin(state * np.radians(40.0))
+        tracks.take(seen([1.0, 1.1], [[cosine, sine], [-sine, cosine]]))
+    assert angular(tracks, 3) == [[1.0, 1.1]] * 3
+    np.testing.assert_allclose(tracks.table(3).assurance[1:], np.cos(np.radians(40.0)) ** 2)
+
+
+def test_behind_a_state_without_it_a_mode_must_agree_better() -> None:
+    """A square of 0.6 of the cosine: 40 degrees are too many."""
+    tracks, turned = Tracks(2), np.radians(40.0)
+    tracks.take(seen([1.0], [[1, 0, 0]]))
+    tracks.take(seen([1.1], [[0, 0, 1]]))
+    tracks.take(seen([1.0], [[np.cos(turned), np.sin(turned), 0]]))
+    assert angular(tracks, 3) == [[1.0, 0.0, 0.0], [0.0, 1.1, 0.0], [0.0, 0.0, 1.0]]
