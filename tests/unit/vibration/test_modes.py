@@ -109,6 +109,11 @@ def test_modes_with_stuck_tensioners_have_numbers_of_their_own(drive: Drive) -> 
     np.testing.assert_allclose(more.frequency.sel(mode=few.mode), few.frequency, rtol=1e-7)
 
 
+def test_an_open_belt_has_no_modes() -> None:
+    with pytest.raises(ModelError, match=r"the belt is open, but modes need a closed belt\. Use `beltdyn stroke`"):
+        modes(bd.example("printer_axis"))
+
+
 @pytest.mark.parametrize(
     ("options", "said"),
     [

@@ -1,9 +1,11 @@
 """The lumped drive against closed forms."""
 
+from typing import Any
+
 import numpy as np
 import pytest
 
-from beltdyn.model import Drive, prepare
+from beltdyn.model import Drive, Prepared, prepare
 from beltdyn.vibration.peaks import LumpedDrive, lumped_drive
 
 TENSION = 400.0
@@ -91,3 +93,62 @@ def test_bending_lifts_the_belt_off_the_ends_of_arcs() -> None:
     lumped = lumps(belt={"bending_stiffness": 0.04})
     reach = np.sqrt(0.04 / TENSION)
     assert lumped.spans[0] == pytest.approx((1e5 + TENSION) / (0.4 + 2.0 * reach), rel=1e-3)
+
+
+def three(mirrored: bool = False, tensioner: dict[str, object] | None = None) -> Prepared:
+    """A crank and two rotors of unequal radii, or its mirror image."""
+    pulleys: list[dict[str, Any]] = [
+        {"name": "crank", "center": [0.0, 0.0], "radius": 0.05, "speed": 1.0},
+        {"name": "rotor", "center": [0.4, 0.0], "radius": 0.03, "inertia": 2e-4},
+        {"name": "idler", "center": [0.15, 0.3], "radius": 0.04, "inertia": 5e-4, "mass": 0.3},
+    ]
+    pulleys[0]["harmonics"] = [{"order": 2, "amplitude": 0.02}] if tensioner else []
+    if mirrored:
+        pulleys = [one | {"center": [-one["center"][0], one["center"][1]]} for one in reversed(pulleys)]
+    belt = STIFF | {"installed_tension": TENSION, "mass_per_length": 0.2, "bending_stiffness": 0.01}
+    contact = {"friction": 0.8, "creep_ratio": CREEP}
+    tensioners = [tensioner] if tensioner else []
+    return prepare(
+        Drive(belt=belt, pulley=pulleys, tensioner=tensioners, contact=contact, simulation={"duration": 1.0})
+    )
+
+
+def test_belt_and_rotors_that_run_together_have_their_kinetic_energy() -> None:
+    prepared = three()
+    path, belt = prepared.path, prepared.belt
+    lumped = lumped_drive(prepared, np.full(3, TENSION), path.centers, np.zeros(0), 0.0)
+    speeds = 2.0 / path.radii
+    rotors = 2e-4 * speeds[1] ** 2 + 5e-4 * speeds[2] ** 2
+    assert speeds @ lumped.mass @ speeds == pytest.approx(belt.mass_per_length * path.length * 2.0**2 + rotors)
+    np.testing.assert_allclose(lumped.stretches @ speeds, 0.0, atol=1e-12)
+
+
+def test_a_drive_that_runs_backwards_is_the_mirror_image_of_one_that_runs_forwards() -> None:
+    """Spans by their pulleys: from the crank, between the rotors, and to the crank."""
+    tension, found = np.array([500.0, 250.0, 300.0]), []
+    for mirrored, order, speed in ((False, [0, 1, 2], 20.0), (True, [1, 0, 2], -20.0)):
+        prepared = three(mirrored)
+        lumped = lumped_drive(prepared, tension[order], prepared.path.centers, np.zeros(0), speed)
+        crank = 2 if mirrored else 0
+        answer = lumped.answer(400.0, {crank: 0.01}, {})[0]
+        modes = [(one.frequency, one.damping_ratio) for one in lumped.modes(2)]
+        found.append((np.abs(answer[order]), np.array(modes), lumped.passing[order]))
+        other = lumped_drive(prepared, tension[order], prepared.path.centers, np.zeros(0), -speed)
+        assert abs(other.modes(2)[0].damping_ratio / modes[0][1] - 1.0) > 1e-3
+    for there, back in zip(*found, strict=True):
+        np.testing.assert_allclose(there, back, rtol=1e-7)
+
+
+SLIDE = {"kind": "sliding", "pulley": "idler", "direction": [0.0, 1.0], "mass": 0.5, "preload": 700.0, "rate": 2e4}
+SLIDE |= {"stops": [-2e-3, 3e-3], "stop_stiffness": 1e6, "creep_speed": 1e-4}
+
+
+@pytest.mark.parametrize(("position", "stopped"), [(-2.1e-3, True), (-1.9e-3, False), (2.9e-3, False), (3.1e-3, True)])
+def test_a_stop_stiffens_a_tensioner_that_has_reached_it(position: float, stopped: bool) -> None:
+    prepared = three(tensioner=SLIDE)
+    free, there = (
+        lumped_drive(prepared, np.full(3, TENSION), prepared.path.centers, np.array([at]), 5.0)
+        for at in (0.0, position)
+    )
+    assert there.owners[-1] == "slide of idler"
+    assert there.stiffness[-1, -1] - free.stiffness[-1, -1] == pytest.approx(1e6 if stopped else 0.0)
