@@ -281,7 +281,7 @@ def _parser() -> argparse.ArgumentParser:
     parser.add_argument("--sample", type=int, help="try that many mutants of each folder, taken at random")
     parser.add_argument("--seed", type=int, default=1, help="seed of the sample")
     parser.add_argument("--jobs", type=int, default=1, help="mutants at a time")
-    parser.add_argument("--cases", type=int, default=12, help="cases of each test function that are tried")
+    parser.add_argument("--cases", type=int, default=40, help="cases of each test function that are tried")
     parser.add_argument("--slowest", type=float, default=3.0, help="longest time of a test, s")
     parser.add_argument("--budget", type=float, default=10.0, help="longest time of all tests of a mutant, s")
     parser.add_argument("--out", type=Path, default=Path("mutation.json"), help="file of the answers")

@@ -53,6 +53,23 @@ def test_numbers_left_out_are_zero_or_documented(part: type[BaseModel]) -> None:
             assert field.default == SCALES.get((part.__name__, name), smooth), f"{part.__name__}.{name}"
 
 
+BOUNDS = {("Idlers", "secondary_factor"): {1.0}, ("InductionMotor", "breakdown_ratio"): {1.0}}
+"""Least numbers that are not zero: secondary resistances only add to the main ones, and motors have reserves."""
+
+
+@pytest.mark.parametrize("part", parts(), ids=lambda part: part.__name__)
+def test_numbers_may_be_as_small_as_zero_and_shares_as_large_as_one(part: type[BaseModel]) -> None:
+    for name, field in part.model_fields.items():
+        if name in part.__annotations__:
+            bounds = {kind: getattr(item, kind) for item in field.metadata for kind in BOUND if hasattr(item, kind)}
+            least = BOUNDS.get((part.__name__, name), {0.0})
+            assert {float(value) for kind, value in bounds.items() if kind in {"ge", "gt"}} <= least | {-pi}
+            assert {float(value) for kind, value in bounds.items() if kind in {"le", "lt"}} <= {1.0, pi}
+
+
+BOUND = ("ge", "gt", "le", "lt")
+
+
 @pytest.mark.parametrize("speed", [0.0, 3.0, -3.0])
 def test_a_tensioner_with_a_preload_alone_is_a_constant_force_without_loss(speed: float) -> None:
     arm = RotaryTensioner(kind="rotary", pulley="idler", pivot=(0.1, 0.1), preload=5.0)

@@ -11,6 +11,9 @@ from beltdyn.machines.loads.load import LOADS, LoadTorque, ShaftState
 from tests.unit.machines.loads.test_driven_machines import BAND, BRAKE, FAN, GENERATOR, PUMP
 from tests.unit.machines.loads.test_induction_motor import MOTOR, inverter
 from tests.unit.machines.loads.test_motor import DC, SERVO
+from tests.unit.machines.loads.test_table import CRANK, GRID
+
+TABLE = {"kind": "table", "speeds": [0.0, 100.0, 200.0], "torques": [-1.0, -3.0, -4.0]}
 
 CASES: dict[str, tuple[dict[str, Any], float, float, float]] = {
     # load, speed (rad/s), command, state of its controller
@@ -32,6 +35,12 @@ CASES: dict[str, tuple[dict[str, Any], float, float, float]] = {
     "motor-start": (MOTOR, 10.0, 49.0, 0.0),
     "motor-weak-field": (inverter(70.0), 205.0, 70.0, 0.0),
     "motor-weak-field-start": (inverter(70.0), 60.0, 70.0, 0.0),
+    "table": (TABLE, 130.0, 0.0, 0.0),
+    "table-beyond-its-end": (TABLE, 230.0, 0.0, 0.0),
+    "table-before-its-start": (TABLE, -5.0, 0.0, 0.0),
+    "angle-table": (CRANK, 130.0, 0.0, 0.0),
+    "angle-speed-table": (GRID, 13.0, 0.0, 0.0),
+    "angle-speed-table-beyond-its-end": (GRID, 130.0, 0.0, 0.0),
 }
 
 
@@ -49,19 +58,24 @@ def test_derivatives_are_those_of_the_torque(name: str) -> None:
     load, speed, command, state = CASES[name]
     shaft = ShaftState(0.0, 0.3, speed, command, state)
     found = torque(load, shaft)
-    by_speed, by_command = (
+    by_angle, by_speed, by_command = (
         (
             torque(load, shaft._replace(**{field: value + step})).torque
             - torque(load, shaft._replace(**{field: value - step})).torque
         )
         / (2.0 * step)
-        for field, value, step in (("speed", speed, 1e-6), ("command", command, 1e-6 * max(1.0, abs(command))))
+        for field, value, step in (
+            ("angle", 0.3, 1e-6),
+            ("speed", speed, 1e-6),
+            ("command", command, 1e-6 * max(1.0, abs(command))),
+        )
     )
+    assert found.by_angle == pytest.approx(by_angle, rel=1e-5, abs=1e-7)
     assert found.by_speed == pytest.approx(by_speed, rel=1e-5, abs=1e-7)
     assert found.by_command == pytest.approx(by_command, rel=1e-5, abs=1e-9)
 
 
-@pytest.mark.parametrize("name", [name for name in CASES if not name.startswith(("servo", "motor"))])
+@pytest.mark.parametrize("name", [name for name in CASES if not name.startswith(("servo", "motor", "table", "angle"))])
 def test_a_driven_machine_takes_power(name: str) -> None:
     load, speed, command, state = CASES[name]
     assert torque(load, ShaftState(0.0, 0.3, speed, command, state)).torque * speed < 0.0

@@ -22,7 +22,7 @@ def measured(angle: Any) -> Any:
     return 80.0 + 8.0 * np.sin(2 * angle) + 2.0 * np.cos(angle / 2 + 0.3) + np.sin(4 * angle)
 
 
-CRANK = {"angles": ANGLES.tolist(), "speeds": measured(ANGLES).tolist(), "cycle": 4 * np.pi}
+CRANK: dict[str, Any] = {"angles": ANGLES.tolist(), "speeds": measured(ANGLES).tolist(), "cycle": 4 * np.pi}
 
 
 def test_at_the_measured_mean_it_moves_as_it_was_measured() -> None:
@@ -48,6 +48,14 @@ def test_small_waves_are_those_of_the_angle() -> None:
 
 def test_a_steady_crank_has_no_harmonics() -> None:
     assert CrankSpeed(angles=(0, 1, 2, 3), speeds=(5.0,) * 4).harmonics() == ()
+
+
+def test_a_closed_table_and_an_open_one_have_the_same_harmonics() -> None:
+    closed = {"angles": [*ANGLES.tolist(), 4 * np.pi], "speeds": [*CRANK["speeds"], CRANK["speeds"][0]]}
+    there, here = (CrankSpeed(**CRANK | table).harmonics() for table in (closed, {}))
+    assert [(wave.order, wave.amplitude, wave.phase) for wave in there] == [
+        pytest.approx((wave.order, wave.amplitude, wave.phase), rel=1e-9) for wave in here
+    ]
 
 
 def test_a_file_in_degrees_and_rpm(tmp_path: Path) -> None:
