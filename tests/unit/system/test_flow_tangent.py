@@ -68,7 +68,7 @@ def test_tangent(with_machines: Callable[..., Drive], tensioner: str, law: str, 
     state.velocity[:nodes] = 1e-2 * random.normal(size=nodes)
     state.acceleration[:] = random.normal(size=state.position.size)
     state.velocity[nodes:place] = SPEED / 0.08 * (1.0 + 0.02 * random.normal(size=place - nodes))
-    state.velocity[place], state.velocity[place + 1], state.acceleration[place] = SPEED, 0.1, PULL
+    state.velocity[place], state.velocity[place + 1], state.acceleration[place] = SPEED, 5.0, PULL
     equations = new_equations(system)
     residual(system, state, equations, FACTORS)
     size = nodes + equations.border_part.size

@@ -43,6 +43,12 @@ def test_table_is_linear_between_its_points() -> None:
     assert table.breakpoints() == ()
 
 
+@pytest.mark.parametrize("times", [(0.0, 2.0, 1.0), (0.0, 1.0, 1.0), (0.0, 1.0)])
+def test_a_table_is_a_function_of_time(times: tuple[float, ...]) -> None:
+    with pytest.raises(ModelError, match=r"times (must increase|has 2 numbers but values has 3)"):
+        Table(times=times, values=(1.0, 2.0, 3.0))
+
+
 def test_step_holds_from_just_after_its_instant() -> None:
     step = Step(time=0.5, before=1.0, value=3.0)
     np.testing.assert_array_equal(step.at([-1.0, 0.5, np.nextafter(0.5, 1.0), 2.0]), [1.0, 1.0, 3.0, 3.0])
