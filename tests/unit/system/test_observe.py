@@ -11,9 +11,10 @@ from beltdyn.model import Drive, Path, install, prepare
 from beltdyn.quadrature import gauss_points
 from beltdyn.state.static import find_equilibrium
 from beltdyn.system.arrays import System
+from beltdyn.system.body_forces import body_forces_at
 from beltdyn.system.build import belt_system, drive_system
 from beltdyn.system.observations import Observations
-from beltdyn.system.observe import observe
+from beltdyn.system.observe import observe, observe_motion
 from beltdyn.system.state import State, laid
 
 SPEED = 3.0
@@ -137,6 +138,23 @@ def test_forces_at_points_add_up_to_hub_forces_and_torques(fixed_points: System)
         torque = arm[:, 0] * force[:, 1] - arm[:, 1] * force[:, 0]
         np.testing.assert_allclose(seen.hub_force[0, number], -share[here] @ force, rtol=1e-10)
         assert seen.pulley_torque[0, number] == pytest.approx(-share[here] @ torque, rel=1e-10)
+
+
+def test_states_observed_together_are_those_observed_alone(fixed_points: System) -> None:
+    """Of a belt that has left its pulleys and of one that lies on them; energies and tensions of those shown alone."""
+    system, random = fixed_points, np.random.default_rng(4)
+    depths, shown = (-4e-4, 4e-4, -4e-4, 4e-4), np.array([False, True, True, False])
+    places = [laid(system, Path(system.pulleys.center, system.pulleys.radius + depth)).position for depth in depths]
+    position = np.array([place + 1e-5 * random.normal(size=place.size) for place in places])
+    velocity = 0.5 * random.normal(size=position.shape)
+    forces = body_forces_at(system, np.zeros(4), position, velocity)
+    together = observe_motion(system, position, velocity, forces, shown)
+    alone = [see(system, position[k], velocity[k]) for k in range(4)]
+    for name in ("span_tension", "belt_speed", "wrap_angle", "contact_pulley", "friction_force", "contact_position"):
+        np.testing.assert_array_equal(getattr(together, name), [getattr(each, name)[0] for each in alone], name)
+    for name in ("belt_tension", "kinetic_energy"):
+        values = [getattr(each, name)[0] for each, kept in zip(alone, shown, strict=True) if kept]
+        np.testing.assert_array_equal(getattr(together, name), values, name)
 
 
 @pytest.mark.parametrize("angle", [0.0, 0.7, 3.0])
