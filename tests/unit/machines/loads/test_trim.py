@@ -44,11 +44,11 @@ def test_derivatives_are_those_of_torque_and_rate(load: Trim, error: float) -> N
         sides = (act(load, shaft._replace(**{field: getattr(shaft, field) + step}), name)[0] for step in (1e-6, -1e-6))
         return float(np.subtract(*sides)) / 2e-6
 
-    found = (torque.by_angle, torque.by_speed, torque.by_command, rate.torque_by_state, slope[0])
-    fields = ("angle", "speed", "command", "state", "error")
-    assert found == pytest.approx([by(field, "torque_at") for field in fields], rel=1e-6, abs=1e-6)
-    found = (rate.by_speed, rate.by_state, slope[1])
-    assert found == pytest.approx([by(field, "rate_at") for field in ("speed", "state", "error")], rel=1e-6, abs=1e-6)
+    expected = [by(field, "torque_at") for field in ("angle", "speed", "command", "state", "error")]
+    found = torque.by_angle, torque.by_speed, torque.by_command, rate.torque_by_state, slope[0]
+    assert found == pytest.approx(expected, rel=1e-6, abs=1e-6)
+    expected = [by(field, "rate_at") for field in ("speed", "state", "error")]
+    assert (rate.by_speed, rate.by_state, slope[1]) == pytest.approx(expected, rel=1e-6, abs=1e-6)
 
 
 def test_a_controller_without_an_integral_part_has_no_state() -> None:
