@@ -70,7 +70,7 @@ WORKS: dict[str, Work] = {one.command: _as_it_is(one) for one in ANALYSES.values
     "check by closed forms": lambda drive, _: str(bd.check(drive, equilibrium=False)),
     "simulate": lambda drive, folder: bd.simulate(drive, output=folder / "run.nc"),
     "sweep": lambda drive, _: bd.sweep(
-        drive, pulley=driver_name(drive), from_="50 rad/s", to="100 rad/s", duration=0.02, settling=0.01
+        drive, pulley=driver_name(drive), from_="50 rad/s", to="60 rad/s", duration=0.003, settling=0.001
     ),
     "operating-map": lambda drive, folder: bd.operating_map(
         drive, speed="0, 500, 1e5 rpm", load="0, 1", output=folder / "map.nc"

@@ -27,12 +27,14 @@ Trial = tuple[str, Outcome]
 
 LONGEST = 120.0
 """Processor time of an analysis or a consumer, s."""
-_SHORT = 0.01
+_SHORT = 0.003
 """Duration of runs, s: too short for a mean of many drives."""
 _COARSE = 0.2
 """Tolerance of contact forces to which meshes are refined."""
 _GOALS = 3
 """Optimizations of each example, each for another result, and fits to results without a value."""
+_PAIRS = 2
+"""Results of each example that are set beside so many of other kinds."""
 _EVERY = 3
 """Examples from one whose study of an analysis is tried to the next."""
 _WATCHING = ("every figure", "report and page", "sheet", "export to csv")
@@ -117,10 +119,11 @@ def paired(
 ) -> Iterator[Trial]:
     """Pairs of results: of a kind with those of the example before, or with themselves, and of different kinds."""
     kinds = list(results)
-    for analysis, other in zip(kinds, Random(f"{name} {seed}").sample(kinds, len(kinds)), strict=True):
-        first = results[analysis]
-        for label, second in (("another drive", before.get(analysis, first)), (other, results[other])):
-            yield f"{analysis} of {name} and {label}", _try(pair, [first, second], _folder(folder, name))
+    pairs = [(analysis, "another drive", before.get(analysis, results[analysis])) for analysis in kinds]
+    for analysis in Random(f"{name} {seed}").sample(kinds, min(_PAIRS, len(kinds))):
+        pairs += [(analysis, other, results[other]) for other in kinds if other != analysis][:_PAIRS]
+    for analysis, label, second in pairs:
+        yield f"{analysis} of {name} and {label}", _try(pair, [results[analysis], second], _folder(folder, name))
 
 
 def coarse(name: str) -> Drive:
@@ -209,9 +212,9 @@ _OPTIONS: Mapping[str, Mapping[str, Value]] = {
     "sweep": {
         "pulley": lambda drive, _: driver_name(drive),
         "from_": lambda *_: "50 rad/s",
-        "to": lambda *_: "100 rad/s",
-        "duration": lambda *_: 0.02,
-        "settling": lambda *_: 0.01,
+        "to": lambda *_: "60 rad/s",
+        "duration": lambda *_: 0.003,
+        "settling": lambda *_: 0.001,
     },
     "operating_map": {"speed": lambda *_: "500, 1000 rpm"},
     "traction": {"pulley": lambda drive, _: drive.pulleys[-1].name, "slip": lambda *_: "0, 0.2 %"},

@@ -26,7 +26,7 @@ from beltdyn.observation.compilation import usable_cores
 from beltdyn.parts.kind_fields import refuse_kinds_of_scripts
 from beltdyn.parts.quantity import RPM, numbers_in
 from beltdyn.points.changed_drive import driver_of
-from beltdyn.points.duty import at_row, durations_of, read_duty
+from beltdyn.points.duty import Column, at_row, durations_of, duty_of, require_distinct_columns
 from beltdyn.points.operating_points import at_point, load_factors
 from beltdyn.results import Run
 from beltdyn.solvers.run_progress import BatchProgress
@@ -52,10 +52,11 @@ def held(drive: Drive, points: Points) -> Drive:
     return without_schedules(drive, drive.simulation.end if points.at is None else points.at)[0]
 
 
-def study_points(drive: Drive, points: Points, base: Path) -> list[OperatingPoint]:
-    """The operating points of a study."""
+def study_points(drive: Drive, points: Points, base: Path, numbers: Sequence[str] = ()) -> list[OperatingPoint]:
+    """The operating points of a study, none of which gives one of the numbers that vary, by their paths."""
     if points.table is not None:
-        columns = read_duty(base / points.table)
+        columns = duty_of(drive, base / points.table) or []
+        require_distinct_columns(drive, columns, points.table, numbers)
         durations = durations_of(columns)
         return [
             OperatingPoint(f"row {row + 1}", weight, partial(at_row, columns=columns, row=row))
@@ -70,6 +71,8 @@ def study_points(drive: Drive, points: Points, base: Path) -> list[OperatingPoin
         axes["load"] = load_factors(points.load, points.load_count)
     if points.speed is not None:
         axes["speed"] = numbers_in("speed", points.speed, "rad/s", points.count)
+        column = Column("speed", drive.pulleys[number].name, axes["speed"].tolist())
+        require_distinct_columns(drive, [column], "[points]", numbers)
     places = [dict(zip(axes, map(float, place), strict=True)) for place in product(*axes.values())]
     return [
         OperatingPoint(_words(there), 1.0 / len(places), partial(at_point, pulley=number, there=there))

@@ -200,7 +200,7 @@ def optimize(
     given = study if isinstance(study, OptimizationStudy) else read_study(study, OptimizationStudy)
     base = Path() if isinstance(study, OptimizationStudy) else Path(study).parent
     numbers, there = free_numbers(drive, given.numbers), held(drive, given.points)
-    points = study_points(drive, given.points, base)
+    points = study_points(drive, given.points, base, [one.path for one in numbers])
     aims = aims_of(given, there, points)
     history = History(drive, numbers, points, aims, output, overwrite, study=study)
 

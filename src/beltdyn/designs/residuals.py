@@ -18,7 +18,7 @@ from beltdyn.model.parameter_study import CalibrationStudy, Measurement, Points
 from beltdyn.parts.change import meaning_of, require_distinct, unit_at
 from beltdyn.parts.messages import suggest
 from beltdyn.parts.table_file import HeadedColumn, read_headed
-from beltdyn.points.duty import UNITS, Column, at_row
+from beltdyn.points.duty import UNITS, Column, at_row, require_distinct_columns
 from beltdyn.solvers.run_progress import Progress, Report
 
 # Tables of measured results: a row for each state in which something was measured
@@ -63,7 +63,9 @@ def read_measured(path: Path, drive: Drive, *, at_rest: bool = False) -> Measure
     table = MeasuredTable([], [], {}, {})
     for column in read_headed("table", path):
         _take(table, column, drive, names_of(drive, at_rest=at_rest))
-    require_distinct(drive, [one.path for one in table.conditions], f"{path}: the heading")
+    conditions = [one.path for one in table.conditions]
+    require_distinct(drive, conditions, f"{path}: the heading")
+    require_distinct_columns(drive, table.points, path, conditions)
     if not table.results:
         raise ModelError(
             f'{path} has no column of results. Add a column such as "pulley_slip[{drive.pulleys[-1].name}]".'
@@ -258,6 +260,7 @@ def _series(
     names, groups = list(table.results), dict[tuple[float, ...], list[int]]()
     for row in range(table.rows):
         groups.setdefault(tuple(table.changes(row).values()), []).append(row)
+    require_distinct_columns(drive, table.points, one.table, [number.path for number in numbers])
     free = {meaning_of(drive, number.path): number.path for number in numbers}
     for rows in groups.values():
         changes = table.changes(rows[0])

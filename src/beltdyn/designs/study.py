@@ -23,6 +23,7 @@ from beltdyn.model.pulley import refuse_functions
 from beltdyn.model.toml import read_study
 from beltdyn.parts.kind_fields import refuse_kinds_of_scripts
 from beltdyn.parts.options import options_of, read_options, require_options
+from beltdyn.points.duty import duty_of, require_distinct_columns
 from beltdyn.results import Result
 from beltdyn.results.atomic import make_folder, target_of
 from beltdyn.signals import uninterrupted
@@ -228,6 +229,8 @@ def study(
     analysis = ANALYSES[given.analysis]
     options = _options(analysis, given.options, base)
     plan = plan_of(given, drive, base)
+    if isinstance(table := options.get("table"), Path):
+        require_distinct_columns(drive, duty_of(drive, table) or [], table, plan.paths)
     require_possible(given.results, drive, plan.paths)
     path = None if output is None else Path(output)
     inputs = [study if isinstance(study, Path | str) else None, given.table and base / given.table]
@@ -241,14 +244,14 @@ def study(
         rule = "points are computed by other processes, which a Python function cannot be passed to"
         refuse_functions(drive.pulleys, rule, "Compute them in this process with jobs = 1.")
         refuse_kinds_of_scripts(drive.own_kinds)
-    with StudyTable(given, drive, plan, path, overwrite, retry) as table:
-        waiting = np.flatnonzero(~table.done).tolist()
-        teller = _Teller(table, progress, workers)
+    with StudyTable(given, drive, plan, path, overwrite, retry) as rows:
+        waiting = np.flatnonzero(~rows.done).tolist()
+        teller = _Teller(rows, progress, workers)
         if waiting and scheduler is None:
             teller.compiling()
             compile_ahead(drive)
-        Dispatch(workers, work, plan.changes, table.take, teller.tell).run(waiting)
-    return table.result()
+        Dispatch(workers, work, plan.changes, rows.take, teller.tell).run(waiting)
+    return rows.result()
 
 
 def _read(file: Path | str) -> ParameterStudy:

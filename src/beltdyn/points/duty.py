@@ -12,6 +12,7 @@ from beltdyn.arrays import FloatArray
 from beltdyn.errors import ModelError
 from beltdyn.model import Drive, Pulley
 from beltdyn.model.parameter_study import PASS, columns_of
+from beltdyn.parts.change import Steps, meaning_of
 from beltdyn.parts.messages import suggest
 from beltdyn.parts.options import ForceTolerance, takes_options
 from beltdyn.parts.table_file import HeadedColumn, read_headed
@@ -59,6 +60,11 @@ class Column(NamedTuple):
     """Of a speed, torque or power; empty of others, and of the driver's speed in its sense of rotation."""
     values: Sequence[Any]
     """In SI units; None where a row leaves it open."""
+
+    @property
+    def heading(self) -> str:
+        """The heading without its unit."""
+        return f"{self.pulley} {self.what}".strip()
 
 
 @takes_options
@@ -144,8 +150,46 @@ def duty_of(drive: Drive, table: Path | str | None) -> list[Column] | None:
                     f'{table}: the heading "{one.pulley} {one.what}" names no pulley of the drive. '
                     f"{suggest(one.pulley, names)}"
                 )
+        require_distinct_columns(drive, columns, table)
         return columns
     return [Column(*key, values) for key, values in columns_of(drive.duty).items()] if drive.duty else None
+
+
+def require_distinct_columns(
+    drive: Drive, columns: Sequence[Column], source: object, numbers: Sequence[str] = ()
+) -> None:
+    """Make sure that columns, and numbers of the drive that vary besides, set different values.
+
+    Parameters
+    ----------
+    drive
+        The drive.
+    columns
+        What differs from row to row.
+    source
+        What has the columns, such as the path of a table.
+    numbers
+        Paths of numbers, as `Drive.with_` takes them.
+    """
+    known = [(one, _meaning(drive, one)) for one in columns if one.what not in ("duration", "load")]
+    for place, (one, meaning) in enumerate(known):
+        for other, same in known[:place]:
+            if meaning == same:
+                which = "the torque" if meaning[-1] == "torque" else "the same value"
+                raise ModelError(f'{source}: "{other.heading}" and "{one.heading}" both give {which}. Remove one.')
+        for path in numbers:
+            if meaning_of(drive, path)[: len(meaning)] == meaning:
+                raise ModelError(
+                    f'{source}: the column "{one.heading}" gives the number "{path}", which varies besides. Remove one.'
+                )
+
+
+def _meaning(drive: Drive, column: Column) -> Steps:
+    """The value of a drive that a column gives, as from `meaning_of`; a power is given by a torque."""
+    if column.what == "temperature":
+        return ("belt", "temperature")
+    number = drive.number_of(column.pulley) if column.pulley else driver_of(drive)
+    return ("pulley", f"{number + 1}", "speed" if column.what == "speed" else "torque")
 
 
 def read_duty(path: Path) -> list[Column]:

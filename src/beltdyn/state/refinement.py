@@ -120,6 +120,11 @@ def steady_from_rest(
 def refine(search: SteadySearch, rule: MeshRule, tolerance: float) -> tuple[dict[str, float], MeshRule]:
     """Refine the mesh of a drive in steady running, which is changed in place."""
     before, errors = _solution(search), dict[str, float]()
+    if not before.arcs:
+        raise ConvergenceError(
+            "the belt has lifted off all pulleys, which can no longer drive it. Reduce the speed, or increase the "
+            "installed tension."
+        )
     while True:
         finer = _moved(search, before, rule)
         if finer is None:

@@ -1,12 +1,15 @@
 """Duty tables: what they hold, and means weighted by durations."""
 
+from collections.abc import Callable
 from pathlib import Path
 
 import numpy as np
 import pytest
 
+import beltdyn as bd
 from beltdyn.errors import ModelError
 from beltdyn.model import Drive, example, load
+from beltdyn.model.parameter_study import CalibrationStudy, OptimizationStudy
 from beltdyn.points.duty import at_row, duty, read_duty
 from validation.published.cases import better, loaded_two_pulley
 
@@ -116,3 +119,58 @@ def test_a_heading_with_a_name_that_no_pulley_has(tmp_path: Path) -> None:
 def test_a_file_that_is_not_there(tmp_path: Path) -> None:
     with pytest.raises(ModelError, match="cannot be read"):
         read_duty(tmp_path / "none.csv")
+
+
+SPEED = {"path": "pulley[1].speed.value", "least": "10 rad/s", "largest": "200 rad/s"}
+WIDTH = {"path": "belt.width", "least": "1 mm", "largest": "1 m"}
+
+
+def _studied(drive: Drive, table: Path, number: dict[str, str]) -> object:
+    varied = {"path": number["path"], "values": [number["least"], number["largest"]]}
+    return bd.study(bd.ParameterStudy(analysis="duty", options={"table": str(table)}, number=[varied]), drive, jobs=1)
+
+
+def _optimized(drive: Drive, table: Path, number: dict[str, str]) -> object:
+    study = OptimizationStudy(number=[number], goal={"result": "hub_load"}, points={"table": str(table)})
+    return bd.optimize(drive, study=study)
+
+
+def _calibrated(drive: Drive, table: Path, number: dict[str, str]) -> object:
+    headings, *rows = table.read_text(encoding="utf-8").splitlines()
+    measured = ["efficiency," + headings.partition(",")[2], *("0.9," + row.partition(",")[2] for row in rows)]
+    table.write_text("\n".join(measured) + "\n", encoding="utf-8")
+    return bd.calibrate(drive, study=CalibrationStudy(number=[number], measurement=[{"table": str(table)}]))
+
+
+CONSUMERS: dict[str, Callable[[Drive, Path, dict[str, str]], object]] = {
+    "duty": lambda drive, table, _: duty(drive, table=table),
+    "sheet": lambda drive, table, _: bd.sheet(drive, table=table),
+    "study": _studied,
+    "optimize": _optimized,
+    "calibrate": _calibrated,
+}
+
+
+@pytest.mark.parametrize("consumer", CONSUMERS)
+@pytest.mark.parametrize(
+    ("columns", "number", "message"),
+    [
+        ("speed [rpm], driver speed [rpm]", WIDTH, '"speed" and "driver speed" both give the same value. Remove one.'),
+        ("driven torque [N m], driven power [W]", WIDTH, '"driven torque" and "driven power" both give the torque.'),
+        ("load, speed [rpm]", SPEED, 'the column "speed" gives the number "pulley[1].speed.value", which varies'),
+        ("driver speed [rpm], load", SPEED, 'the column "driver speed" gives the number "pulley[1].speed.value"'),
+    ],
+)
+def test_what_gives_one_value_twice_is_refused(
+    consumer: str, columns: str, number: dict[str, str], message: str, tmp_path: Path
+) -> None:
+    """By all that reads duty tables, before anything is computed."""
+    if number is SPEED and consumer in ("duty", "sheet"):
+        pytest.skip("no number varies")
+    if consumer == "calibrate" and not columns.startswith("driver speed"):
+        pytest.skip("measurements are at speeds and torques of pulleys by their names")
+    table = tmp_path / "duty.csv"
+    table.write_text(f"share [%], {columns}\n50, 100, 1\n50, 200, 1\n", encoding="utf-8")
+    with pytest.raises(ModelError) as error:
+        CONSUMERS[consumer](loaded_two_pulley(), table, number)
+    assert message in str(error.value)

@@ -11,6 +11,7 @@ import beltdyn as bd
 from beltdyn.cli import main
 from beltdyn.errors import ConvergenceError, ModelError
 from beltdyn.model import Drive
+from beltdyn.points.changed_drive import at_speed_under, held_at
 from beltdyn.results import Run, open_result, summarize
 from beltdyn.state.steady import steady_on_mesh, steady_state
 from validation.published.cases import better, loaded_two_pulley
@@ -276,3 +277,10 @@ def test_belts_with_teeth_that_do_not_run(driver: dict[str, Any], driven: dict[s
     drive = Drive(belt=TOOTHED, pulley=pulleys, contact={"friction": 0.3}, simulation={"duration": 1.0})
     with pytest.raises((ModelError, ConvergenceError), match=message):
         steady_state(drive)
+
+
+def test_a_belt_that_no_pulley_touches_is_refused() -> None:
+    """Its own tension m v^2 is beyond that which it is installed with."""
+    drive = at_speed_under(held_at(bd.example("unequal_radii"), None), 0, 1e4, 0.0)
+    with pytest.raises(ConvergenceError, match=r"lifted off all pulleys.*Reduce the speed"):
+        steady_state(drive, force_tolerance=0.2)
