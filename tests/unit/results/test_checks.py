@@ -6,6 +6,7 @@ from typing import Any
 import numpy as np
 import pytest
 
+from beltdyn.errors import is_internal
 from beltdyn.model import Drive, loads
 from beltdyn.results import Run, summarize
 from beltdyn.results.checks import CHECKS
@@ -61,6 +62,12 @@ def test_a_run_too_short_for_slip_says_so(turning: Callable[..., Run], run: Run)
     short = turning(**{name: 1e-4 * run.dataset[name].values for name in names})
     assert np.isnan(summarize(short).pulleys[1].slip)
     assert len(said(short, "too short for slip: while means are taken the rim of driver moves")) == 1
+    lost = run.dataset["span_tension"].values * [1.0, np.nan]
+    half = turning(**{name: 1e-4 * run.dataset[name].values for name in names}, span_tension=lost)
+    assert said(half, "too short for slip")
+    assert "nan" not in " ".join(half.warnings)
+    left = turning(**{name: 1e-4 * run.dataset[name].values for name in names}, span_tension=np.nan * lost)
+    assert said(left, "slip has no value: while means are taken the belt has left a pulley of each span")
     ends = run.dataset["time"].values < 0.5 * float(run.dataset["time"][-1])
     stopping = {name: np.where(ends[:, None], 1.0, 1e-4) * run.dataset[name].values for name in names[1:3]}
     angles = {name: np.minimum(run.dataset[name].values, run.dataset[name].values[ends][-1]) for name in names[::3]}
@@ -311,3 +318,15 @@ def test_losses_and_slip_off_those_of_steady_running(turning: Callable[..., Run]
     assert "losses are off by +3.0% (friction +3.0% of the losses)" in warning
     assert "the slip of driven is off by -10.0% of the largest slip" in warning
     assert "Omit simulation.rtol = 0.01" in warning
+
+
+@pytest.mark.provokes_internal_errors
+def test_a_check_with_a_fault_leaves_the_others(turning: Callable[..., Run], monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("beltdyn.results.checks.creep.SHORTEST", None)
+    names = ("pulley_angle", "pulley_speed", "shaft_speed", "shaft_angle")
+    run = turning()
+    short = turning(**{name: 1e-4 * run.dataset[name].values for name in names})
+    (told,) = (one for one in short.findings if one.kind == "unknown_slip")
+    assert is_internal(str(told))
+    assert "internal error in results/checks/creep.py:" in told.fault
+    assert len(short.findings) > 1

@@ -6,6 +6,7 @@ them; to add one, write it there and enter it in `CHECKS`.
 
 from dataclasses import replace
 
+from beltdyn.errors import cause_of
 from beltdyn.model import Prepared
 from beltdyn.parts.messages import Finding
 from beltdyn.results.checks.contact import (
@@ -100,4 +101,14 @@ def find(recorded: Recorded, prepared: Prepared, resolution: Resolution | None) 
     evidence = Evidence(recorded, prepared, resolution)
     if "slips_through" in recorded.attrs:
         return list(ended_by_slip(evidence))  # the other checks would repeat this
-    return [replace(finding, kind=check.__name__) for check in CHECKS for finding in check(evidence)]
+    return [replace(finding, kind=check.__name__) for check in CHECKS for finding in _findings(check, evidence)]
+
+
+def _findings(check: Check, evidence: Evidence) -> list[Finding]:
+    """The findings of a check, or that it has a fault."""
+    try:
+        return list(check(evidence))
+    except Exception as error:
+        name = check.__name__.replace("_", " ")
+        fault = cause_of(error, f"bd.results.checks.{check.__name__} of this run").rstrip(".")
+        return [Finding(f"the check of {name} ended: {fault}.", "It says nothing of this run.", "Report it.")]

@@ -43,7 +43,15 @@ def unknown_slip(evidence: Evidence) -> Iterator[Finding]:
     driver, speeds = evidence.pulleys[number], np.abs(np.asarray(evidence.recorded["pulley_speed"])[:, number])
     if not np.isnan(driver.slip) or abs(driver.speed) <= _STOPS * speeds.max() or len(window.time) == 1:
         return
-    stretch = evidence.prepared.belt.stretch_parameters.stretch(max(one.tension for one in evidence.spans)) - 1.0
+    tension = np.fmax.reduce([one.tension for one in evidence.spans])  # a span that the belt has left has none
+    if np.isnan(tension):
+        yield Finding(
+            "slip has no value: while means are taken the belt has left a pulley of each span.",
+            "Slip and creep have no values.",
+            "Increase the tension, or simulate longer.",
+        )
+        return
+    stretch = evidence.prepared.belt.stretch_parameters.stretch(float(tension)) - 1.0
     stretched = float(stretch) * evidence.prepared.belt_length
     rim = abs(driver.speed * evidence.prepared.radii[number])
     moved = rim * (window.end - window.start)
@@ -144,7 +152,7 @@ def _added_by_slope(evidence: Evidence, number: int) -> float:
     ends = SpanTension.of(partial(evidence.window.mean, evidence.recorded)).at_arcs(prepared)
     tension, rim = 0.5 * float(ends[0][number] + ends[1][number]), abs(pulley.speed) * radius
     pressing, pull = tension - prepared.belt.mass_per_length * rim**2, abs(pulley.belt_torque) / radius
-    if not min(rim, pressing, pull, friction) > 0.0:
+    if not all(one > 0.0 for one in (rim, pressing, pull, friction)):
         return 0.0
     by_strain = rim / prepared.belt.local_stiffness(tension)
     saturation = float(prepared.friction_parameters.saturation(pressing / radius, friction, rim))
