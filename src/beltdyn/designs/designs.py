@@ -8,26 +8,23 @@ import numpy as np
 
 from beltdyn.arrays import FloatArray
 from beltdyn.designs.batch import OperatingPoint, Watched, held
-from beltdyn.designs.found_state import FoundState, Resting, Running
+from beltdyn.designs.found_state import CHANGE, AtRest, FoundState, Resting, Running, bring_at_rest, rest_near
 from beltdyn.designs.named_results import need_bands
 from beltdyn.errors import ConvergenceError, ModelError, cause_of
 from beltdyn.model import Drive, prepare
 from beltdyn.model.parameter_study import FreeNumber, Points
 from beltdyn.parts.change import converted, number_path, require_distinct, unit_at, value_at
 from beltdyn.solvers.continuation import Solution, follow
-from beltdyn.state.staying import Standing, bring_to_stand, stand_like
+from beltdyn.state.staying import bring_to_stand
 from beltdyn.state.steady import Beside, steady_beside, steady_from
 
 # Drives with one number changed a little, which keep the installed tension that was asked for
-
-CHANGE = 1e-5
-"""Of a number, and of the length of the belt, relative."""
 
 
 class SmallChanges:
     """Makes neighbors of a drive; with an installed tension the belt's length, or the take-up, follows."""
 
-    def __init__(self, given: Drive, rest: Standing) -> None:
+    def __init__(self, given: Drive, rest: AtRest) -> None:
         self._given, self._rest = given, rest
         self._tightening = np.inf
         self._nominal = prepare(given).installed_tension
@@ -58,7 +55,7 @@ class SmallChanges:
 
     def _tension(self, drive: Drive) -> float:
         """At rest, on the same mesh."""
-        return stand_like(prepare(drive), self._rest).tension
+        return rest_near(prepare(drive), self._rest).tension
 
 
 _DIGITS = 6
@@ -120,7 +117,7 @@ class Design:
     """Watched results, shape (points, results); NaN where one does not count."""
     given: Drive | None = None
     """With constant speeds and torques."""
-    rest: Standing | None = None
+    rest: AtRest | None = None
     states: tuple[FoundState, ...] = ()
     tangents: tuple[dict[str, FloatArray], ...] = ()
     """Path -> change of the unknowns of each state by a unit of the number; filled where derivatives are found."""
@@ -159,11 +156,12 @@ class Designs:
         where = ""
 
         @cache
-        def between(part: float) -> Standing:
+        def between(part: float) -> AtRest:
             """A drive on the way from the other design, at rest."""
             begin = changes if near is None else near.changes
             there = {path: begin[path] + part * (end - begin[path]) for path, end in changes.items()}
-            return bring_to_stand(prepare(self._given(changes if part == 1.0 else there)))
+            prepared = prepare(self._given(changes if part == 1.0 else there))
+            return bring_at_rest(prepared) if self._at_rest else bring_to_stand(prepared)
 
         try:
             rest = between(1.0)
@@ -198,7 +196,7 @@ class Designs:
         return held(self._drive.with_(changes), self._instant)
 
     def _on_way(
-        self, near: Design, changes: Mapping[str, float], number: int, between: Callable[[float], Standing]
+        self, near: Design, changes: Mapping[str, float], number: int, between: Callable[[float], AtRest]
     ) -> FoundState | None:
         """The state at an operating point, followed from that of another design; None where the way ends before.
 
@@ -220,7 +218,7 @@ class Designs:
         known = [Solution(place, place * ahead) for place in (-2.0 * _BEHIND, -_BEHIND, 0.0)]
         return None if follow(solve, *known) is None else start.of(last[0], None)
 
-    def _state(self, point: OperatingPoint, rest: Standing, before: Sequence[FoundState]) -> FoundState:
+    def _state(self, point: OperatingPoint, rest: AtRest, before: Sequence[FoundState]) -> FoundState:
         """The state of a drive at an operating point, found from that before it, or from rest."""
         if self._at_rest:
             return Resting(rest)
@@ -239,7 +237,8 @@ class Designs:
         found = np.zeros((*design.values.shape, len(self.numbers)))
         for column, free in enumerate(self.numbers):
             value = design.changes[free.path]
-            step = CHANGE * (free.largest - free.least) * (1.0 if value < free.largest else -1.0)
+            step = design.states[0].change * (free.largest - free.least)
+            step *= 1.0 if value + step <= free.largest else -1.0
             try:
                 side = small.drive(free.path, value + step)
                 for number, (point, one) in enumerate(zip(self._points, design.states, strict=True)):

@@ -9,14 +9,13 @@ import numpy as np
 
 from beltdyn.arrays import ComplexArray, FloatArray
 from beltdyn.designs.named_results import MODES, OF_MODES, name_of, values_of, variable_and_label
-from beltdyn.errors import ModelError
-from beltdyn.model import Drive, prepare
+from beltdyn.model import Drive, Prepared, prepare
 from beltdyn.points.operating_points import computed_with, labels_of
 from beltdyn.results import Run
-from beltdyn.state.installation import looked_at
+from beltdyn.state.installation import Rest, looked_at, on_equal_elements, rest_like, rest_of
 from beltdyn.state.linearized import SmallMotions
 from beltdyn.state.newton import SteadyWork
-from beltdyn.state.staying import Standing, stand_like
+from beltdyn.state.staying import Standing, bring_to_stand, stand_like
 from beltdyn.state.steady import Beside, require_found, steady_beside, tangent_of
 from beltdyn.vibration.mode_shapes import belt_points, shares_of
 from beltdyn.vibration.modes import FIRST_STUCK, eigenmodes
@@ -199,6 +198,10 @@ def _left_eigenvectors(matrix: "csc_array", count: int) -> ComplexArray:
     return found
 
 
+CHANGE = 1e-5
+"""Relative change of a number for derivatives on a mesh that follows arcs."""
+_CHANGE_OF_EQUAL_ELEMENTS = 1e-2
+"""The same where contact points come and go: with 1e-5 the largest tension of a band brake has twice its derivative."""
 _MOST_MODES = 200
 _SPAN = 0.4
 """Share of a span in the kinetic energy of a mode with which it swings most; of two spans alike each has half."""
@@ -223,6 +226,16 @@ class FoundState(ABC):
     @abstractmethod
     def motions(self) -> SmallMotions:
         """Small motions about it."""
+
+    @property
+    def has_modes(self) -> bool:
+        """Whether modes are found about it; their results have no value otherwise."""
+        return True
+
+    @property
+    def change(self) -> float:
+        """Relative change of a number with which derivatives are taken."""
+        return CHANGE
 
     @abstractmethod
     def neighbour(self, drive: Drive) -> "FoundState":
@@ -259,6 +272,8 @@ class FoundState(ABC):
 
     def _mode_of(self, variable: str, label: str) -> Mode | None:
         """The mode of a variable of `OF_MODES`; if followed from a neighbor, the mode of the neighbor."""
+        if not self.has_modes:
+            return None
         near = self._near if isinstance(self._modes, FollowedModes) else None
         chosen = (near or self)._chosen_mode(variable, label)
         return None if chosen is None else self._modes.like(chosen)
@@ -341,21 +356,38 @@ class Running(FoundState):
         return Running(found.run(bands=self._bands), near, bands=self._bands)
 
 
-def require_closed_at_rest(drive: Drive, analysis: str) -> None:
-    """Make sure that states at rest can be followed on a mesh that stays: the belt has no free ends."""
-    if drive.ends and not drive.is_web:
-        raise ModelError(
-            f"{analysis} needs a closed belt, whose mesh stays while numbers change; this belt is open. Use `beltdyn "
-            'study` with analysis = "equilibrium".'
-        )
+AtRest = Standing | Rest
+"""A drive at rest: on a staying mesh, or an open belt on equal elements."""
+
+
+def bring_at_rest(prepared: Prepared) -> AtRest:
+    """Find the equilibrium of a drive at rest, with the installed tension that was asked for if one was."""
+    if prepared.drive.ends and not prepared.drive.is_web:
+        return rest_of(prepare(on_equal_elements(prepared.drive)))
+    return bring_to_stand(prepared)
+
+
+def rest_near(prepared: Prepared, near: AtRest) -> AtRest:
+    """Find the equilibrium of a drive that differs a little from another one, on the same mesh."""
+    return stand_like(prepared, near) if isinstance(near, Standing) else rest_like(prepared, near)
 
 
 class Resting(FoundState):
     """A drive at rest, with a belt that slid into its place."""
 
-    def __init__(self, rest: Standing, near: FoundState | None = None) -> None:
+    def __init__(self, rest: AtRest, near: FoundState | None = None) -> None:
         super().__init__(near)
         self.rest = rest
+
+    @property
+    def has_modes(self) -> bool:
+        """Whether it is on a staying mesh, about which modes are found."""
+        return isinstance(self.rest, Standing)
+
+    @property
+    def change(self) -> float:
+        """See `FoundState`; larger on equal elements."""
+        return CHANGE if isinstance(self.rest, Standing) else _CHANGE_OF_EQUAL_ELEMENTS
 
     @property
     def drive(self) -> Drive:
@@ -391,8 +423,9 @@ class Resting(FoundState):
     @cached_property
     def motions(self) -> SmallMotions:
         """Small motions about it, with a belt that sticks to its pulleys."""
+        assert isinstance(self.rest, Standing)
         return about_standing(self.rest)
 
     def neighbour(self, drive: Drive) -> FoundState:
         """The rest of a drive that differs a little, on the same mesh."""
-        return Resting(stand_like(prepare(drive), self.rest), self)
+        return Resting(rest_near(prepare(drive), self.rest), self)

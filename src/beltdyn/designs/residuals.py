@@ -10,7 +10,6 @@ import numpy as np
 from beltdyn.arrays import FloatArray
 from beltdyn.designs.batch import OperatingPoint, named
 from beltdyn.designs.designs import Design, Designs, Free
-from beltdyn.designs.found_state import require_closed_at_rest
 from beltdyn.designs.named_results import names_of, unit_of
 from beltdyn.errors import ConvergenceError, InternalError, ModelError, is_internal
 from beltdyn.model import Drive
@@ -155,8 +154,6 @@ class Residuals:
         progress: Report | None,
     ) -> None:
         self._numbers, self._progress, self._count = numbers, progress, 0
-        if any(one.state == "rest" for one in study.measurements):
-            require_closed_at_rest(drive, "a calibration at rest")
         tables = [
             (one, read_measured(base / one.table, drive, at_rest=one.state == "rest")) for one in study.measurements
         ]

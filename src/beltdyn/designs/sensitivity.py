@@ -19,8 +19,8 @@ from pydantic import Field
 
 from beltdyn.arrays import FloatArray
 from beltdyn.designs.batch import OperatingPoint, named
-from beltdyn.designs.designs import CHANGE, Designs, Free, SmallChanges
-from beltdyn.designs.found_state import FoundState, Resting, Running, require_closed_at_rest
+from beltdyn.designs.designs import Designs, Free, SmallChanges
+from beltdyn.designs.found_state import FoundState, Resting, Running, bring_at_rest
 from beltdyn.designs.named_results import listed, names_in, names_of, need_bands, unit_of
 from beltdyn.errors import ModelError, cause_of
 from beltdyn.model import Drive, prepare
@@ -297,8 +297,6 @@ def sensitivity(
     """
     if about not in _USUAL:
         raise ModelError(f'about = {about!r} must be "{STEADY}" or "{REST}".')
-    if about == REST:
-        require_closed_at_rest(drive, "a sensitivity at rest")
     given = at_instant(drive, at)
     require_points(sobol)
     tolerances = {path: size for path, size in tolerances_of(drive).items() if _stands(given, path)}
@@ -311,7 +309,7 @@ def sensitivity(
         chosen_numbers(given, numbers, tolerances),
         names_in(names_of(drive, at_rest=about == REST), of or _usual(drive, about)),
     )
-    rest = bring_to_stand(prepare(given))
+    rest = bring_at_rest(prepare(given)) if about == REST else bring_to_stand(prepare(given))
     bands = need_bands(wanted)
     state = (
         Resting(rest)
@@ -386,7 +384,7 @@ def _warnings(state: FoundState, names: Sequence[str]) -> list[str]:
 
 def _derivatives(changes: SmallChanges, state: FoundState, number: Number, names: Sequence[str]) -> FloatArray:
     """Derivatives of results with respect to a number, by central differences of the states; one-sided at a bound."""
-    change = CHANGE * number.step / PART
+    change = state.change * number.step / PART
     drives, refused = dict[float, Drive](), list[ModelError]()
     for value in (number.value + change, number.value - change):
         try:

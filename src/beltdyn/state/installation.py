@@ -112,6 +112,27 @@ def rest_of(prepared: Prepared, progress: Report | None = None) -> Rest:
     return rest._replace(unstable=_unstable(rest))
 
 
+def rest_like(prepared: Prepared, like: Rest) -> Rest:
+    """Static equilibrium of a drive that differs a little from another one, with as many equal elements."""
+    belt = prepared.belt.replace(elements=like.prepared.belt.given_elements)
+    prepared = prepare(on_equal_elements(prepared.drive.replace(belt=belt)))
+    if has_teeth(like.system):
+        return _at_rest(prepared)
+    system = drive_system(prepared)
+    begin = laid(system, prepared.path, prepared.installation.tensioner_positions)
+    away = like.state.position - laid(like.system, like.prepared.path, _positions(like)).position
+    begin.position[:] += away
+    try:
+        return looked_at(prepared, system, find_equilibrium(system, begin).state)
+    except ConvergenceError:
+        return _at_rest(prepared)
+
+
+def _positions(rest: Rest) -> FloatArray:
+    """Positions of tensioners as they are estimated, m or rad."""
+    return np.asarray(rest.prepared.installation.tensioner_positions)
+
+
 def is_compiled(drive: Drive) -> bool:
     """Whether `bring_to_rest` needs no compilation."""
     prepared = prepare(on_equal_elements(drive))

@@ -1,6 +1,5 @@
 """Calibrations find the numbers with which measurements were made."""
 
-from importlib.resources import files
 from pathlib import Path
 from types import SimpleNamespace
 from typing import Any
@@ -13,7 +12,7 @@ from beltdyn.designs.calibrate import _warnings, calibrate, fit
 from beltdyn.designs.designs import Free
 from beltdyn.designs.found_state import Resting
 from beltdyn.errors import ModelError
-from beltdyn.model import CalibrationStudy, Drive, loads, prepare
+from beltdyn.model import CalibrationStudy, Drive, example, loads, prepare
 from beltdyn.results import Result, open_result, summarize
 from beltdyn.solvers.run_progress import Progress
 from beltdyn.state.equilibrium import equilibrium
@@ -222,10 +221,13 @@ def test_tension_and_length_at_rest_are_fitted(tmp_path: Path, drive: Drive) -> 
         calibrate(given, study=CalibrationStudy(number=[MODULUS], measurement=[{"table": table}]))
 
 
-def test_an_open_belt_is_not_calibrated_at_rest(tmp_path: Path) -> None:
-    text = files("beltdyn").joinpath("examples", "band_brake.toml").read_text(encoding="utf-8")
-    (tmp_path / "rest.csv").write_text("tension [N]\n100\n", encoding="utf-8")
-    width = {"path": "belt.width", "least": "10 mm", "largest": "100 mm"}
-    study = CalibrationStudy(number=[width], measurement=[{"table": str(tmp_path / "rest.csv"), "state": "rest"}])
-    with pytest.raises(ModelError, match="a calibration at rest needs a closed belt"):
-        calibrate(loads(text), study=study)
+def test_an_open_belt_is_calibrated_at_rest(tmp_path: Path) -> None:
+    """The weight of a band brake whose hub load was measured, as `equilibrium` finds it."""
+    drive = example("band_brake")
+    rest = equilibrium(drive.with_({"end[weight].mass": 12.0}))
+    load = float(np.linalg.norm(rest.dataset["hub_force"].values))
+    (tmp_path / "rest.csv").write_text(f"hub_load[drum] [N]\n{load!r}\n", encoding="utf-8")
+    mass = {"path": "end[weight].mass", "least": "5 kg", "largest": "20 kg"}
+    study = CalibrationStudy(number=[mass], measurement=[{"table": str(tmp_path / "rest.csv"), "state": "rest"}])
+    found = calibrate(drive, study=study)
+    assert float(found.dataset["fitted"][0]) == pytest.approx(12.0, rel=1e-6)

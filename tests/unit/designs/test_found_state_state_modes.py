@@ -7,10 +7,10 @@ import pytest
 
 from beltdyn.arrays import FloatArray
 from beltdyn.designs import found_state as state_modes
-from beltdyn.designs.found_state import FoundState, Resting, Running
+from beltdyn.designs.found_state import FoundState, Resting, Running, rest_near
 from beltdyn.designs.named_results import MODES
 from beltdyn.model import Drive, prepare
-from beltdyn.state.staying import bring_to_stand, stand_like
+from beltdyn.state.staying import bring_to_stand
 from beltdyn.state.steady import steady_on_mesh, steady_state
 from validation.published.cases import better, loaded_two_pulley
 
@@ -76,7 +76,7 @@ def test_derivatives_at_rest_over_wide_steps(drive: Drive, resting: Resting) -> 
     modulus = drive_value(drive, MODULUS)
 
     def anew(part: float) -> Resting:
-        return Resting(stand_like(prepare(drive.with_({MODULUS: modulus * (1.0 + part)})), resting.rest))
+        return Resting(rest_near(prepare(drive.with_({MODULUS: modulus * (1.0 + part)})), resting.rest))
 
     expected = (4.0 * slopes(anew, 1e-3) - slopes(anew, 2e-3)) / 3.0
     followed = slopes(lambda part: resting.neighbour(drive.with_({MODULUS: modulus * (1.0 + part)})), 1e-5)

@@ -12,9 +12,10 @@ from beltdyn.designs.designs import SmallChanges
 from beltdyn.designs.found_state import Running
 from beltdyn.designs.sensitivity import chosen_numbers, numbers_of, sensitivity
 from beltdyn.errors import ModelError
-from beltdyn.model import Drive, load, loads, prepare
+from beltdyn.model import Drive, example, load, loads, prepare
 from beltdyn.parts.change import value_at
 from beltdyn.results import Result, summarize
+from beltdyn.state.equilibrium import equilibrium
 from beltdyn.state.staying import bring_to_stand
 from beltdyn.state.steady import steady_state
 from beltdyn.transient.sweep import without_schedules
@@ -126,10 +127,21 @@ def test_spans_swing_with_the_root_of_the_tension(at_rest: Result) -> None:
         assert float(effect.sel(number="belt.installed_tension") / value) == pytest.approx(0.005, rel=0.1)
 
 
-def test_an_open_belt_at_rest_has_another_analysis() -> None:
-    text = files("beltdyn").joinpath("examples", "band_brake.toml").read_text(encoding="utf-8")
-    with pytest.raises(ModelError, match=r'a sensitivity at rest needs a closed belt.*analysis = "equilibrium"'):
-        sensitivity(loads(text), about="rest", of="tension")
+def test_an_open_belt_at_rest() -> None:
+    """The tension of a band brake is its weight, the hub load that of both spans."""
+    drive = example("band_brake")
+    found = sensitivity(drive, about="rest", of="all", numbers="end[weight].mass, belt.width")
+    assert derivative(found, "tension", "end[weight].mass") == pytest.approx(9.81, rel=1e-3)  # bending on the drum
+    assert derivative(found, "hub_load[drum]", "end[weight].mass") == pytest.approx(2.0 * 9.81, rel=1e-3)
+    hub_loads = [
+        float(np.linalg.norm(equilibrium(drive.with_({"belt.width": width})).dataset["hub_force"].values))
+        for width in (0.0396, 0.0404)
+    ]
+    expected = (hub_loads[1] - hub_loads[0]) / 0.0008  # weight and bending of the belt
+    assert derivative(found, "hub_load[drum]", "belt.width") == pytest.approx(expected, rel=1e-3)
+    assert not [name for name in found.dataset["result"].values if "frequency" in str(name)]
+    with pytest.raises(ModelError, match=r"mode_frequency\[1\] has no value in this state of the drive"):
+        sensitivity(drive, about="rest", of="mode_frequency[1]")
 
 
 def test_the_speed_of_a_driver_is_a_number(loaded: Drive) -> None:
