@@ -43,9 +43,10 @@ def test_signs_factors_comparisons_and_calls_are_changed(tmp_path: Path) -> None
         ("", "x = 1e-12\n", 0),
         ("", "y = x > 0.5\n", 2),
         ("", "y = x > 0.0\n", 3),
-        ("import beltdyn.kernel\n", "y = x > 0.0\n", 2),
+        ("from beltdyn.kernel import interpreted\n", "y = x > 0.0\n", 3),
+        ("@kernel\ndef law(x):\n    return x\n", "y = x > 0.0\n", 2),
     ],
-    ids=["assertion", "strict", "guard", "decimal", "setting", "continuous"],
+    ids=["assertion", "strict", "guard", "decimal", "setting", "no kernel", "continuous"],
 )
 def test_what_has_no_effect_is_left_alone(tmp_path: Path, kernels: str, text: str, number: int) -> None:
     """A call is dropped, a comparison turned around; its boundary stays where laws are continuous."""

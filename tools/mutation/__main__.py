@@ -4,8 +4,8 @@
 
 The tests run once to find which of them execute which line, and how long they take; those that fail or take too long
 are left out.  Each mutant then meets the tests of its line: those that killed another mutant of the file, then one test
-of each function, the quickest first.  A mutant of what runs at import meets the tests of its file.  It is killed if one
-of them fails or runs without end.
+of each function, the quickest first.  A mutant of what runs at import meets the tests of its file, then others.  It is
+killed if one of them fails or runs without end.
 
 Kernels run as plain Python in the trials of files that have kernels, so that a change needs no compilation; in those of
 all other files they are compiled.  In every file that is tried a function first raises an error: where no test notices
@@ -156,7 +156,10 @@ def _try_in_functions(items: list[pytest.Item], mutants: list[Mutant], asked: ar
 
 
 def _try_at_import(mutants: list[Mutant], asked: argparse.Namespace, kept: Path) -> None:
-    """Try the mutants of what runs at import, with the tests that execute something of their files."""
+    """Try the mutants of what runs at import, with the tests that execute something of their files, then with others.
+
+    What is only read, as the default of a key, leaves no trace.
+    """
     known = read_traces(kept)
     files: defaultdict[str, list[str]] = defaultdict(list)
     for test, trace in known.items():
@@ -164,7 +167,7 @@ def _try_at_import(mutants: list[Mutant], asked: argparse.Namespace, kept: Path)
             files[file].append(test)
     trials = _Trials(known, asked, lambda mutant, code, tests: partial(attempt_at_import, mutant, code, tests))
     for mutant, code in compiled([each for each in mutants if each.at_import]):
-        trials.start(mutant, code, files[mutant.file])
+        trials.start(mutant, code, files[mutant.file], known)
     trials.finish()
 
 
@@ -176,9 +179,9 @@ class _Trials:
         self.running: dict[int, tuple[Mutant, list[str]]] = {}
         self.kills: defaultdict[str, Counter[str]] = defaultdict(Counter)
 
-    def start(self, mutant: Mutant, code: CodeType, candidates: Iterable[str]) -> None:
-        """Begin with a mutant when there is a process left for it."""
-        tests, time = self._within_budget(candidates, self.kills[mutant.file])
+    def start(self, mutant: Mutant, code: CodeType, candidates: Iterable[str], others: Iterable[str] = ()) -> None:
+        """Begin with a mutant when there is a process left for it; other tests follow the candidates."""
+        tests, time = self._within_budget(candidates, others, self.kills[mutant.file])
         if not tests:
             mutant.outcome = "untested"
             print(mutant, flush=True)
@@ -208,16 +211,21 @@ class _Trials:
         else:
             print(mutant, flush=True)
 
-    def _within_budget(self, candidates: Iterable[str], kills: Counter[str]) -> tuple[list[str], float]:
+    def _within_budget(
+        self, candidates: Iterable[str], others: Iterable[str], kills: Counter[str]
+    ) -> tuple[list[str], float]:
         """The most promising tests that can be run in a time, and the time that they take."""
         places: defaultdict[str, Iterator[int]] = defaultdict(count)
+        first = set(candidates)
         turn = {  # of each function first the quickest case, then the second
             test: next(places[test.partition("[")[0]])
-            for test in sorted(candidates, key=lambda test: self.known[test].duration)
+            for test in sorted({*first, *others}, key=lambda test: self.known[test].duration)
         }
         chosen: list[str] = []
         time = 0.0
-        for test in sorted(turn, key=lambda test: (-kills[test], turn[test], self.known[test].duration)):
+        for test in sorted(
+            turn, key=lambda test: (-kills[test], test not in first, turn[test], self.known[test].duration)
+        ):
             if time + self.known[test].duration <= self.asked.budget and len(chosen) < MAX_TESTS:
                 chosen.append(test)
                 time += self.known[test].duration
@@ -281,7 +289,7 @@ def _parser() -> argparse.ArgumentParser:
     parser.add_argument("--sample", type=int, help="try that many mutants of each folder, taken at random")
     parser.add_argument("--seed", type=int, default=1, help="seed of the sample")
     parser.add_argument("--jobs", type=int, default=1, help="mutants at a time")
-    parser.add_argument("--cases", type=int, default=40, help="cases of each test function that are tried")
+    parser.add_argument("--cases", type=int, default=100, help="cases of each test function that are tried")
     parser.add_argument("--slowest", type=float, default=3.0, help="longest time of a test, s")
     parser.add_argument("--budget", type=float, default=10.0, help="longest time of all tests of a mutant, s")
     parser.add_argument("--out", type=Path, default=Path("mutation.json"), help="file of the answers")
