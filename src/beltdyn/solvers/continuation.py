@@ -21,7 +21,7 @@ from beltdyn.arrays import FloatArray
 _POLYNOMIAL = 3
 """Solutions through which a polynomial is laid, a parabola."""
 _SHORTEST = 1e-3
-"""Step, over the whole way, below which no solution lies ahead."""
+"""Step, over the whole way, below which no solution lies ahead, by default."""
 _ARC_STEPS = 80
 """Steps around a limit point, at most."""
 _ARC_ITERATIONS = 12
@@ -52,6 +52,7 @@ def follow(
     solve: Solve,
     *solutions: Solution,
     step: float = 1.0,
+    shortest: float = _SHORTEST,
     tangent: Callable[[float], FloatArray | None] | None = None,
 ) -> FloatArray | None:
     """Follow solutions from the place of the last one given, 0, to 1; None where the way ends before.
@@ -64,6 +65,8 @@ def follow(
         Solutions that are known, the last one at 0.
     step
         Length of the first step.
+    shortest
+        Length of a step below which no solution lies ahead.
     tangent
         Derivative of the unknowns by the parameter at the solution found last; without it a guess from fewer than three
         solutions is the last one.
@@ -81,7 +84,7 @@ def follow(
             reached, step, slope = ahead, 2.0 * step if grows else step, None
             continue
         step = 0.5 * (ahead - reached)
-        if step < _SHORTEST:
+        if step < shortest:
             return None
     return known[-1].unknowns
 

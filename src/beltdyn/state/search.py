@@ -37,7 +37,6 @@ from beltdyn.system.constant_drive import (
 )
 from beltdyn.system.meshing import fit_phases, has_teeth, led_by, mesh_speeds, on_lengths, phases
 from beltdyn.system.nips import nip_loads, pressed_on, with_own_rollers
-from beltdyn.system.observe import observe
 from beltdyn.system.ring_matrix import clear, substitute
 from beltdyn.system.state import State
 from beltdyn.system.steady_assembly import anchor_at
@@ -52,6 +51,9 @@ _SOFT = 0.05
 """Length over which slow changes of the stretch are smoothed at first on another mesh, over that of the drive."""
 _SMOOTHINGS = 10.0, 100.0
 """Of friction at first on another mesh, where the search fails without."""
+_SHORTEST = 0.01
+"""Step towards the setting on another mesh, over the whole way, below which smoother friction takes over.  In the
+accessory drive, whose idlers of small wrap turn the sense of hysteresis, 0.001 takes three times as many iterations."""
 _FIRST_SETTINGS = (0.0, 1.0), (0.05, 1.0), (0.0, 30.0)
 """Part of the loads with which a belt begins to run, and factor that smooths friction up to the full loads.  Without
 loads shafts behind open clutches turn along, which slip under the least of them; a web whose rollers begin to slide one
@@ -216,7 +218,7 @@ class SteadySearch:
 
     def _largest_slip(self) -> float:
         """Largest slip of a pulley beyond elastic creep, against the first of the solutions that were passed."""
-        return float(np.max(gross_slips(self.prepared, self.constant, [*self._passed[:1], self._here()])))
+        return float(np.max(gross_slips([*self._passed[:1], self._here()])))
 
     def _keep_content(self) -> None:
         """Take the content of a web line that was found for the length of its belt."""
@@ -275,23 +277,17 @@ class SteadySearch:
     def _jump(self) -> str:
         """Say which pulley is the first to lose a belt with teeth: that with the largest pull over an arc."""
         here = self._here()
-        seen = observe(self.constant, np.zeros(1), here.state.position[None], here.state.velocity[None])
-        pulls = np.abs(seen.pulley_torque[0]) / self.prepared.radii
-        worst = int(np.argmax(np.where(self.prepared.toothed, pulls, 0.0)))
-        torque = abs(float(seen.pulley_torque[0, worst]))
+        worst = int(np.argmax(np.where(self.prepared.toothed, np.abs(here.torques) / self.prepared.radii, 0.0)))
+        takes = f"`{self.prepared.pulleys[worst].name}` takes {abs(float(here.torques[worst])):.4g} N m"
         ends = f"the search ends at {here.setting.load:.1%} of the loads, where"
-        if not np.isfinite(seen.span_tension[0]).all():  # a belt off its pulleys has no spans
-            return f"{ends} `{self.prepared.pulleys[worst].name}` takes {torque:.4g} N m. The belt jumps beyond that."
-        tensions = Tensions.of(self.prepared, self.constant, [here])
-        reason = slack(self.prepared, tensions) or f"`{self.prepared.pulleys[worst].name}` takes {torque:.4g} N m"
-        return (
-            f"{ends} {reason} and spans have {seen.span_tension.min():.4g} to {seen.span_tension.max():.4g} N. The "
-            "belt jumps beyond that. Raise its tension, reduce the loads, or use a wider belt."
-        )
+        remedy = "The belt jumps beyond that. Raise its tension, reduce the loads, or use a wider belt."
+        if not np.isfinite(here.tensions).all():  # a belt off its pulleys has no spans
+            return f"{ends} {takes}. {remedy}"
+        reason = slack(self.prepared, Tensions.of(self.prepared, [here])) or takes
+        return f"{ends} {reason} and spans have {here.tensions.min():.4g} to {here.tensions.max():.4g} N. {remedy}"
 
     def _here(self) -> Passed:
-        position, velocity = self.state.position.copy(), self.state.velocity.copy()
-        return Passed(self.setting, State(position, velocity, np.zeros_like(position)), self.belt_parameter)
+        return Passed.at(self.setting, self.prepared, self.at(self.setting), self.state)
 
     def move_to(self, lengths: FloatArray) -> None:
         """Go on to another mesh of the same drive, with elements of lengths (m).
@@ -305,7 +301,7 @@ class SteadySearch:
         target = self.setting
         soft = target._replace(stretch_length=_SOFT if other.hysteresis.size else 1.0)
         softer = soft._replace(bending_loss=0.0), *(soft._replace(bending_loss=0.0, smoothing=s) for s in _SMOOTHINGS)
-        if not any(self._try(first) and (first == target or self._reach(target)) for first in (soft, *softer)):
+        if not any(self._try(first) and self._reaches(target) for first in (soft, *softer)):
             raise ConvergenceError(
                 f"steady running was found with fewer elements, but not with the {other.nodes} required by "
                 "force_tolerance. Increase force_tolerance."
@@ -361,7 +357,7 @@ class SteadySearch:
             nonlocal reached
             own[:] = given + part * push
             found = self.solve(self.setting, guess, part)
-            if found is None or np.max(gross_slips(self.prepared, self.constant, [first, self._here()])) > GROSS:
+            if found is None or np.max(gross_slips([first, self._here()])) > GROSS:
                 return None
             reached = Solution(part, found)
             return found
@@ -420,17 +416,28 @@ class SteadySearch:
             raise self._refusal()
 
     def _reach(self, target: Setting) -> bool:
-        """Go on to another setting, around limit points; False if the way ends before."""
+        """Go on to another setting, around limit points; False if the way ends before.
+
+        The tangent serves where loads grow; what smooths changes by factors, and teeth meet their flanks.
+        """
         if self.setting == target:
             return True
         way = Way(self, self.setting, target)
         if target.load > self.setting.load:
             self._loading = way
-        if follow(way.solve, *way.solutions, tangent=way.tangent) is not None:
+        tangent = way.tangent if target.load != self.setting.load and not has_teeth(self.constant) else None
+        if follow(way.solve, *way.solutions, tangent=tangent) is not None:
             return True
         if has_teeth(self.constant) or self.setting.smoothing != 1.0 or target.smoothing != 1.0:
             return False
         return self._turn(way)
+
+    def _reaches(self, target: Setting) -> bool:
+        """Whether a setting is found on the way that smooths least; its curve is not followed where it turns."""
+        way = Way(self, self.setting, target)
+        return self.setting == target or (
+            follow(way.solve, *way.solutions, shortest=_SHORTEST, tangent=way.tangent) is not None
+        )
 
     def _turn(self, way: Way) -> bool:
         """Follow the curve around limit points, from the last solution without gross slip; False if it ends before 1.
@@ -439,7 +446,7 @@ class SteadySearch:
         """
         begin, here = self.setting, self.unknowns()
         passed = [self._seen(way, solution) for solution in way.solutions]
-        sliding = np.max(gross_slips(self.prepared, self.constant, passed), axis=1) > GROSS
+        sliding = np.max(gross_slips(passed), axis=1) > GROSS
         count = int(np.argmax(sliding)) if sliding.any() else len(passed)
         for start, is_lost in ((count, self._is_lost), (len(passed), lambda: False)):
             self._seen(way, way.solutions[start - 1])
@@ -510,18 +517,25 @@ class SteadySearch:
         """
         before, system = self.unknowns(), self.at(setting)
         allowed = (self.tolerance if tolerance is None else tolerance) * float(np.min(self.prepared.radii))
-        for balanced in (False, True) if self._has_clutches else (False,):
-            if balanced:
-                guess_hubs(system, self.state.velocity)
-            speed = self.belt_parameter
-            if self._converges(system, allowed, factorised and not balanced) and not (
-                balanced and abs(self.belt_parameter - speed) > _SLIDES * abs(speed)
-            ):
-                fitted(self.constant, self.state.position)
-                self.setting, self._moments = setting, self.work.equations.forces.moment.copy()
-                return True
+        found = self._converges(system, allowed, factorised)
+        if not found and self._has_clutches:
             self.place(before)
+            speed = self.belt_parameter
+            found = self._lets_slip(system) and self._converges(system, allowed, False)
+            found = found and abs(self.belt_parameter - speed) <= _SLIDES * abs(speed)
+        if found:
+            fitted(self.constant, self.state.position)
+            self.setting, self._moments = setting, self.work.equations.forces.moment.copy()
+            return True
+        self.place(before)
         return False
+
+    def _lets_slip(self, system: System) -> bool:
+        """Let hub bodies turn as their loads say; whether one begins to slip, or ends."""
+        velocity = self.state.velocity[self.system.first_body :]
+        before = velocity.copy()
+        guess_hubs(system, self.state.velocity)
+        return bool(np.any(np.abs(velocity - before) > _SLIDES * np.abs(before).max()))
 
     def _converges(self, system: System, allowed: float, factorised: bool) -> bool:
         """Whether Newton's method leads from the state to steady running, up to an error of nodes, m."""

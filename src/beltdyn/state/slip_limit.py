@@ -15,6 +15,7 @@ from beltdyn.parts.quantity import RPM
 from beltdyn.system.arrays import System
 from beltdyn.system.constant_drive import own_torque
 from beltdyn.system.nips import seen_nips
+from beltdyn.system.observations import Observations
 from beltdyn.system.observe import observe
 from beltdyn.system.state import State, curve_lengths
 
@@ -58,6 +59,24 @@ class Passed(NamedTuple):
     state: State
     belt_parameter: float
     """Length of unstretched belt that passes in a second, m/s."""
+    tensions: FloatArray
+    """Of the spans, N."""
+    torques: FloatArray
+    """Of the belt on each pulley, N m."""
+    used: FloatArray
+    """Part of the friction of each pulley that is used."""
+    slips: FloatArray
+    """Of each pulley, beyond the elastic creep of the belt."""
+
+    @classmethod
+    def at(cls, setting: Setting, prepared: Prepared, system: System, state: State) -> "Passed":
+        """What is observed at a state, to which the speed and the places of the frame of the system belong."""
+        place = State(state.position.copy(), state.velocity.copy(), np.zeros_like(state.position))
+        belt = float(system.frame.speed[0])
+        seen = observe(system, np.zeros(1), place.position[None], place.velocity[None])
+        tensions = np.asarray(seen.span_tension[0])
+        slips = _slips(prepared, system, place, belt, tensions)
+        return cls(setting, place, belt, tensions, np.asarray(seen.pulley_torque[0]), _used(system, place, seen), slips)
 
 
 class Refusal(NamedTuple):
@@ -76,23 +95,23 @@ def slip_limit(prepared: Prepared, system: System, asked: System, passed: Sequen
             "time with `beltdyn simulate`.",
             False,
         )
-    slips = gross_slips(prepared, system, passed)
+    slips = gross_slips(passed)
     sliding = np.flatnonzero(np.max(slips, axis=1) > GROSS)
     at = int(sliding[0]) if sliding.size else int(np.argmax([one.setting.load for one in passed]))
     here = passed[at]
-    torques, used = _transmitted(system, here)
+    torques, used = here.torques, here.used.copy()
     used[[_idles(asked, here, p) for p in range(used.size)]] = 0.0
     used[prepared.drive.guides] = 0.0
     taken = torques * here.state.velocity[system.first_body :][: used.size]
     worst = int(np.argmax(slips[at] if sliding.size else np.where(used > _ALIKE * used.max(), taken, -np.inf)))
     if not sliding.size and used[worst] < _FULL:
-        return _without_slip(prepared, system, passed, at, used)
+        return _without_slip(prepared, passed, at, used)
     torque = abs(float(torques[worst]))
     if at > 0:  # where its slip becomes gross
-        before, slip = _transmitted(system, passed[at - 1])[0], slips[at - 1 : at + 1, worst]
+        before, slip = float(passed[at - 1].torques[worst]), slips[at - 1 : at + 1, worst]
         part = (min(GROSS, slip[1]) - slip[0]) / (slip[1] - slip[0]) if slip[1] > slip[0] else 1.0
-        torque = abs(float(before[worst] + part * (torques[worst] - before[worst])))
-    tensions = Tensions.of(prepared, system, passed[: at + 1])
+        torque = abs(before + part * (float(torques[worst]) - before))
+    tensions = Tensions.of(prepared, passed[: at + 1])
     reason = _slipping(prepared, asked, passed[at], worst, torque, slips[at], tensions)
     return Refusal(reason, not prepared.drive.is_web)
 
@@ -109,10 +128,10 @@ class Tensions(NamedTuple):
     """Whether the first solution has no loads, and the tension without loads is that of a belt of constant length."""
 
     @classmethod
-    def of(cls, prepared: Prepared, system: System, passed: Sequence[Passed]) -> "Tensions":
+    def of(cls, prepared: Prepared, passed: Sequence[Passed]) -> "Tensions":
         """From solutions."""
         inertia = prepared.belt.mass_per_length * passed[-1].belt_parameter ** 2
-        first, last = (_span_tensions(system, one) - inertia for one in (passed[0], passed[-1]))
+        first, last = (solution.tensions - inertia for solution in (passed[0], passed[-1]))
         fixed = not (prepared.moving_tensioners or prepared.drive.is_web or prepared.drive.carries)
         return cls(inertia, first, last, fixed and passed[0].setting.load == 0.0)
 
@@ -129,10 +148,6 @@ class Tensions(NamedTuple):
         tension = float(np.nanmean(self.first))
         least = f"{factor * tension + self.inertia:.4g} N"
         return f"Raise the tension without loads from {tension + self.inertia:.4g} N to at least {least}"
-
-
-def _span_tensions(system: System, one: Passed) -> FloatArray:
-    return np.asarray(observe(system, np.zeros(1), one.state.position[None], one.state.velocity[None]).span_tension[0])
 
 
 def slack(prepared: Prepared, tensions: Tensions) -> str | None:
@@ -171,7 +186,7 @@ def _slipping(
     return f"{slips_on}. {remedy}, the friction or the wrap angle, or reduce the load."
 
 
-def _without_slip(prepared: Prepared, system: System, passed: Sequence[Passed], at: int, used: FloatArray) -> Refusal:
+def _without_slip(prepared: Prepared, passed: Sequence[Passed], at: int, used: FloatArray) -> Refusal:
     """Say what ends the increase of the loads where no pulley slips: a tensioner without balance, or the search."""
     here, tensioners = passed[at], prepared.moving_tensioners
     if tensioners and at < len(passed) - 1:
@@ -193,33 +208,31 @@ def _without_slip(prepared: Prepared, system: System, passed: Sequence[Passed], 
     )
 
 
-def gross_slips(prepared: Prepared, system: System, passed: Sequence[Passed]) -> FloatArray:
+def gross_slips(passed: Sequence[Passed]) -> FloatArray:
     """Slip of each pulley beyond the elastic creep of the belt, shape (k, P); zero where it slips in the first one.
 
     An idler that slips at the least loads already limits nothing.
     """
-    slips = np.array([_slips(prepared, system, one) for one in passed])
+    slips = np.array([solution.slips for solution in passed])
     slips[:, slips[0] > GROSS] = 0.0
     return slips
 
 
-def _slips(prepared: Prepared, system: System, one: Passed) -> FloatArray:
+def _slips(prepared: Prepared, system: System, state: State, belt_parameter: float, tensions: FloatArray) -> FloatArray:
     """How far the speed of each rim lies beyond those of the belt in both spans beside it, over the larger of them.
 
     Between them lies the rim of a pulley on which the belt creeps.
     """
-    rims = np.abs(one.state.velocity[system.first_body :][: system.pulleys.size] * prepared.rolling_radii)
-    seen = observe(system, np.zeros(1), one.state.position[None], one.state.velocity[None])
-    strain = np.nan_to_num(seen.span_tension[0]) / system.element.section.stretch.stiffness
-    belt, path = abs(one.belt_parameter) * (1.0 + strain), prepared.path
+    rims = np.abs(state.velocity[system.first_body :][: system.pulleys.size] * prepared.rolling_radii)
+    strain = np.nan_to_num(tensions) / system.element.section.stretch.stiffness
+    belt, path = abs(belt_parameter) * (1.0 + strain), prepared.path
     spans = np.stack([belt[path.reaching], belt[path.leaving]])
     beyond = np.maximum(np.min(spans, axis=0) - rims, rims - np.max(spans, axis=0))
     return np.asarray(np.maximum(beyond, 0.0) / np.maximum(rims, np.max(spans, axis=0)))
 
 
-def _transmitted(system: System, one: Passed) -> tuple[FloatArray, FloatArray]:
-    """Torque of the belt on each pulley, N m, and the part of its friction that is used."""
-    seen = observe(system, np.zeros(1), one.state.position[None], one.state.velocity[None])
+def _used(system: System, state: State, seen: Observations) -> FloatArray:
+    """Part of the friction of each pulley that is used."""
     touched, normal, friction = (given[0] for given in (seen.contact_pulley, seen.normal_force, seen.friction_force))
     weights = np.outer(curve_lengths(system), system.contact.weights).ravel()
     used = np.zeros(system.pulleys.size)
@@ -227,13 +240,13 @@ def _transmitted(system: System, one: Passed) -> tuple[FloatArray, FloatArray]:
         here = touched == p
         limit = coefficient * float(np.sum((weights * normal)[here]))
         used[p] = abs(float(np.sum((weights * friction)[here]))) / limit if limit > 0.0 else 0.0
-    nips = seen_nips(system, one.state.position[None], one.state.velocity[None])
+    nips = seen_nips(system, state.position[None], state.velocity[None])
     for row, p in enumerate(np.flatnonzero(system.pulleys.beside).tolist() if nips else ()):
         assert nips is not None
         pressed, along = (float(weights @ force[0, row]) for force in (nips.nip_normal_force, nips.nip_friction_force))
         limit = float(system.pulleys.friction[p]) * pressed
         used[p] = abs(along) / limit if limit > 0.0 else 0.0
-    return np.asarray(seen.pulley_torque[0]), used
+    return used
 
 
 def _idles(asked: System, here: Passed, pulley: int) -> bool:
