@@ -13,7 +13,7 @@ import beltdyn as bd
 from beltdyn.arrays import FloatArray
 from beltdyn.model import Prepared, prepare
 from beltdyn.results import Run, derived, tooth_loads
-from beltdyn.show.report.report import verdict
+from beltdyn.show.verdict import verdict
 from beltdyn.solvers import generalized_alpha
 from beltdyn.state.static import find_equilibrium
 from beltdyn.system.build import drive_system

@@ -36,6 +36,7 @@ from beltdyn.model.belt_form import (
     section_with,
     to_material,
     without_section,
+    written_as_sold,
 )
 from beltdyn.model.catalogue import Entry, read_catalogue
 from beltdyn.model.rating import CordFatigue, RatedBelt, RibFatigue, StretchCurve
@@ -271,7 +272,8 @@ class Belt(Part):
     @model_validator(mode="wrap")
     @classmethod
     def _remember_how_it_is_sold(cls, data: Any, make: ModelWrapValidatorHandler[Self], info: ValidationInfo) -> Self:
-        belt = make(data)
+        values = {key: data[key] for key in data if key != "sold"} if isinstance(data, Mapping) else data
+        belt = make(values)
         if belt is data:
             return belt
         belt._section = as_sold(data, belt, (info.context or {}).get("base"))
@@ -286,7 +288,8 @@ class Belt(Part):
     @model_serializer(mode="wrap")
     def _as_given(self, dump: SerializerFunctionWrapHandler) -> dict[str, Any]:
         """A nominal length is written as such, so that what it means follows the belt that is read."""
-        return self._with_its_length(dump(self))
+        written = self._with_its_length(dump(self))
+        return written if self._section is None else written | {"sold": written_as_sold(self._section)}
 
     def _with_its_length(self, data: dict[str, Any]) -> dict[str, Any]:
         if self._as_long_as_its_teeth:

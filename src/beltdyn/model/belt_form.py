@@ -82,6 +82,20 @@ class Sold(Part):
     catalogue: str | None = Field(None, description="the path of your own catalogue, a TOML file, as text")
 
 
+class SoldAs(Sold):
+    """The profile and size of a belt whose values stand beside it, as result files have them."""
+
+    given: tuple[str, ...] = Field((), description="the keys of the section that do not come from the profile")
+
+
+class Origin(Part):
+    """Where the section of a belt comes from."""
+
+    sold: SoldAs | None = Field(
+        None, description="the profile and size of a belt whose section is given by its values, for its rating"
+    )
+
+
 class Nominal(Part):
     """The length of a belt as sold."""
 
@@ -95,7 +109,12 @@ class Nominal(Part):
 OWN = [key for key in Stiffnesses.model_fields if key not in ("width", "thickness")]
 
 FORMS = MappingProxyType(
-    {**Sold.model_fields, **{key: Stiffnesses.model_fields[key] for key in OWN}, **Nominal.model_fields}
+    {
+        **Sold.model_fields,
+        **{key: Stiffnesses.model_fields[key] for key in OWN},
+        **Nominal.model_fields,
+        **Origin.model_fields,
+    }
 )
 """Keys of the other forms."""
 
@@ -270,8 +289,10 @@ class _Width(Part):
 def describe_forms(schema: dict[str, Any]) -> None:
     """Add the keys of the other forms, which are converted to the material on reading, to the JSON schema."""
     forms = (Sold.model_json_schema(), Stiffnesses.model_json_schema(), Nominal.model_json_schema())
+    origin = SoldAs.model_json_schema() | {"description": Origin.model_fields["sold"].description}
     for form in forms:
         schema["properties"] = form["properties"] | schema["properties"]
+    schema["properties"]["sold"] = origin
     required = schema.pop("required")
     material = [key for key in required if key in (*MATERIAL, "width", "thickness", "poissons_ratio")]
     schema["required"] = [key for key in required if key not in material]
@@ -289,13 +310,35 @@ _SECTION = (*MATERIAL, *OWN, "width", "thickness", "contact_stiffness", *TAKEN_O
 
 def as_sold(data: Any, belt: Any, base: Path | None) -> dict[str, Any] | None:
     """The section of a belt as given, instead of its material."""
-    if not isinstance(data, Mapping) or data.get("profile") is None:
+    if not isinstance(data, Mapping):
+        return None
+    if data.get("sold") is not None:
+        if data.get("profile") is not None:
+            raise ValueError("profile and sold exclude each other: sold stands beside values. Keep one of them")
+        return _section_of(Origin.model_validate({"sold": data["sold"]}).sold, belt)
+    if data.get("profile") is None:
         return None
     given = {key: value for key, value in data.items() if value is not None}
     sold = Sold.model_validate({key: given[key] for key in Sold.model_fields if key in given}).arguments
     if sold.get("catalogue") is not None:
         sold["catalogue"] = str(((base or Path()) / sold["catalogue"]).resolve())
     return sold | {key: getattr(belt, key) for key in (*_SECTION, *stretch_keys()) if key in given}
+
+
+def _section_of(sold: SoldAs | None, belt: Any) -> dict[str, Any]:
+    """The section of a belt with values, and the profile from which they came."""
+    assert sold is not None
+    section = sold.arguments
+    other = sorted(set(section.pop("given", ())) - {*_SECTION, *stretch_keys()})
+    if other:
+        raise ValueError(f'sold.given has "{other[0]}", which is no key of a section. Omit it')
+    return section | {key: getattr(belt, key) for key in sold.given}
+
+
+def written_as_sold(section: Mapping[str, Any]) -> dict[str, Any]:
+    """The profile and size of a belt, and the keys that do not come from it, to be written beside all values."""
+    given = [key for key in section if key not in Sold.model_fields]
+    return {key: section[key] for key in section if key not in given} | ({"given": given} if given else {})
 
 
 def changes_as_sold(section: Mapping[str, Any], changes: Mapping[str, Any]) -> bool:

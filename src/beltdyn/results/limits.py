@@ -76,6 +76,28 @@ def key_numbers(result: Result) -> tuple[KeyNumber, ...]:
     return tuple(KeyNumber(*one, _limit(limits, *one)) for one in found(result)) if found else ()
 
 
+_JUDGED_BY = {
+    "largest_utilization": "`beltdyn sheet`, of a belt whose profile has a rating",
+    "least_cord_life": "`beltdyn life`, of a belt with cord_fatigue",
+    "least_rib_life": "`beltdyn life`, of a belt with rib_fatigue",
+    "largest_tooth_load": "`beltdyn sheet`, of a toothed belt",
+    "least_jump_margin": "`beltdyn sheet`, of a toothed belt",
+    "least_tension": "`beltdyn sheet`",
+    "largest_tension": "`beltdyn sheet`",
+    "largest_hub_load": "`beltdyn sheet`",
+    "largest_slip": "`beltdyn sheet`, of a loaded drive",
+    "least_slip_safety": "`beltdyn sheet`, of a loaded drive",
+}
+"""Key of a limit -> the command that always judges it."""
+
+
+def unjudged(result: Result) -> dict[str, str]:
+    """Limits of the drive file that a result does not judge: key -> what does."""
+    limits = result.drive.limits
+    judged = {number.key for number in key_numbers(result) if number.passes is not None}
+    return {key: what for key, what in _JUDGED_BY.items() if getattr(limits, key) is not None and key not in judged}
+
+
 _UNBOUNDED = ("largest_utilization",)
 """Keys of numbers that are infinite where a limit is exceeded: outside the rating."""
 Found = tuple[str, float, str, str]

@@ -21,6 +21,7 @@ from beltdyn.results.run import Run
 from beltdyn.results.schema import VARIOUS, attribute, in_words, runs_steadily, shown_unit
 from beltdyn.results.summary import FAILURE, Compared, Summary, steady_comparison, summarize
 from beltdyn.results.tooth_loads import extreme_loads
+from beltdyn.show.verdict import limit_rows
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -446,7 +447,20 @@ OF_KINDS = {"sheet": "beltdyn.show.drive_sheet:drive_sheet"}
 
 
 def sheet(result: Result) -> Sheet:
-    """Give the sheet of a result: the summary of a run, or the values and tables of another analysis."""
+    """Give the sheet of a result: the summary of a run, or values and tables of another analysis, and its limits."""
+    of_kind = sheet_without_limits(result)
+    limits = sheet_of("", [partial(_limits, result)], result.source)
+    return of_kind._replace(parts=(*of_kind.parts, *limits.parts), errors=(*of_kind.errors, *limits.errors))
+
+
+def _limits(result: Result) -> Pieces:
+    """The table of the limits of the drive file, if it has any."""
+    rows = limit_rows(result)
+    return (Table("Limits", ("", "value", "at", "limit", ""), tuple(rows)),) if rows else ()
+
+
+def sheet_without_limits(result: Result) -> Sheet:
+    """Give the sheet of a result without the table of its limits."""
     if isinstance(result, Run):
         return run_sheet(result)
     title = str(result.dataset.attrs["title"])

@@ -4,6 +4,7 @@ from typing import Any
 
 import pytest
 
+from beltdyn.errors import ModelError
 from beltdyn.model import Belt, Drive, dumps, install, json_schema, load, loads, read_catalogue
 
 FORM = {"length": 1.0, "width": 0.02, "thickness": "5 mm"}
@@ -162,6 +163,22 @@ def sold(drive_text: str) -> str:
     """The paper's drive with a belt as sold."""
     start, end = drive_text.index("width"), drive_text.index("[[pulley]]")
     return f'{drive_text[:start]}profile = "PK"\nribs = 6\n\n{drive_text[end:]}'
+
+
+def test_a_belt_by_values_remembers_what_was_sold() -> None:
+    """With what the user gave in place of the profile, for changes of its size."""
+    belt = make(length=1.0, profile="PK", ribs=6, friction=0.4)
+    written = belt.model_dump(mode="json", exclude_none=True)
+    assert written["sold"] == {"profile": "PK", "ribs": 6, "given": ["friction"]}
+    again = Belt(**written)
+    assert again == belt
+    assert again.entry == read_catalogue()["PK"]
+    assert (again.replace(ribs=3).axial_stiffness, again.replace(ribs=3).friction) == (0.5 * belt.axial_stiffness, 0.4)
+    both: dict[str, Any] = {"length": 1.0, "profile": "PK", "ribs": 6, "sold": {"profile": "PK"}}
+    with pytest.raises(ModelError, match="profile and sold exclude each other"):
+        Belt(**both)
+    with pytest.raises(ModelError, match=r'"length", which is no key of a section'):
+        Belt(**(written | {"sold": {"profile": "PK", "ribs": 6, "given": ["length"]}}))
 
 
 def test_the_text_of_a_drive_stays(sold: str) -> None:

@@ -7,7 +7,7 @@ from functools import partial
 from html import escape
 from importlib.resources import files
 from pathlib import Path
-from typing import Any, NamedTuple
+from typing import Any
 
 import numpy as np
 from jinja2 import ChoiceLoader, Environment, FunctionLoader, PackageLoader, StrictUndefined
@@ -15,11 +15,10 @@ from matplotlib.colors import to_hex
 
 from beltdyn.errors import ModelError, Parts
 from beltdyn.model.alignment import is_given
-from beltdyn.parts.messages import listing, show
+from beltdyn.parts.messages import show
 from beltdyn.parts.text_file import as_text
-from beltdyn.results import KeyNumber, Result, Run, StaticResult, key_numbers
+from beltdyn.results import Result, Run, StaticResult
 from beltdyn.results.atomic import MARK, atomic_path, is_marked, require_replaceable
-from beltdyn.results.incidents import Incident, incidents
 from beltdyn.results.provenance import mesh_facts
 from beltdyn.results.schema import runs_steadily
 from beltdyn.show.notebook import picture
@@ -28,7 +27,8 @@ from beltdyn.show.plot.style import tension_colors
 from beltdyn.show.report.chart import Shown, charted
 from beltdyn.show.report.replay import motion, swinging
 from beltdyn.show.rest_sheet import Tensioning, alignment_table, tensioning
-from beltdyn.show.sheet import Table, sheet
+from beltdyn.show.sheet import Table, sheet_without_limits
+from beltdyn.show.verdict import compared, in_unit, limit_in_words, unjudged_in_words, verdict
 
 # The charting library of the page (Bokeh, BSD license), taken from its installation, and what it is given
 
@@ -109,92 +109,6 @@ def differing_keys(results: Sequence[Result]) -> list[tuple[str, list[str]]]:
 
 def _hash(content: bytes) -> str:
     return hashlib.sha256(content).hexdigest()
-
-
-# Key numbers of results against their limits, and the verdict
-
-_WHOLE, _HUGE = 1e4, 1e9
-"""Between these a number is written without an exponent."""
-
-
-class SideBySide(NamedTuple):
-    """A key number of all results."""
-
-    name: str
-    """Its name."""
-    key: str
-    """Key of its limit in the drive file."""
-    numbers: list[KeyNumber | None]
-    """One for each result; None where a result does not know it."""
-
-    def difference(self, number: int) -> str:
-        """By how much a result differs from the first, in words; nothing where that is not known."""
-        first, other = self.numbers[0], self.numbers[number]
-        if number == 0 or first is None or other is None or not np.isfinite([first.value, other.value]).all():
-            return ""
-        if first.value == 0.0:
-            return (
-                ""
-                if other.value == 0.0
-                else f"{in_unit(other.value - first.value, first.unit, '+')} relative to the first"
-            )
-        return f"{other.value / first.value - 1.0:+z.1%} relative to the first"
-
-
-def compared(results: Sequence[Result]) -> list[SideBySide]:
-    """Set the key numbers of results side by side."""
-    known = [{one.key: one for one in key_numbers(result)} for result in results]
-    names = {key: one.name for numbers in known for key, one in numbers.items()}
-    return [SideBySide(name, key, [numbers.get(key) for numbers in known]) for key, name in names.items()]
-
-
-def verdict(results: Sequence[Result]) -> tuple[str, str]:
-    """Compare results with their limits."""
-    judged = [one.passes for result in results for one in key_numbers(result) if one.passes is not None]
-    kept = sum(judged)
-    happened = [one for result in results for one in _incidents(result)]
-    said = listing(list(map(str, happened))) if happened else ""
-    if not judged:
-        return "open", f"No limits are given{said and f'; {said}'}"
-    if kept < len(judged):
-        broken = listing([_broken(one) for result in results for one in key_numbers(result) if one.passes is False])
-        return "fail", f"{kept} of {len(judged)} limits are met: {broken}{said and f'; {said}'}"
-    words = f"All {kept} limits are met" if kept > 1 else "The limit is met"
-    if not happened:
-        return "pass", words
-    return ("fail" if any(one.severe for one in happened) else "open"), f"{words}, but {said}"
-
-
-def _broken(number: KeyNumber) -> str:
-    """A key number that is beyond its limit."""
-    assert number.limit is not None
-    return f"{number.name} {in_unit(number.value, number.unit)} (limit {in_unit(number.limit, number.unit)})"
-
-
-def _incidents(result: Result) -> tuple[Incident, ...]:
-    """Events of a run; empty for other results."""
-    if not isinstance(result, Run) or result.outputs == 0:
-        return ()
-    with result.recorded() as recorded:
-        return incidents(recorded, result.prepared)
-
-
-def limit_in_words(number: KeyNumber | None) -> str:
-    """Write the limit of a key number; a dash where there is none."""
-    if number is None or number.limit is None:
-        return "–"
-    return f"at {'most' if number.at_most else 'least'} {in_unit(number.limit, number.unit)}"
-
-
-def in_unit(value: float, unit: str, sign: str = "") -> str:
-    """Format a key number with four digits and its unit."""
-    if np.isnan(value):
-        return "–"
-    if unit == "%":
-        return f"{100.0 * value:{sign}.3g} %"
-    rounded = float(f"{value:.4g}")
-    number = f"{rounded:{sign}.0f}" if _WHOLE <= abs(rounded) < _HUGE else f"{value:{sign}.4g}"
-    return f"{number} {unit}".removesuffix(" 1")
 
 
 _SHADES = 48
@@ -301,6 +215,7 @@ def _page(results: Sequence[Result], parts: Parts) -> str:
             lead=done(lambda: "" if len(results) > 1 else headlines(results).removeprefix(f"{names[0]}: "), ""),
             parts=pages,
             numbers=done(partial(compared, results), []),
+            unjudged=done(partial(unjudged_in_words, results), []),
             differences=done(partial(differing_keys, results), []),
             names=names,
             figures=drawn,
@@ -327,7 +242,7 @@ def _moving(result: Result, results: int) -> dict[str, Any]:
 def _part(name: str, number: int, result: Result, moving: Mapping[str, Any], parts: Parts) -> dict[str, Any]:
     """What the page shows of one result."""
     done: Callable[..., Any] = partial(parts.done, repeat=f"bd.write_report({result.source}, 'report.html')")
-    shown = sheet(result)
+    shown = sheet_without_limits(result)
     for error in shown.errors:
         parts.fail(error)
     tables = [part for part in shown.parts if isinstance(part, Table)]

@@ -5,9 +5,12 @@ from collections.abc import Callable
 import numpy as np
 import pytest
 
+from beltdyn import equilibrium
 from beltdyn.model import Drive
+from beltdyn.model.drive import drive_of_text
 from beltdyn.results import KeyNumber, Run
-from beltdyn.show.report.report import SideBySide, in_unit, limit_in_words, verdict
+from beltdyn.show.sheet import as_text, sheet
+from beltdyn.show.verdict import SideBySide, in_unit, limit_in_words, unjudged_in_words, verdict
 
 
 def number(value: float, limit: float | None = None) -> KeyNumber:
@@ -27,6 +30,38 @@ def number(value: float, limit: float | None = None) -> KeyNumber:
 )
 def test_the_verdict(run: Run, limits: dict[str, float], said: tuple[str, str]) -> None:
     assert verdict([Run(run.dataset, run.drive.replace(limits=limits))]) == said
+
+
+def test_limits_that_a_result_does_not_judge_are_said(run: Run, drive: Drive) -> None:
+    """Of each kind of result: judged, or not judged with the command that does; several results judge together."""
+    limits = {"largest_hub_load": 1e4, "least_cord_life": "100 h", "largest_utilization": 0.5}
+    limited = Run(run.dataset, run.drive.replace(limits=limits))
+    kind, said = verdict([limited])
+    assert kind == "open"
+    assert said == (
+        "The limit is met, but largest utilization is not judged here and least cord life is not judged here"
+    )
+    assert [words.partition(":")[0] for words in unjudged_in_words([limited])] == [
+        "largest utilization",
+        "least cord life",
+    ]
+    text = as_text(sheet(limited))
+    assert "at most 1e+04 N" in text or "at most 10000 N" in text
+    assert "not judged here, but by `beltdyn life`" in text
+    result = equilibrium(drive.replace(limits={"least_slip_safety": 2.0}))
+    assert verdict([result]) == ("open", "Least slip safety is not judged here")
+    assert "Limits" not in as_text(sheet(run))
+
+
+def test_a_file_of_a_result_is_judged_as_the_result(make_run: Callable[..., Run]) -> None:
+    """It holds what profile the belt is, and so its rating."""
+    rated = make_run().drive.with_({"belt.profile": "PJ", "belt.ribs": 3, "belt.installed_tension": 60.0})
+    limited = rated.replace(limits={"largest_utilization": 0.5})
+    again = drive_of_text(Drive.model_validate(limited.data).text)
+    run = make_run()
+    assert again == limited
+    assert verdict([Run(run.dataset, again)]) == verdict([Run(run.dataset, limited)])
+    assert again.with_({"belt.ribs": 6}).belt.axial_stiffness == 2.0 * limited.belt.axial_stiffness
 
 
 KEPT = {"largest_hub_load": 1e4, "largest_tension": 1e4}
