@@ -114,6 +114,8 @@ def in_unit(value: float, unit: str, sign: str = "") -> str:
     """Format a key number with four digits and its unit."""
     if np.isnan(value):
         return "–"
+    if np.isinf(value):
+        return f"{'−' * (value < 0.0)}∞ {unit}"
     if unit == "%":
         return f"{100.0 * value:{sign}.3g} %"
     rounded = float(f"{value:.4g}")

@@ -1,5 +1,6 @@
 """The drive sheet: what it holds, and how its parts agree."""
 
+import re
 from pathlib import Path
 from typing import Any
 
@@ -128,3 +129,27 @@ def test_options_are_checked(options: dict[str, Any], said: str) -> None:
         bd.sheet(example("alternator_drive"), **options)
     with pytest.raises(ModelError, match="a drive sheet needs a closed belt"):
         bd.sheet(example("band_brake"))
+
+
+EXAMPLES = sorted(one.stem for one in Path(bd.__file__).parent.joinpath("examples").glob("*.toml"))
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("name", EXAMPLES)
+def test_every_example_has_a_sheet_or_a_remedy_that_works(name: str) -> None:
+    drive = bd.example(name).with_({"steady.force_tolerance": 0.2})
+    if drive.ends:
+        with pytest.raises(ModelError, match="a drive sheet needs a closed belt"):
+            bd.sheet(drive)
+        return
+    refusal, options = "", dict[str, str]()
+    try:
+        found = bd.sheet(drive, points=3)
+    except ModelError as error:
+        refusal = str(error)
+    if refusal:
+        remedy = re.search(r'Give them by (\w+), such as "(.*)"\.', refusal)
+        assert remedy is not None, refusal
+        options[remedy[1]] = remedy[2]
+        found = bd.sheet(drive, points=3, **options)  # type: ignore[arg-type]
+    assert found.kind == "sheet"

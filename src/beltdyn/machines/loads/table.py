@@ -96,6 +96,25 @@ class LoadTable(Load):
         """Speeds, rad/s, then torques, N m."""
         return (*self.speeds, *self.torques)
 
+    @property
+    def driven_speed(self) -> float:
+        """Speed up to which torques are in the sense of the speed, as of a motor, rad/s; zero for a load."""
+        return _driven_speed(self.speeds, self.torques) or -_driven_speed(
+            _negative(self.speeds), _negative(self.torques)
+        )
+
+
+def _driven_speed(speeds: Sequence[float], torques: Sequence[float]) -> float:
+    """Largest positive speed up to which the torque is positive, the last point at most; zero without any."""
+    points = [(0.0, float(np.interp(0.0, speeds, torques)))]
+    points += [(speed, torque) for speed, torque in zip(speeds, torques, strict=True) if speed > 0.0]
+    for place in reversed(range(len(points))):
+        speed, torque = points[place]
+        if torque > 0.0:
+            last = points[place + 1 :]
+            return speed + torque * (last[0][0] - speed) / (torque - last[0][1]) if last else speed
+    return 0.0
+
 
 def _negative(ascending: Sequence[float]) -> tuple[float, ...]:
     """Numbers with the opposite sign in the opposite order."""

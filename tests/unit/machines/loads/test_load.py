@@ -93,3 +93,25 @@ def test_a_motor_drives_up_to_its_synchronous_speed_and_a_resistance_drives_noth
 def test_the_least_table_is_a_line() -> None:
     table = LoadTable(kind="table", speeds=(0.0, 10.0), torques=(1.0, -1.0))
     assert table.numbers == (0.0, 10.0, 1.0, -1.0)
+
+
+@pytest.mark.parametrize(
+    ("speeds", "torques", "driven"),
+    [
+        ((0.0, 400.0, 1560.0, 1600.0), (1.6, 1.6, 0.45, 0.0), 1600.0),  # a universal motor
+        ((0.0, 100.0), (2.0, -2.0), 50.0),
+        ((-100.0, 0.0), (2.0, -2.0), -50.0),
+        ((-100.0, 100.0), (5.0, 5.0), 100.0),
+        ((0.0, 10.0, 100.0), (-1.0, 1.0, 1.0), 100.0),
+        ((0.0, 100.0), (0.0, -5.0), 0.0),  # a fan
+        ((-1.0, 1.0), (3.0, -3.0), 0.0),  # dry friction
+    ],
+)
+def test_a_table_whose_torques_drive_is_a_motor(
+    speeds: tuple[float, ...], torques: tuple[float, ...], driven: float
+) -> None:
+    """Up to the speed at which the torque turns against it; turned around it drives the other way."""
+    table = LoadTable(kind="table", speeds=speeds, torques=torques)
+    assert table.driven_speed == pytest.approx(driven)
+    if not all(torque == torques[0] for torque in torques):
+        assert table.reversed().driven_speed == pytest.approx(-driven)
