@@ -224,7 +224,7 @@ class _Trials:
         chosen: list[str] = []
         time = 0.0
         for test in sorted(
-            turn, key=lambda test: (-kills[test], test not in first, turn[test], self.known[test].duration)
+            turn, key=lambda test: (-kills[test], turn[test], test not in first, self.known[test].duration)
         ):
             if time + self.known[test].duration <= self.asked.budget and len(chosen) < MAX_TESTS:
                 chosen.append(test)

@@ -41,33 +41,33 @@ def parts() -> list[type[BaseModel]]:
     ]
 
 
-@pytest.mark.parametrize("part", parts(), ids=lambda part: part.__name__)
-def test_numbers_left_out_are_zero_or_documented(part: type[BaseModel]) -> None:
-    for name, field in part.model_fields.items():
-        if (
-            name in part.__annotations__
-            and isinstance(field.default, int | float)
-            and not isinstance(field.default, bool)
-        ):
-            smooth = CREEP_SPEEDS.get(part.__name__, 0.1) if name == "creep_speed" else 0.0
-            assert field.default == SCALES.get((part.__name__, name), smooth), f"{part.__name__}.{name}"
+def test_numbers_left_out_are_zero_or_documented() -> None:
+    for part in parts():
+        for name, field in part.model_fields.items():
+            if (
+                name in part.__annotations__
+                and isinstance(field.default, int | float)
+                and not isinstance(field.default, bool)
+            ):
+                smooth = CREEP_SPEEDS.get(part.__name__, 0.1) if name == "creep_speed" else 0.0
+                assert field.default == SCALES.get((part.__name__, name), smooth), f"{part.__name__}.{name}"
 
 
+BOUND = ("ge", "gt", "le", "lt")
 BOUNDS = {("Idlers", "secondary_factor"): {1.0}, ("InductionMotor", "breakdown_ratio"): {1.0}}
 """Least numbers that are not zero: secondary resistances only add to the main ones, and motors have reserves."""
 
 
-@pytest.mark.parametrize("part", parts(), ids=lambda part: part.__name__)
-def test_numbers_may_be_as_small_as_zero_and_shares_as_large_as_one(part: type[BaseModel]) -> None:
-    for name, field in part.model_fields.items():
-        if name in part.__annotations__:
-            bounds = {kind: getattr(item, kind) for item in field.metadata for kind in BOUND if hasattr(item, kind)}
-            least = BOUNDS.get((part.__name__, name), {0.0})
-            assert {float(value) for kind, value in bounds.items() if kind in {"ge", "gt"}} <= least | {-pi}
-            assert {float(value) for kind, value in bounds.items() if kind in {"le", "lt"}} <= {1.0, pi}
-
-
-BOUND = ("ge", "gt", "le", "lt")
+def test_numbers_may_be_as_small_as_zero_and_shares_as_large_as_one() -> None:
+    for part in parts():
+        for name, field in part.model_fields.items():
+            if name in part.__annotations__:
+                bounds = {kind: getattr(item, kind) for item in field.metadata for kind in BOUND if hasattr(item, kind)}
+                least = BOUNDS.get((part.__name__, name), {0.0})
+                lower = {float(value) for kind, value in bounds.items() if kind in {"ge", "gt"}}
+                upper = {float(value) for kind, value in bounds.items() if kind in {"le", "lt"}}
+                assert lower <= least | {-pi}, f"{part.__name__}.{name}"
+                assert upper <= {1.0, pi}, f"{part.__name__}.{name}"
 
 
 @pytest.mark.parametrize("speed", [0.0, 3.0, -3.0])
