@@ -50,6 +50,12 @@ def test_small_vibrations_are_within_the_range(drive: Drive) -> None:
     assert found.error == pytest.approx(RIPPLE_ERROR * 0.1**3)
 
 
+def test_a_drive_without_vibration_is_within_the_range(drive: Drive) -> None:
+    found = looked_at(drive, [0.0, 0.0])
+    assert found.error == found.friction_change == 0.0
+    assert not found.ripple.any()
+
+
 def test_orders_that_meet_are_added(drive: Drive) -> None:
     found = looked_at(drive, [[30.0, -30.0], [20.0, -20.0]], (100.0, 250.0))
     np.testing.assert_allclose(found.ripple, [50.0 / TIGHT, 50.0 / SLACK])
