@@ -7,7 +7,7 @@ import pytest
 
 from beltdyn.designs.named_results import names_of
 from beltdyn.errors import ModelError
-from beltdyn.model import Drive, loads
+from beltdyn.model import Drive, example, loads
 from beltdyn.points.belt_rating import rating
 from beltdyn.results import Result, key_numbers
 from beltdyn.state.steady import steady_state
@@ -159,7 +159,22 @@ service_factor = 1.5
 """
 
 
-@pytest.mark.slow
+def test_teeth_in_mesh_share_the_pull_and_pulleys_the_power() -> None:
+    """By six teeth at most, with a service factor of 1 by default; losses take a percent."""
+    dataset = rating(example("timing_drive")).dataset
+    whole = np.floor(dataset.teeth_in_mesh)
+    np.testing.assert_allclose(dataset.mesh_factor, np.minimum(whole, 6.0) / 6.0)
+    assert float(dataset.service_factor) == 1.0
+    assert int(dataset.counted_teeth) == 6
+    given = float(dataset.power.sel(pulley="crankshaft"))
+    assert 0.0 <= float(dataset.power.sum()) < 0.01 * given
+    pull = np.abs(dataset.power / dataset.belt_speed)
+    counted = np.minimum(whole, 6.0) * dataset.allowed_tooth_load
+    np.testing.assert_allclose(dataset.utilization, pull / dataset.allowed_pull, rtol=5e-3)
+    assert bool((dataset.allowed_pull <= counted)[dataset.teeth_in_mesh.notnull()].all())
+    np.testing.assert_allclose(dataset.width_needed, dataset.width * dataset.utilization)
+
+
 def test_a_toothed_belt_is_rated_by_its_teeth_in_mesh_and_its_cords() -> None:
     """By the cords, 896 N of 16 mm: twelve teeth of 58 N at rest would carry less on the motor at 1500 rpm."""
     dataset = rating(loads(TOOTHED)).dataset
