@@ -19,13 +19,13 @@ def test_it_is_stiffer_nearer_to_the_driver_and_swings_faster() -> None:
     taken_up = 0.3256
     spans = AXIS.belt.axial_stiffness * (1.0 / 0.135 + 1.0 / (taken_up - 0.165 + taken_up))
     assert 0.8 * spans < float(found.stiffness[1]) < spans  # arcs and teeth yield too
-    assert found.tension.values == pytest.approx(30.0, rel=5e-3)
+    assert found.tension.values == pytest.approx(20.0, rel=5e-3)
     assert (found.mode_frequency.values[:, 0] == found.lowest_frequency.values).all()
     assert (found.mode_frequency.diff("mode") > 0.0).all()
     halfway = found.sel(place=0.0)
     assert halfway.mode_part.values.tolist()[:2] == ["carriage", "belt"]
     assert float(halfway.mode_frequency[0]) == float(halfway.frequency)
-    speed = (30.0 / AXIS.belt.mass_per_length) ** 0.5
+    speed = (20.0 / AXIS.belt.mass_per_length) ** 0.5
     assert float(halfway.mode_frequency[1]) == pytest.approx(speed / (2.0 * taken_up), rel=0.01)  # the long way back
 
 
