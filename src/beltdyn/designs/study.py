@@ -244,7 +244,8 @@ def study(
         rule = "points are computed by other processes, which a Python function cannot be passed to"
         refuse_functions(drive.pulleys, rule, "Compute them in this process with jobs = 1.")
         refuse_kinds_of_scripts(drive.own_kinds)
-    with StudyTable(given, drive, plan, path, overwrite, retry) as rows:
+    files = {name: one for name, one in options.items() if isinstance(one, Path)}
+    with StudyTable(given, drive, plan, path, overwrite, retry, files) as rows:
         waiting = np.flatnonzero(~rows.done).tolist()
         teller = _Teller(rows, progress, workers)
         if waiting and scheduler is None:

@@ -8,7 +8,7 @@ import re
 import time
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from pathlib import Path
-from types import TracebackType
+from types import MappingProxyType, TracebackType
 from typing import Any, NamedTuple, Self
 
 import numpy as np
@@ -20,6 +20,7 @@ from beltdyn.designs.point_work import Outcome
 from beltdyn.designs.study_plan import Plan
 from beltdyn.errors import ModelError, OutputError, is_internal
 from beltdyn.model import Drive, ParameterStudy, dumps
+from beltdyn.parts.messages import listing
 from beltdyn.parts.text_file import LONGEST_TABLE, read_text
 from beltdyn.results import Result, Variable, build_result
 from beltdyn.results.atomic import OutputLock, atomic_path, require_replaceable, target_of, unwritable
@@ -162,8 +163,45 @@ _OFTEN, _SHARE = 2.0, 20.0
 """Least time between two writings of the result file, s, and times that a writing takes."""
 _MOST_NAMES = 6
 """Results without a value that are named."""
+_STRING = re.compile(r"""["']([^"'\n]+)["']""")
+"""A text in a TOML file, which may be the path of another file."""
 _COMPUTING = "computing"
 """Attribute: what tells apart what is computed at a point."""
+
+
+def _fingerprints(study: ParameterStudy, drive: Drive, plan: Plan, inputs: Mapping[str, Path]) -> dict[str, str]:
+    """What tells apart what is computed at a point, by what it is: drive, analysis, its options, files and results."""
+    parts: dict[str, object] = {
+        "drive": dumps(drive),
+        "analysis": study.analysis,
+        **{f"option {name}": value for name, value in study.options.items()},
+        "list of results": study.results,
+        "list of numbers": plan.paths,
+    }
+    found = {name: _fingerprint(json.dumps(part, default=str).encode()) for name, part in parts.items()}
+    for name, file in inputs.items():
+        found |= {f"content of {one.name} (option {name})": _fingerprint(_content(one)) for one in _files_of(file)}
+    return found
+
+
+def _fingerprint(content: bytes) -> str:
+    return hashlib.sha256(content).hexdigest()
+
+
+def _files_of(file: Path) -> list[Path]:
+    """A file, and those that a study file among them names."""
+    if file.suffix.lower() != ".toml":
+        return [file]
+    named = [file.parent / text for text in _STRING.findall(_content(file).decode("utf-8", "replace"))]
+    return [file, *(one for one in dict.fromkeys(named) if one.is_file())]
+
+
+def _content(file: Path) -> bytes:
+    """What a file holds; nothing of one that is missing, which the analysis tells of."""
+    try:
+        return file.read_bytes() if file.is_file() else b""
+    except OSError:
+        return b""
 
 
 class StudyTable:
@@ -180,8 +218,10 @@ class StudyTable:
         output: Path | None,
         overwrite: bool = False,
         retry: bool = False,
+        inputs: Mapping[str, Path] = MappingProxyType({}),
     ) -> None:
         self._study, self._drive, self._plan, self._path = study, drive, plan, output
+        self._computing = _fingerprints(study, drive, plan, inputs)
         count = len(plan.values)
         self.done: BoolArray = np.zeros(count, dtype=bool)
         self._columns: dict[str, str] = {}
@@ -222,13 +262,7 @@ class StudyTable:
         if not rows:
             return
         remedy = "Choose another --output, or recompute all with --force (in Python: overwrite=True)."
-        known = self._known_computing(output)
-        if known != self.computing:
-            of = (
-                "another drive, analysis or list of results"
-                if known
-                else f"a study whose head {output} is missing or damaged"
-            )
+        if of := self._difference(output):
             raise ModelError(f"{self._rows.path} holds {len(rows)} points of {of}. {remedy}")
         self._has_head = True
         keys = [self._rows.key(point) for point in range(len(self._plan.values))]
@@ -244,20 +278,21 @@ class StudyTable:
                 is_same = 0 <= point < len(keys) and keys[point] == row.key
                 self._note(row.outcome, point if is_same else places[row.key])
 
-    def _known_computing(self, output: Path) -> str:
+    def _difference(self, output: Path) -> str:
+        """What tells the study of a result file from this one, in words; empty if nothing does."""
         try:
             dataset = read_dataset(output)
         except ModelError:
-            return ""
+            return f"a study whose head {output} is missing or damaged"
         with dataset:
-            return str(dataset.attrs.get(_COMPUTING, ""))
-
-    @property
-    def computing(self) -> str:
-        """What tells apart what is computed at a point: drive, analysis, its options, and results."""
-        study = self._study
-        said = [dumps(self._drive), study.analysis, sorted(study.options.items()), study.results, self._plan.paths]
-        return hashlib.sha256(json.dumps(said, default=str).encode()).hexdigest()
+            text = str(dataset.attrs.get(_COMPUTING, ""))
+        try:
+            known = dict(json.loads(text))
+        except ValueError:
+            return f"a study whose head {output} is of another version"
+        own = self._computing
+        differing = [name for name in {**own, **known} if own.get(name) != known.get(name)]
+        return f"a study with another {listing(differing)}" if differing else ""
 
     def __enter__(self) -> Self:
         """Begin."""
@@ -348,7 +383,7 @@ class StudyTable:
             "numbers": "\n".join(self._plan.paths),
             "results": "\n".join(self._columns),
             "done": int(self.done.sum()),
-            _COMPUTING: self.computing,
+            _COMPUTING: json.dumps(self._computing),
         }
 
     def _warnings(self) -> list[str]:

@@ -539,5 +539,5 @@ def _column(variable: "xr.DataArray") -> list[str]:
     if variable.dtype.kind != "f":
         return [str(one) for one in variable.values.ravel()]
     if variable.attrs.get("units") == VARIOUS:
-        return [f"{one:z.{_SHEET_DIGITS}g}" for one in variable.values.ravel()]
+        return ["–" if math.isnan(one) else f"{one:z.{_SHEET_DIGITS}g}" for one in variable.values.ravel()]
     return aligned((shown_unit(variable)[1] * variable.values.ravel()).tolist(), _SHEET_DIGITS)

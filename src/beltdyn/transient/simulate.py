@@ -66,8 +66,8 @@ def simulate(
         the last one. They are stored beside the result file with the ending ``.checkpoint``, and removed at the end.
     resume
         Resume the run in the result file, with the same steps and results as without the interruption. A complete run
-        is returned as it is; one that has kept nothing begins anew. On the command line the result file may be given
-        instead of the drive file.
+        is returned as it is; one that has kept nothing, or keeps no checkpoints, begins anew. On the command line the
+        result file may be given instead of the drive file.
 
     Returns
     -------
@@ -95,7 +95,7 @@ def simulate(
     if not every > 0.0:
         raise ModelError(f"checkpoint = {every:g} s must be above zero. Increase it, or omit it.")
     if resume:
-        found = _resume(drive, output, progress, every)
+        found = _resume(drive, output, progress, integrator, every)
         if found is not None:
             return found
     return record_run(drive, output, progress, overwrite, integrator, compare_steady=compare_steady, checkpoint=every)
@@ -162,7 +162,9 @@ def _end(recording: Recording, given: Drive, compare_steady: bool) -> None:
         recording.note(**_steady_losses(given), **{COARSE_SETTINGS: listing(coarse)})
 
 
-def _resume(drive: Drive, output: Path | str | None, progress: Report | None, checkpoint: float) -> Run | None:
+def _resume(
+    drive: Drive, output: Path | str | None, progress: Report | None, integrator: Integrator | None, checkpoint: float
+) -> Run | None:
     """Resume a run from its checkpoint; None, with a warning, where it has to begin anew."""
     if output is None:
         raise ModelError("resume continues a run in its result file, but none is given. Give it as output.")
@@ -170,13 +172,15 @@ def _resume(drive: Drive, output: Path | str | None, progress: Report | None, ch
     kept = _kept_run(drive, path)
     if kept is not None and kept.status == "completed":
         return kept
-    keeps_checkpoints = drive.simulation.integrator == GeneralizedAlpha.name and not has_functions(drive.pulleys)
-    if not checkpoint_file(path).exists() and (keeps_checkpoints or kept is None):
+    if why := _without_checkpoints(drive, integrator):
+        begun = f"the run {why}, so it writes no checkpoints"
+    elif not checkpoint_file(path).exists():
         begun = "no run of this drive has begun there" if kept is None else "its run ended before its first checkpoint"
+    else:
+        begun = ""
+    if begun:
         warnings.warn(f"{path} has nothing to resume: {begun}. It begins anew.", CheckpointWarning, stacklevel=3)
         return None
-    if not keeps_checkpoints:
-        raise ModelError(_without_checkpoints(drive, path))
     point = read_checkpoint(checkpoint_file(path))
     if drive not in (point.drive, point.recording["_prepared"].drive):
         raise ModelError(
@@ -209,17 +213,14 @@ def _kept_run(drive: Drive, path: Path) -> Run | None:
     return run
 
 
-def _without_checkpoints(drive: Drive, path: Path) -> str:
-    """Why an interrupted run cannot be resumed."""
-    why = (
-        'has a load of kind "function", which cannot be stored in a file'
-        if has_functions(drive.pulleys)
-        else f'has simulation.integrator = "{drive.simulation.integrator}", whose state is not stored'
-    )
-    return (
-        f"this drive {why}, so its runs write no checkpoints and cannot be resumed. Start another run where "
-        f'this one ended with simulation.start = {{ file = "{path}" }}, or run it again.'
-    )
+def _without_checkpoints(drive: Drive, integrator: Integrator | None) -> str:
+    """Why an interrupted run cannot be resumed; empty where it can."""
+    if has_functions(drive.pulleys):
+        return 'has a load of kind "function", which cannot be stored in a file'
+    chosen = choose_integrator(drive) if integrator is None else integrator
+    if not isinstance(chosen, GeneralizedAlpha):
+        return f'has integrator = "{chosen.name}", whose state is not stored'
+    return ""
 
 
 def _steadily(drive: Drive) -> Run:

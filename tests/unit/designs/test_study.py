@@ -18,7 +18,7 @@ from beltdyn.designs.processes import ThisProcess
 from beltdyn.designs.study import study
 from beltdyn.designs.study_table import StudyTable
 from beltdyn.errors import ModelError
-from beltdyn.model import Drive, ParameterStudy
+from beltdyn.model import Drive, ParameterStudy, dumps
 from beltdyn.results import Result, open_result
 from beltdyn.solvers.run_progress import Progress
 from beltdyn.state.equilibrium import equilibrium
@@ -148,7 +148,7 @@ def test_a_row_that_was_cut_off_is_computed_again(
 @pytest.mark.parametrize(
     ("before", "after", "said"),
     [
-        ('["hub_load", "tension"]', '["tension"]', "another drive, analysis or list of results"),
+        ('["hub_load", "tension"]', '["tension"]', "9 points of a study with another list of results"),
         ("10, 12, 14 mm", "10, 12 mm", "no longer in the study"),
         ('path = "belt.width"', 'path = "belt.thickness"', "holds no points of this study"),
     ],
@@ -163,6 +163,39 @@ def test_points_of_another_study_are_not_lost(
         study(study_file, output=tmp_path / "s.nc", jobs=1)
     assert (tmp_path / "s.csv").read_bytes() == kept
     assert study(study_file, output=tmp_path / "s.nc", jobs=1, overwrite=True).status == "completed"
+
+
+@pytest.mark.parametrize("changed", ["duty.csv", "optimize.toml", "option"])
+def test_points_computed_with_other_options_are_not_taken(changed: str, drive: Drive, tmp_path: Path) -> None:
+    """A file that an option names has changed, or one that such a file names, or an option itself."""
+    (tmp_path / "duty.csv").write_text("share [%], load\n100, 1\n", encoding="utf-8")
+    (tmp_path / "optimize.toml").write_text(
+        '[[number]]\npath = "belt.width"\nleast = "9 mm"\nlargest = "16 mm"\n[goal]\nresult = "hub_load"\n'
+        '[points]\ntable = "duty.csv"\n',
+        encoding="utf-8",
+    )
+    (tmp_path / "drive.toml").write_text(dumps(drive), encoding="utf-8")
+    file, text = (
+        tmp_path / "s.toml",
+        (
+            'drive = "drive.toml"\nanalysis = "optimize"\n[options]\nstudy = "optimize.toml"\nmost = 2\n'
+            '[[number]]\npath = "belt.thickness"\nvalues = "4, 4.1 mm"\n'
+        ),
+    )
+    file.write_text(text, encoding="utf-8")
+    study(file, output=tmp_path / "s.nc", jobs=1)
+    study(file, output=tmp_path / "s.nc", jobs=1)
+    kept = (tmp_path / "s.csv").read_bytes()
+    if changed == "option":
+        file.write_text(text.replace("most = 2", "most = 3"), encoding="utf-8")
+    else:
+        (tmp_path / changed).write_text(
+            (tmp_path / changed).read_text(encoding="utf-8") + "# other\n", encoding="utf-8"
+        )
+    told = "option most" if changed == "option" else rf"content of {changed} \(option study\)"
+    with pytest.raises(ModelError, match=rf"2 points of a study with another {told}\. Choose another --output"):
+        study(file, output=tmp_path / "s.nc", jobs=1)
+    assert (tmp_path / "s.csv").read_bytes() == kept
 
 
 def test_an_interruption_keeps_points_and_goes_on(study_file: Path, tmp_path: Path) -> None:

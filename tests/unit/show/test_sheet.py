@@ -8,7 +8,8 @@ import xarray as xr
 
 from beltdyn.model import Drive, example
 from beltdyn.results import Result, tooth_loads
-from beltdyn.show.sheet import Facts, Table, sheet
+from beltdyn.results.schema import VARIOUS
+from beltdyn.show.sheet import Facts, Table, _column, sheet
 from beltdyn.state.steady import steady_state
 
 
@@ -69,3 +70,10 @@ def test_a_belt_with_teeth_has_their_loads() -> None:
     for row, one in zip(found.rows, tooth_loads(run), strict=True):
         shown = [float(cell) for cell in row[1:]]
         assert shown == pytest.approx([one.in_mesh, one.largest, one.allowed, one.jump_margin], rel=0.02)
+
+
+def test_a_number_that_is_none_is_a_dash() -> None:
+    """In columns of one unit, and of the units of their rows."""
+    values = xr.DataArray([1.5, np.nan], dims="requirement", attrs={"units": VARIOUS})
+    assert _column(values) == ["1.5", "–"]
+    assert "nan" not in " ".join(_column(values.assign_attrs(units="N")))

@@ -109,7 +109,13 @@ def test_a_result_that_does_not_know_a_number_does_not_differ() -> None:
 
 @pytest.mark.parametrize(
     ("value", "unit", "words"),
-    [(0.0123, "%", "1.23 %"), (1234.56, "N", "1235 N"), (1.5, "1", "1.5"), (float("nan"), "N", "–")],
+    [
+        (0.0123, "%", "1.23 %"),
+        (1234.56, "N", "1235 N"),
+        (1.5, "1", "1.5"),
+        (float("nan"), "N", "–"),
+        (float("inf"), "%", "∞ %"),
+    ],
 )
 def test_numbers_have_units(value: float, unit: str, words: str) -> None:
     assert in_unit(value, unit) == words

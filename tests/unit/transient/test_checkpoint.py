@@ -197,15 +197,22 @@ def test_a_run_resumes_until_it_is_complete_and_then_changes_nothing(travelling:
     assert path.read_bytes() == before
 
 
-def test_a_run_without_a_checkpoint_cannot_go_on(travelling: Drive, tmp_path: Path) -> None:
-    other = travelling.with_({"simulation.integrator": "bdf"})
-    simulate(other, tmp_path / "run.nc", stopping_after(0.02)).dataset.close()
-    with pytest.raises(ModelError, match=r'"bdf", whose state is not stored.* cannot be resumed.*file = ".*run.nc"'):
-        simulate(other, tmp_path / "run.nc", resume=True)
+def test_wrong_options_of_checkpoints_are_refused(travelling: Drive, tmp_path: Path) -> None:
     with pytest.raises(ModelError, match="none is given"):
         simulate(travelling, resume=True)
     with pytest.raises(ModelError, match=r"checkpoint = 0 s must be above zero"):
         simulate(travelling, tmp_path / "run.nc", checkpoint=0.0)
+
+
+@pytest.mark.slow
+def test_a_run_without_checkpoints_begins_anew(travelling: Drive, tmp_path: Path) -> None:
+    """So that what resumes until all is complete comes to its end."""
+    short = {"simulation.duration": 2e-4, "simulation.output_interval": 1e-4, "simulation.field_interval": None}
+    other = travelling.with_({"simulation.integrator": "bdf"} | short)
+    simulate(other, tmp_path / "run.nc", stopping_after(1e-5)).dataset.close()
+    with pytest.warns(CheckpointWarning, match=r'"bdf", whose state is not stored.*It begins anew'):
+        assert simulate(other, tmp_path / "run.nc", resume=True).status == "completed"
+    simulate(other, tmp_path / "run.nc", resume=True).dataset.close()  # without a warning
 
 
 def test_another_drive_does_not_go_on(travelling: Drive, stopped: Path) -> None:
