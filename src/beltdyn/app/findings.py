@@ -1,7 +1,7 @@
 """What the page shows of results as figures and charts: plain data in SI units, that processes can send."""
 
 import math
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from typing import NamedTuple
 
 import numpy as np
@@ -116,7 +116,10 @@ def at_rest(drive: Drive, found: Installation) -> Findings:
             Rows(
                 "Spans",
                 spans,
-                (Column("tension", "N", _plain(tensions)), Column("frequency", "Hz", _plain(found.span_frequencies))),
+                (
+                    *_tensions(tensions, *found.extreme_tensions.T, *found.end_tensions.T),
+                    Column("frequency", "Hz", _plain(found.span_frequencies)),
+                ),
             ),
         ),
         tensions=_plain(tensions),
@@ -128,7 +131,7 @@ def in_running(run: Run) -> Findings:
     summary = summarize(run)
     names = tuple(one.name for one in summary.pulleys)
     loads = [one.hub_load for one in summary.pulleys]
-    safeties = [one.least_safety if one.least_safety < _DECADES else math.nan for one in summary.pulleys]
+    safeties = _up_to(_DECADES, (one.least_safety for one in summary.pulleys))
     balance, spans = summary.balance, summary.spans
     figures = []
     if balance.power_in > 0.0:
@@ -140,7 +143,15 @@ def in_running(run: Run) -> Findings:
     columns = (
         Column("speed", "rad/s", _plain(one.speed for one in summary.pulleys)),
         Column("slip", "%", _plain(one.slip for one in summary.pulleys)),
-        Column("slip safety", "", tuple(safeties), run.drive.limits.least_slip_safety or 1.0),
+        Column("tension ratio", "", _plain(one.tension_ratio for one in summary.pulleys)),
+        Column("allowed ratio", "", _plain(one.allowed_tension_ratio for one in summary.pulleys)),
+        *(
+            Column(name, "", tuple(_up_to(_DECADES, values)), run.drive.limits.least_slip_safety or 1.0)
+            for name, values in (
+                ("slip safety, own load", (one.own_load_safety for one in summary.pulleys)),
+                ("slip safety, all loads", (one.slip_safety for one in summary.pulleys)),
+            )
+        ),
         Column("hub load", "N", _plain(loads)),
     )
     return Findings(
@@ -152,9 +163,12 @@ def in_running(run: Run) -> Findings:
                 "Spans",
                 tuple(one.name for one in spans),
                 (
-                    Column("mean tension", "N", _plain(one.tension for one in spans)),
-                    Column("least tension", "N", _plain(one.lowest for one in spans)),
-                    Column("largest tension", "N", _plain(one.highest for one in spans)),
+                    *_tensions(
+                        *zip(
+                            *((one.tension, one.lowest, one.highest, one.at_start, one.at_end) for one in spans),
+                            strict=True,
+                        )
+                    ),
                     Column("belt speed", "m/s", _plain(one.belt_speed for one in spans)),
                 ),
             ),
@@ -194,6 +208,18 @@ def _extreme(name: str, unit: str, of: Sequence[str], values: Iterable[float], *
         return Figure(name, math.nan, unit)
     value, one = (min if least else max)(known, key=lambda each: each[0])
     return Figure(name, value, unit, one)
+
+
+def _tensions(*columns: Iterable[float]) -> Iterator[Column]:
+    """Columns of the tensions of spans: mean, extremes, and at both arcs."""
+    names = ("mean tension", "least tension", "largest tension", "tension at start", "tension at end")
+    for name, values in zip(names, columns, strict=True):
+        yield Column(name, "N", _plain(values))
+
+
+def _up_to(limit: float, values: Iterable[float]) -> list[float]:
+    """The values, and NaN in place of those from a limit on."""
+    return [value if value < limit else math.nan for value in values]
 
 
 def _plain(values: Iterable[float]) -> tuple[float, ...]:

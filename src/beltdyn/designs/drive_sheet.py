@@ -48,6 +48,14 @@ _LEAST_SPEED = 0.2
 """First speed of the default range without a duty, over that of the drive."""
 _SLACK = 1e-3
 """Tension over that at rest below which a belt hangs slack."""
+REST_TENSIONS = {
+    "rest_tension": "Tension of the span at rest",
+    "least_rest_tension": "Least tension of the span at rest",
+    "largest_rest_tension": "Largest tension of the span at rest",
+    "rest_tension_at_start": "Tension at the start of the span at rest",
+    "rest_tension_at_end": "Tension at the end of the span at rest",
+}
+"""Tensions of a span at rest, with their labels."""
 _ACCELERATIONS = {"": 0.0, ", accelerating": 1.0, ", decelerating": -1.0}
 
 Table = dict[str, tuple[Variable, Any]]
@@ -420,6 +428,9 @@ class _DriveSheet:
             "center": (Variable((_PULLEY, "axis"), "m", "Center"), path.centers),
             "span_length": (Variable((_SPAN,), "m", "Span length"), path.span_lengths),
         }
+        tensions = np.column_stack([rest.span_tensions, rest.extreme_tensions, rest.end_tensions]).T
+        for (name, label), values in zip(REST_TENSIONS.items(), tensions, strict=True):
+            self.variables[name] = Variable((_SPAN,), "N", label), values
 
     def add_tensioning(self) -> None:
         """Frequency and deflection force of each span, new, run in, and before the belt is tensioned again."""

@@ -1,8 +1,12 @@
 """Strands that are heavier than their tension, which hang slack: the least tension that each needs."""
 
+from collections.abc import Iterator
+from contextlib import contextmanager
+
 import numpy as np
 
 from beltdyn.arrays import FloatArray
+from beltdyn.errors import ConvergenceError
 from beltdyn.model.carrying import swinging_lengths
 from beltdyn.model.path import Path
 from beltdyn.model.prepared import Prepared
@@ -29,7 +33,7 @@ def least_strand_tensions(prepared: Prepared, path: Path) -> FloatArray:
 def slack_strands(prepared: Prepared, path: Path, tension: FloatArray) -> Finding | None:
     """Strands that weigh more than their tension (N, shape (s,)), with the least tension that they need."""
     needed = least_strand_tensions(prepared, path)
-    slack = np.flatnonzero(np.nan_to_num(tension, nan=np.inf) < needed).tolist()
+    slack = np.flatnonzero((np.nan_to_num(tension, nan=np.inf) < needed) & (needed > 0.0)).tolist()
     if not slack:
         return None
     each = [
@@ -43,3 +47,16 @@ def slack_strands(prepared: Prepared, path: Path, tension: FloatArray) -> Findin
         "and frequencies are not those of straight spans, and no equilibrium may be found.",
         f"Increase their tension to {plain(beyond(0.0, needed[slack].max(), 3))} N or more, or support them.",
     )
+
+
+@contextmanager
+def naming_heavy_strands(prepared: Prepared) -> Iterator[None]:
+    """Add strands that hang slack at rest to the message where a search for equilibrium or steady running fails."""
+    try:
+        yield
+    except ConvergenceError as error:
+        at_rest = prepared.installation
+        finding = slack_strands(prepared, at_rest.path, at_rest.span_tensions)
+        if finding is None or finding.fault in str(error):
+            raise
+        raise ConvergenceError(f"{error} At rest {finding.fault} {finding.remedy}") from error

@@ -84,7 +84,8 @@ def bending_resistance(prepared: Prepared) -> float:
 def rolling_resistances(prepared: Prepared) -> FloatArray:
     """Coefficients rho of rolling resistance, shape (n,), equivalent to the compression losses of the belt at rest.
 
-    Per meter of belt, rho times the normal force along an arc of the angle phi takes rho phi T.
+    Per meter of belt, rho times the normal force along an arc of the angle phi takes rho phi T. Above the rated tension
+    of the belt, where the data of its losses end, coefficients are those at that tension.
     """
     if prepared.belt.compression_loss_factor == 0.0:
         return np.zeros(len(prepared.pulleys))
@@ -100,5 +101,6 @@ def compression_losses(prepared: Prepared) -> FloatArray:
     stiffness, tension = belt.contact_stiffness, prepared.tension_at_rest
     if stiffness is None or belt.compression_loss_factor == 0.0 or not tension > 0.0:
         return np.zeros(len(prepared.pulleys))
-    losses = compression_loss(tension, belt.bending_stiffness, stiffness, belt.compression_loss_factor, prepared.radii)
-    return np.asarray(losses * np.array([pulley.side == "inside" for pulley in prepared.pulleys]))
+    known = min(tension, belt.largest_tension or tension)
+    losses = compression_loss(known, belt.bending_stiffness, stiffness, belt.compression_loss_factor, prepared.radii)
+    return np.asarray(losses * (tension / known) * np.array([pulley.side == "inside" for pulley in prepared.pulleys]))

@@ -36,6 +36,8 @@ class Installation:
     """Mean tension of each of s spans: the same in all, but for weight and the mesh, N, shape (s,)."""
     end_tensions: FloatArray
     """Tension at start and end of each span, N, shape (s, 2)."""
+    extreme_tensions: FloatArray
+    """Least and largest tension of each span, N, shape (s, 2)."""
     penetrations: FloatArray
     """Penetration into each pulley, in the middle of the arc, m, shape (n,)."""
     tensioner_positions: FloatArray
@@ -50,6 +52,35 @@ class Installation:
     (s,)."""
     limitation: str = ""
     """Why closed forms leave out bending stiffness and weight; empty where they do not, and where the belt is slack."""
+
+
+def hanging_extremes(ends: FloatArray, path: Path, weight: FloatArray, lengths: FloatArray) -> FloatArray:
+    """Least and largest tension of spans that hang between their ends, N, shape (s, 2).
+
+    The largest is at the higher end. The least is at the lower one; or, where a shallow parabola falls below that with
+    the slope s there, by T s^2 / 2 below its tension.
+
+    Parameters
+    ----------
+    ends : ndarray, shape (s, 2)
+        Tensions at start and end, N.
+    path : Path
+        The path.
+    weight : ndarray, shape (2,)
+        Of a meter of belt, N/m.
+    lengths : ndarray, shape (s,)
+        Lengths that hang freely, m; shorter than the span where supports carry it.
+    """
+    found = np.stack([ends.min(axis=1), ends.max(axis=1)], axis=1)
+    along = np.abs(path.span_directions @ weight)
+    across = np.abs(path.span_directions @ np.array([-weight[1], weight[0]]))
+    size = float(np.hypot(*weight))
+    hangs = (lengths >= path.span_lengths) & (across > 0.0) & (found[:, 0] > 0.0)
+    for span in np.flatnonzero(hangs).tolist():
+        pull = float(ends[span].mean()) * across[span] / size
+        slope = size * path.span_lengths[span] / (2.0 * pull) - along[span] / across[span]
+        found[span, 0] -= 0.5 * pull * max(slope, 0.0) ** 2
+    return found
 
 
 def span_frequencies(

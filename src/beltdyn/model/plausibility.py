@@ -84,7 +84,8 @@ def _tension(drive: Drive, installation: Installation) -> Iterator[Finding]:
     readings = _other_readings(drive) if belt.length is not None else []
     yield Finding(
         f"the tension at rest is {each(tension)}, but the belt is rated for {each(most)}.",
-        "The cords stretch permanently, belt and bearings fail early, and losses are extrapolated beyond their data.",
+        "The cords stretch permanently, and belt and bearings fail early; coefficients of compression losses are those "
+        "of the rated tension, where their data end.",
         f"{more} the tension, or correct its cause{f': {listing(readings)}' if readings else ''}.",
     )
 

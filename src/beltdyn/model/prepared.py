@@ -21,7 +21,7 @@ from beltdyn.model.contact import Contact
 from beltdyn.model.defaults import Choice, critical_damping
 from beltdyn.model.drive import Drive
 from beltdyn.model.end import Carriage, End, PathEnd, range_of
-from beltdyn.model.installation import Installation, span_frequencies
+from beltdyn.model.installation import Installation, hanging_extremes, span_frequencies
 from beltdyn.model.layout import loaded
 from beltdyn.model.path import Path
 from beltdyn.model.pulley import Pulley
@@ -225,25 +225,28 @@ class Prepared:
         hub_loads: FloatArray,
         positions: FloatArray,
         end_tensions: FloatArray | None = None,
+        extreme_tensions: FloatArray | None = None,
     ) -> Installation:
         """Describe the belt at rest in some state: arrays as those of an `Installation`; by default without weight."""
         if end_tensions is None:
             end_tensions = np.repeat(span_tensions[:, None], 2, axis=1)
         belt, path = self.belt, moved(self.path, self.carriers, positions)
-        laid = path.length / self.belt_length
+        laid, hanging = path.length / self.belt_length, swinging_lengths(self.supports, self.spans, path)
+        if extreme_tensions is None:
+            weight = belt.mass_per_length * np.array(self.gravity)
+            extreme_tensions = hanging_extremes(end_tensions, path, weight, hanging)
         return Installation(
             strain=laid - 1,
             laid_tension=float(belt.stretch_parameters.tension(laid)),
             tension=float(span_tensions.mean()),
             span_tensions=span_tensions,
             end_tensions=end_tensions,
+            extreme_tensions=extreme_tensions,
             penetrations=penetrations,
             tensioner_positions=positions,
             path=path,
             hub_loads=hub_loads,
-            span_frequencies=span_frequencies(
-                belt, path, span_tensions, self.gravity, swinging_lengths(self.supports, self.spans, path)
-            ),
+            span_frequencies=span_frequencies(belt, path, span_tensions, self.gravity, hanging),
         )
 
     @cached_property

@@ -198,7 +198,7 @@ def turn_window(recorded: Recorded, prepared: Prepared) -> Window:
     time = np.asarray(recorded["time"], dtype=float)
     elapsed = float(np.ptp(time))
     if elapsed > 0.0:
-        since_change = max(SHORTEST * elapsed, float(time[-1]) - _last_change(prepared, time))
+        since_change = max(SHORTEST * elapsed, float(time[-1]) - last_change(prepared, time))
         longest = min(LONGEST * elapsed, since_change)
         turn = _belt_turns(recorded, prepared, time)
         element = Cycle(turn.phase * (prepared.element_kind.curves * prepared.elements), 1)
@@ -256,8 +256,8 @@ def _profiles(prepared: Prepared) -> list[Profile]:
     return [profile for pulley in prepared.pulleys for profile in pulley.profiles]
 
 
-def _last_change(prepared: Prepared, time: FloatArray) -> float:
-    """When something prescribed over time last changed, other than in what repeats, s."""
+def last_change(prepared: Prepared, time: FloatArray) -> float:
+    """Instant at which something prescribed over time last changed, other than in what repeats, s."""
     changes = [float(time[0])]
     for profile in _profiles(prepared):
         if not isinstance(profile, Table):

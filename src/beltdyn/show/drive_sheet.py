@@ -17,6 +17,14 @@ if TYPE_CHECKING:
     import xarray as xr
 
 _DEGREES = 180.0 / np.pi
+_REST_TENSIONS = {
+    "rest_tension": "tension\nmean N",
+    "least_rest_tension": "min\nN",
+    "largest_rest_tension": "max\nN",
+    "rest_tension_at_start": "at start\nN",
+    "rest_tension_at_end": "at end\nN",
+}
+"""Tensions of spans at rest, with their headings."""
 _STATES = {
     "free": "free arm",
     "replace": "replace (stretched)",
@@ -104,6 +112,11 @@ def _spans(dataset: "xr.Dataset") -> Table:
         aligned((1e3 * dataset["span_length"].values).tolist(), 4),
     ]
     headings: tuple[str, ...] = ("", "length\nmm")
+    names = [name for name in _REST_TENSIONS if name in dataset]
+    if names:
+        tensions = np.stack([dataset[name].values for name in names])
+        columns += np.reshape(aligned(tensions.ravel().tolist(), 4), tensions.shape).tolist()
+        headings = (*headings, *(_REST_TENSIONS[name] for name in names))
     if "belt_state" in dataset.dims:
         columns.append(aligned((1e3 * dataset["deflection"].values).tolist(), 3))
         headings = (*headings, "deflection\nmm")

@@ -226,7 +226,10 @@ _PULLEY_HEADINGS = (
 )
 
 
-_SPAN_HEADINGS = ("", "length\nm", "tension\nN", "first frequency\nHz")
+_SPAN_HEADINGS = (
+    *("", "length\nm", "tension\nmean N", "min\nN", "max\nN", "at start\nN", "at end\nN"),
+    "first frequency\nHz",
+)
 _TENSIONER_HEADINGS = ("", "position", "spring", "stops", "other equilibria")
 
 _TOOTH_HEADINGS = ("", "teeth", "teeth\nin mesh", "pitch\ndiameter mm", "turns over\nthose of the first")
@@ -445,9 +448,11 @@ def _teeth(drive: Drive, installation: Installation) -> list[tuple[str, ...]]:
 
 
 def _spans(drive: Drive, installation: Installation) -> list[tuple[str, ...]]:
-    columns = installation.path.span_lengths, installation.span_tensions, installation.span_frequencies
+    rows = np.column_stack([installation.span_tensions, installation.extreme_tensions, installation.end_tensions])
+    tensions = np.reshape(aligned(rows.ravel().tolist()), rows.shape).T.tolist()
+    lengths, frequencies = installation.path.span_lengths.tolist(), installation.span_frequencies.tolist()
     names = (f"{start} to {end}" for start, end in drive.spans)
-    return list(zip(names, *(aligned(column.tolist()) for column in columns), strict=True))
+    return list(zip(names, aligned(lengths), *tensions, aligned(frequencies), strict=True))
 
 
 def _tensioners(drive: Drive, installation: Installation) -> list[tuple[str, ...]]:

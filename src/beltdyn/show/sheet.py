@@ -15,6 +15,7 @@ from beltdyn.arrays import BoolArray, FloatArray
 from beltdyn.errors import BeltdynError, classified
 from beltdyn.parts.messages import aligned
 from beltdyn.parts.quantity import RPM, SHOWN_UNITS
+from beltdyn.results.means import PulleySummary
 from beltdyn.results.provenance import Resolution, mesh_facts
 from beltdyn.results.result import Result
 from beltdyn.results.run import Run
@@ -263,12 +264,14 @@ def _pulleys(title: str, summary: Summary, guides: BoolArray) -> Table:
         (_share(math.nan if stands else one.elastic_creep) for one, stands in zip(pulleys, guides, strict=True)),
         (f"{math.degrees(one.wrap_angle):.1f}°" for one in pulleys),
         (f"{math.degrees(one.sliding_arc):.1f}°" for one in pulleys),
-        (_safety(one.least_safety) for one in pulleys),
+        (_ratio(one) for one in pulleys),
+        (_safety(one.own_load_safety) for one in pulleys),
+        (_safety(one.slip_safety) for one in pulleys),
         aligned([one.hub_load for one in pulleys]),
     )
     return Table(
         title,
-        (*headings, "slip\nsafety", "hub load\nN"),
+        (*headings, "tension ratio\nof allowed", "slip safety\nown load", "\nall loads", "hub load\nN"),
         tuple(zip(*columns, strict=True)),
     )
 
@@ -300,6 +303,14 @@ def _window(run: Run, summary: Summary) -> str:
 def _share(part: float) -> str:
     """A share of the first rim's speed; a dash where that, or a guide, stands still."""
     return "–" if math.isnan(part) else f"{part:z.3%}"
+
+
+def _ratio(pulley: PulleySummary) -> str:
+    """The tension ratio and that which friction allows; a dash where that is not what holds the belt."""
+    ratio, allowed = pulley.tension_ratio, pulley.allowed_tension_ratio
+    if math.isnan(ratio) or not allowed > 1.0:
+        return "–"
+    return f"{ratio:.2f} of {allowed:.3g}"
 
 
 def _safety(safety: float) -> str:

@@ -13,6 +13,7 @@ from beltdyn.arrays import FloatArray
 from beltdyn.errors import ConvergenceError
 from beltdyn.model import Drive, Installation
 from beltdyn.model import Path as BeltPath
+from beltdyn.model.heavy_strands import naming_heavy_strands
 from beltdyn.model.prepared import Prepared, prepare
 from beltdyn.observation.compilation import compile_for_rest, rest_is_compiled
 from beltdyn.parts.messages import listing
@@ -78,7 +79,8 @@ class Rest(NamedTuple):
         positions = self.state.position[self.state.position.size - self.system.tensioners.size :]
         depths = np.array([np.median(depth) for depth in _depths(self.prepared, seen)])
         ends = np.stack([seen.span_tension_at_start[0], seen.span_tension_at_end[0]], axis=1)
-        return self.prepared.installed(seen.span_tension[0], depths, seen.hub_force[0], positions, ends)
+        extremes = np.stack([seen.least_span_tension[0], seen.largest_span_tension[0]], axis=1)
+        return self.prepared.installed(seen.span_tension[0], depths, seen.hub_force[0], positions, ends, extremes)
 
 
 Found = TypeVar("Found")
@@ -92,7 +94,7 @@ def bring_to_rest(drive: Drive, progress: Report | None = None) -> Rest:
     ConvergenceError if there is no equilibrium in which the belt touches every pulley, or none with the required
     tension.
     """
-    moved = on_equal_elements(drive)
+    moved = on_equal_elements(drive, chosen=drive.carriage is not None)
     found = rest_of(prepare(moved), progress)
     if moved is drive:
         return found
@@ -106,9 +108,10 @@ def rest_of(prepared: Prepared, progress: Report | None = None) -> Rest:
     _tell(prepared, progress, "compiling")
     compile_for_rest(system, laid(system, prepared.path))
     _tell(prepared, progress, "equilibrium")
-    (rest, tighter), wanted = begin(prepared, _at_rest), prepared.installed_tension
-    if wanted is not None:
-        rest = Tightening(prepared, wanted, lambda ahead, _: _at_rest(ahead), rest, tighter).run()
+    with naming_heavy_strands(prepared):
+        (rest, tighter), wanted = begin(prepared, _at_rest), prepared.installed_tension
+        if wanted is not None:
+            rest = Tightening(prepared, wanted, lambda ahead, _: _at_rest(ahead), rest, tighter).run()
     return rest._replace(unstable=_unstable(rest))
 
 
@@ -135,16 +138,19 @@ def _positions(rest: Rest) -> FloatArray:
 
 def is_compiled(drive: Drive) -> bool:
     """Whether `bring_to_rest` needs no compilation."""
-    prepared = prepare(on_equal_elements(drive))
+    prepared = prepare(on_equal_elements(drive, chosen=drive.carriage is not None))
     system = drive_system(prepared)
     return rest_is_compiled(system, laid(system, prepared.path))
 
 
-def on_equal_elements(drive: Drive) -> Drive:
-    """Give the drive on the travelling mesh, on which equilibrium is found; as many graded elements are too few."""
+def on_equal_elements(drive: Drive, *, chosen: bool = False) -> Drive:
+    """Give the drive on the travelling mesh, on which equilibrium is found.
+
+    With a chosen number of elements if the specified one is that of a graded mesh: as many equal ones are too few.
+    """
     if not drive.frame.stays:
         return drive
-    belt = drive.belt if drive.carriage is None else drive.belt.replace(elements=None)
+    belt = drive.belt.replace(elements=None) if chosen else drive.belt
     return drive.replace(belt=belt, simulation=drive.simulation.replace(frame="travelling", force_tolerance=None))
 
 

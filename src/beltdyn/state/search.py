@@ -14,6 +14,7 @@ from beltdyn.arrays import FloatArray
 from beltdyn.errors import ConvergenceError, ModelError
 from beltdyn.model import Drive, Prepared
 from beltdyn.parts.messages import listing
+from beltdyn.parts.quantity import RPM
 from beltdyn.results.checks.machines import FRICTION_USED
 from beltdyn.solvers.continuation import Solution, extrapolated, follow, turn
 from beltdyn.state.newton import FOUND, SteadyWork, find_steady, make_step, steady_work
@@ -64,6 +65,8 @@ _NEAR = 1e-3
 """Part of the way to another push at which the tangent still tells the solution."""
 _FIRST_CHANGE, _SAME_SPEED, _MOST_SPEEDS = 1e-4, 1e-11, 30
 """Of the speed of a motor that drives a belt with teeth, relative, and how often it is changed at most."""
+_MOTOR_SPEEDS = 201
+"""Speeds from standstill on at which the largest torque of a motor is looked for."""
 _MOST_PRESSES = 20
 """Of rollers of nips that are loaded by forces."""
 _STALLED = 0.5
@@ -484,7 +487,22 @@ class SteadySearch:
         self._hold(None)
         own = own_torque(self.at(Setting()), self.state, driver, speed)
         self._supported, self._support, self.setting = driver, reaction - own, Setting(support=1.0)
-        self._follow(Setting())
+        if not self._reach(Setting()):
+            raise self._weak_motor(driver, speed, reaction) or self._refusal()
+
+    def _weak_motor(self, driver: int, speed: float, required: float) -> ConvergenceError | None:
+        """A driver that at no speed (rad/s) gives the required torque, N m; None if it does."""
+        speeds, sense, free = speed * np.linspace(0.0, 1.0, _MOTOR_SPEEDS), np.sign(speed), self.at(Setting())
+        torque = sense * np.array([own_torque(free, self.state, driver, each) for each in speeds.tolist()])
+        most, at = float(torque.max()), RPM * abs(float(speeds[int(torque.argmax())]))
+        if not sense * required > most:
+            return None
+        self.is_limited = True
+        return ConvergenceError(
+            f"no steady running found at t = {self._time:g} s: the motor of `{self.prepared.pulleys[driver].name}`, "
+            f"less other loads of its shaft, gives at most {most:.4g} N m (at {at:.4g} rpm) of the "
+            f"{abs(required):.4g} N m required at {RPM * abs(speed):.4g} rpm. Use a larger motor, or reduce the load."
+        )
 
     def _balance(self, driver: int) -> bool:
         """Find the speed at which a motor drives a belt with teeth, by the secant method; False if that fails."""

@@ -4,8 +4,9 @@ import numpy as np
 import pytest
 
 import beltdyn as bd
+from beltdyn.errors import ConvergenceError
 from beltdyn.model import advise, install, prepare
-from beltdyn.model.heavy_strands import least_strand_tensions, slack_strands
+from beltdyn.model.heavy_strands import least_strand_tensions, naming_heavy_strands, slack_strands
 
 G = 9.81
 
@@ -60,3 +61,13 @@ def test_slack_strands_are_named_with_what_they_need() -> None:
     taut = conveyor(600.0)
     assert slack_strands(prepare(taut), taut.path, np.array([600.0, 600.0])) is None
     assert slack_strands(prepare(taut), taut.path, np.array([600.0, np.nan])) is None
+
+
+@pytest.mark.parametrize("tension", [400.0, 600.0])
+def test_failures_name_them(tension: float) -> None:
+    with (
+        pytest.raises(ConvergenceError, match=r"^no equilibrium\.") as failure,
+        naming_heavy_strands(prepare(conveyor(tension))),
+    ):
+        raise ConvergenceError("no equilibrium.")
+    assert ("which needs 490.5 N" in str(failure.value)) == (tension < 490.0)

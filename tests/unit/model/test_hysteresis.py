@@ -84,6 +84,17 @@ def test_rolling_resistance_along_the_arc_takes_the_loss_of_compression(drive: D
     assert not rolling_resistances(prepare(drive)).any()
 
 
+def test_coefficients_of_losses_end_with_the_rated_tension(drive: Drive) -> None:
+    """Beyond it they stay; below it they grow with the tension."""
+    belt = drive.belt.replace(length=None, compression_loss_factor=0.3, contact_stiffness=1e7, largest_tension=100.0)
+    found = [
+        rolling_resistances(prepare(drive.replace(belt=belt.replace(installed_tension=tension))))
+        for tension in (50.0, 100.0, 300.0)
+    ]
+    assert np.all(found[0] < 0.9 * found[1])
+    np.testing.assert_allclose(found[2], found[1], rtol=0.02)  # the wrap of a belt that sinks deeper
+
+
 def test_only_grooves_compress(make_drive: MakeDrive) -> None:
     drive = make_drive("flat")
     pressed = drive.replace(belt=drive.belt.replace(compression_loss_factor=0.5, contact_stiffness=2e7))

@@ -11,6 +11,7 @@ from beltdyn.model import Prepared
 from beltdyn.parts.messages import Finding
 from beltdyn.results.checks.contact import (
     deep_penetration,
+    heavy_strands,
     large_strain,
     large_tension,
     leaves_pulley,
@@ -42,6 +43,7 @@ from beltdyn.results.checks.machines import (
 from beltdyn.results.checks.mesh import begun_by_means, mean_torques, off_steady_running, unresolved_by_mesh
 from beltdyn.results.checks.power import (
     artificial_losses,
+    damped_vibrations,
     driving_loads,
     flutter,
     negative_losses,
@@ -60,8 +62,10 @@ CHECKS: tuple[Check, ...] = (
     empty_rolls,
     open_account,
     numerical_damping,
+    damped_vibrations,
     unbalanced_powers,
     slack_spans,
+    heavy_strands,
     sagging_belt,
     leaves_pulley,
     lifted_by_speed,

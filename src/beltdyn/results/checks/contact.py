@@ -6,6 +6,7 @@ from collections.abc import Iterator
 import numpy as np
 
 from beltdyn.arrays import FloatArray
+from beltdyn.model.heavy_strands import slack_strands
 from beltdyn.parts.messages import NOTABLE, Finding, beyond, listing
 from beltdyn.results.checks.evidence import Evidence
 from beltdyn.results.mechanics import SpanTension, across
@@ -42,6 +43,14 @@ def slack_spans(evidence: Evidence) -> Iterator[Finding]:
         f"{np.mean(slack):.0%} of the run.",
         f"Raise the installed tension{by}, start more gently, or reduce the load.",
     )
+
+
+def heavy_strands(evidence: Evidence) -> Iterator[Finding]:
+    """Strands that weigh more than their mean tension, which hang slack."""
+    prepared = evidence.prepared
+    finding = slack_strands(prepared, prepared.path, np.array([one.tension for one in evidence.spans]))
+    if finding is not None:
+        yield finding
 
 
 def leaves_pulley(evidence: Evidence) -> Iterator[Finding]:
@@ -141,8 +150,8 @@ def large_tension(evidence: Evidence) -> Iterator[Finding]:
         yield Finding(
             f"the span {names(evidence.recorded, 'span')[span]} carries {tension[row, span]:.4g} N at t = "
             f"{evidence.time[row]:.4g} s; the belt is rated for {most:.4g} N.",
-            "The cords stretch permanently, belt and bearings fail early, and losses are extrapolated beyond their "
-            "data.",
+            "The cords stretch permanently, and belt and bearings fail early; coefficients of compression losses are "
+            "at most those of the rated tension, where their data end.",
             f"Choose a belt at least {wider:.4g} times as wide, or reduce the tension or the load.",
         )
 

@@ -3,11 +3,15 @@
 import math
 from collections.abc import Iterator
 
+import numpy as np
+
 from beltdyn.model import Prepared
 from beltdyn.model.defaults import DAMPING_RATIO
 from beltdyn.parts.messages import Finding, beyond, listing
 from beltdyn.parts.quantity import RPM
 from beltdyn.results.checks.evidence import Evidence, shorter_steps
+from beltdyn.results.cycles import last_change
+from beltdyn.results.free_decay import free_decay, without_integrator
 from beltdyn.results.schema import attribute
 from beltdyn.results.tension_balance import OF_TEETH, Balance, largest_closure, largest_numerical_share
 
@@ -154,6 +158,44 @@ def numerical_damping(evidence: Evidence) -> Iterator[Finding]:
             f"input by t = {time:.4g} s (limit {NUMERICAL_LIMIT:.0%}).",
             "Vibrations decay too fast, and the efficiency is too low by up to this share.",
             shorter_steps(evidence.prepared),
+        )
+
+
+VISIBLE = 1e-3
+"""Amplitude of a vibration over the mean tension of its span from which on its decay is told."""
+DECAY_LIMIT = 0.1
+"""Largest error of the rate of decay of a free vibration by the time integrator, relative, without a warning."""
+_SMALL_PART = 0.02
+"""That error with the advised step."""
+
+
+def damped_vibrations(evidence: Evidence) -> Iterator[Finding]:
+    """A free vibration that the time integrator lets die away at another rate than the drive does."""
+    recorded, settings = evidence.recorded, evidence.prepared.simulation
+    if "step_size" not in recorded or settings.integrator != "generalized_alpha":
+        return
+    since = evidence.time >= last_change(evidence.prepared, evidence.time)
+    time, tensions = evidence.time[since][:-1], np.asarray(recorded["span_tension"])[since][:-1]
+    found = [
+        (decay.amplitude / float(np.mean(tension)), decay, span)
+        for tension, span in zip(tensions.T, evidence.prepared.spans, strict=True)
+        if (decay := free_decay(time, tension)) is not None
+    ]
+    if not found or max(found)[0] < VISIBLE:
+        return
+    _, decay, (start, end) = max(found)
+    during = since & (evidence.time <= decay.until)
+    step = float(np.mean(np.asarray(recorded["step_size"])[during] ** 3) ** (1.0 / 3.0))
+    real = without_integrator(settings.spectral_radius, decay, step)
+    part = abs(decay.rate - real.rate)
+    if part > DECAY_LIMIT * decay.rate:
+        shorter = step * (_SMALL_PART * decay.rate / part) ** (1.0 / 3.0)
+        yield Finding(
+            f"the time integrator changes a free vibration of {decay.frequency:.3g} Hz ({decay.amplitude:.2g} N in the "
+            f"span from {start} to {end}): it dies away with {decay.rate:.3g} 1/s.",
+            f"In the drive it has about {real.frequency:.3g} Hz and {real.rate:.3g} 1/s.",
+            f"Set simulation.max_step = {shorter:.1g} for errors of {_SMALL_PART:.0%}, or take decays from "
+            "`beltdyn modes`.",
         )
 
 
