@@ -222,7 +222,9 @@ class Belt(Part):
         description="the shear correction factor on a travelling mesh; by default sections stay normal to the "
         "centerline, as on a staying mesh",
     )
-    elements: Count | None = Field(None, ge=3, le=10_000, description="the number of belt elements")
+    elements: Count | None = Field(
+        None, ge=3, le=10_000, description="the number of belt elements; the least one of meshes that are refined"
+    )
     discretization: Annotated[str, NameOf(ELEMENTS)] | None = Field(
         None,
         description=f"the kind of elements: {_ELEMENTS}; by default quintic on a staying mesh and with teeth, ancf "
@@ -269,6 +271,28 @@ class Belt(Part):
             return without_section(arguments) | section_with(section, changes) | dict(changes)
         return in_new_form(arguments, changes, {key: getattr(self, key) for key in OWN})
 
+    @model_validator(mode="after")
+    def _has_what_its_law_of_stretch_needs(self) -> Self:
+        LAW_KEYS.check(self)
+        if LAWS[self.stretch_law].through is not None and self.stretch_curve is None:
+            raise ValueError(
+                f'stretch_law = "{self.stretch_law}" needs a curve. Give [belt.stretch_curve] with strains and '
+                "tensions, or a file"
+            )
+        if self.stretch_curve is None:
+            return self
+        if LAWS[self.stretch_law].through is None:
+            raise ValueError(
+                f'stretch_curve is incompatible with stretch_law = "{self.stretch_law}". Remove it, or set '
+                'stretch_law = "measured"'
+            )
+        if self.axial_factor != 1:
+            raise ValueError(
+                f"axial_factor = {self.axial_factor:g} is incompatible with stretch_curve, which is of the whole belt. "
+                "Remove axial_factor"
+            )
+        return self
+
     @model_validator(mode="wrap")
     @classmethod
     def _remember_how_it_is_sold(cls, data: Any, make: ModelWrapValidatorHandler[Self], info: ValidationInfo) -> Self:
@@ -313,28 +337,6 @@ class Belt(Part):
                     f'{key} = {value:g}{unit} is incompatible with discretization = "{self.discretization}", which has '
                     f'no damping. Set {key} = 0, or set discretization = "ancf"'
                 )
-        return self
-
-    @model_validator(mode="after")
-    def _has_what_its_law_of_stretch_needs(self) -> Self:
-        LAW_KEYS.check(self)
-        if LAWS[self.stretch_law].through is not None and self.stretch_curve is None:
-            raise ValueError(
-                f'stretch_law = "{self.stretch_law}" needs a curve. Give [belt.stretch_curve] with strains and '
-                "tensions, or a file"
-            )
-        if self.stretch_curve is None:
-            return self
-        if LAWS[self.stretch_law].through is None:
-            raise ValueError(
-                f'stretch_curve is incompatible with stretch_law = "{self.stretch_law}". Remove it, or set '
-                'stretch_law = "measured"'
-            )
-        if self.axial_factor != 1:
-            raise ValueError(
-                f"axial_factor = {self.axial_factor:g} is incompatible with stretch_curve, which is of the whole belt. "
-                "Remove axial_factor"
-            )
         return self
 
     @model_validator(mode="after")

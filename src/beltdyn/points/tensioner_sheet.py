@@ -22,7 +22,7 @@ from beltdyn.results import Result, Variable, build_result
 from beltdyn.solvers.run_progress import Progress, Report
 from beltdyn.solvers.time_limit import time_limit
 from beltdyn.state.installation import looked_at
-from beltdyn.state.staying import bring_to_stand, stand
+from beltdyn.state.staying import bring_to_stand, first_fineness, stand
 
 _FINENESS = 1.2
 """Of the meshes."""
@@ -249,7 +249,7 @@ class _Sheet:
     def _balanced(self, prepared: Prepared) -> Installation:
         """The belt at rest, by closed forms once the search has taken too long."""
         try:
-            rest = stand(prepared, fineness=_FINENESS)
+            rest = stand(prepared, fineness=max(_FINENESS, first_fineness(prepared)))
             return looked_at(prepared, rest.system, rest.state).installation
         except TimeLimitError:
             self._by_closed_forms = True

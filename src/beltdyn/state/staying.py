@@ -8,6 +8,7 @@ import numpy as np
 from beltdyn.arrays import FloatArray
 from beltdyn.errors import ConvergenceError, ModelError
 from beltdyn.model import Drive, Prepared
+from beltdyn.model.heavy_strands import naming_heavy_strands
 from beltdyn.model.resolution import Arc, Laid
 from beltdyn.observation.compilation import ahead, compile_observing
 from beltdyn.solvers.time_limit import spend_time
@@ -30,6 +31,8 @@ TOLERANCE = 1e-9
 """Of the last step of a search, over the smallest radius."""
 FIRST_FINENESS = 0.6
 """Of the first mesh."""
+_LEAST_STEP = 1.01
+"""Least factor on the fineness of a mesh with fewer elements than specified."""
 FINER = 1.4
 """Elements of a mesh over those of the one before."""
 MOST_ELEMENTS = 1500
@@ -106,11 +109,35 @@ def bring_to_stand(prepared: Prepared, elements: int | None = None) -> Standing:
     The length for that tension is found on a mesh that is fine enough for it.
     """
     require_passing(prepared.drive)
-    (rest, tighter), wanted = begin(prepared, partial(_on_some_mesh, elements=elements)), prepared.installed_tension
-    if wanted is None:
+    fineness, wanted = first_fineness(prepared), prepared.installed_tension
+    with naming_heavy_strands(prepared):
+        rest, tighter = begin(prepared, partial(_on_some_mesh, elements=elements, fineness=fineness))
+        if wanted is not None:
+            rest = _at_tension(prepared, wanted, (rest, tighter), refined=elements is None)
+    return _as_specified(rest, prepared)
+
+
+def first_fineness(prepared: Prepared) -> float:
+    """Fineness of the first mesh, which has at least the specified number of elements."""
+    specified, fineness = prepared.drive.belt.elements, FIRST_FINENESS
+    while specified and (count := prepared.graded_lengths(fineness).size) < specified:
+        fineness *= max(specified / count, _LEAST_STEP)
+    return fineness
+
+
+def _as_specified(rest: Standing, prepared: Prepared) -> Standing:
+    """The same at rest, whose drive leaves open the number of elements if it was not specified."""
+    specified, belt = prepared.drive.belt.elements, rest.drive.belt
+    if belt.elements == specified:
         return rest
+    return rest._replace(prepared=rest.prepared.replace(belt=belt.replace(elements=specified)))
+
+
+def _at_tension(prepared: Prepared, wanted: float, begun: tuple[Standing, float], *, refined: bool) -> Standing:
+    """The drive with the tension that was asked for, N, from one at rest that is tighter by some way, m."""
+    rest, tighter = begun
     change = np.inf
-    while elements is None and change > _SETTLED and rest.system.nodes < MOST_ELEMENTS:
+    while refined and change > _SETTLED and rest.system.nodes < MOST_ELEMENTS:
         finer = _on_finer_mesh(rest)
         change, rest = abs(finer.tension / rest.tension - 1.0), finer
     return Tightening(prepared, wanted, partial(_stand_like, first=rest), rest, tighter).run()
@@ -126,11 +153,11 @@ def _stand_like(prepared: Prepared, near: Standing, first: Standing) -> Standing
         return stand_like(prepared, near)
 
 
-def _on_some_mesh(prepared: Prepared, elements: int | None) -> Standing:
+def _on_some_mesh(prepared: Prepared, elements: int | None, fineness: float) -> Standing:
     """Equilibrium on the coarsest mesh on which it is found; the reason of the finest where there is none."""
     for trial in range(_MOST_MESHES if elements is None else 1):
         try:
-            return stand(prepared, elements, fineness=FIRST_FINENESS * FINER**trial)
+            return stand(prepared, elements, fineness=fineness * FINER**trial)
         except ConvergenceError as error:
             failure = error
     raise failure

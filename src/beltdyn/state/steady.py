@@ -11,6 +11,7 @@ from beltdyn.arrays import FloatArray
 from beltdyn.errors import ConvergenceError, ModelError
 from beltdyn.machines.loads.trim import Trim
 from beltdyn.model import Drive, Prepared, prepare
+from beltdyn.model.heavy_strands import naming_heavy_strands
 from beltdyn.observation.recording import Recording
 from beltdyn.parts.messages import listing
 from beltdyn.parts.options import ForceTolerance, takes_options
@@ -178,8 +179,8 @@ def steady_state(
     if start is not None:
         require_neighbour(drive, start, elements)
     prepared = prepare(drive)
-    if force_tolerance is None and elements is None and drive.steady.mesh == "uniform":
-        elements = prepared.elements
+    if force_tolerance is None and elements is None:
+        elements = _equal_elements(prepared)
     tolerance = _tolerance(drive, force_tolerance)
     _require_sense(tolerance, elements)
     instant = instant_given(drive, at)
@@ -192,8 +193,14 @@ def steady_state(
 def steady_from(drive: Drive, start: Run | None, force_tolerance: float | None, *, bands: bool) -> Run:
     """Find the steady running of a drive from that of another one, or from rest, as `steady_state` does."""
     prepared, instant, tolerance = prepare(drive), drive.simulation.end, _tolerance(drive, force_tolerance)
+    equal = None if force_tolerance is not None else _equal_elements(prepared)
     found = None if start is None else _continued(prepared, start, instant, tolerance, bands=bands)
-    return _as_run(prepared, instant, found or _from_rest(prepared, instant, tolerance, None, bands=bands))
+    return _as_run(prepared, instant, found or _from_rest(prepared, instant, tolerance, equal, bands=bands))
+
+
+def _equal_elements(prepared: Prepared) -> int | None:
+    """Number of equal elements of steady running, if the drive asks for these."""
+    return prepared.elements if prepared.drive.steady.mesh == "uniform" else None
 
 
 class Beside(NamedTuple):
@@ -278,7 +285,8 @@ def _from_rest(
     def rule(standing: Standing) -> MeshRule:
         return MeshRule(0.0, elements=elements) if elements else MeshRule(standing.layer, standing.fineness)
 
-    found = steady_from_rest(rest, instant, rule, force_tolerance, bands=bands)
+    with naming_heavy_strands(prepared):
+        found = steady_from_rest(rest, instant, rule, force_tolerance, bands=bands)
     return _Found(found.search, found.band, found.errors, found.rule, time.perf_counter() - begun)
 
 
