@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 from pydantic import Field
 
-from beltdyn.arrays import FloatArray
+from beltdyn.arrays import FloatArray, IntArray
 from beltdyn.errors import ModelError
 from beltdyn.model import Drive, load
 from beltdyn.parts.options import ForceTolerance, takes_options
@@ -18,8 +18,8 @@ from beltdyn.points.changed_drive import held_at, require_belt
 from beltdyn.points.duty import Column, at_row, durations_of, duty_of
 from beltdyn.points.operating_points import PULLEY, Axes, OperatingPoints
 from beltdyn.results import Result, Run, Variable, open_result
-from beltdyn.results.belt_history import turn_history
-from beltdyn.results.damage import HOUR, Damage, Lives, damage_of_run, known_variables
+from beltdyn.results.belt_history import BeltHistory, turn_history
+from beltdyn.results.damage import HOUR, Damage, Lives, cord_force, damage_of_run, known_variables
 from beltdyn.results.dataset import is_result
 from beltdyn.results.run import run_of
 from beltdyn.solvers.run_progress import Report
@@ -27,7 +27,7 @@ from beltdyn.solvers.run_progress import Report
 _KEPT = ("belt_speed", "span_tension", "cord_force", "cord_damage_rate", "cord_damage", "rib_damage_rate", "rib_damage")
 """Variables of operating points in the table."""
 _PLACES = (np.arange(400) + 0.5) / 400
-"""Places of the histories, in turns of the belt."""
+"""Middles of the cells of a turn of which histories keep the extremes, in turns of the belt."""
 _HISTORY = ("row", "place")
 _OF_HISTORY = {
     "tension": Variable(_HISTORY, "N", "Tension of a material point"),
@@ -143,10 +143,9 @@ class _Sums:
             return
         drive, history = run.drive, turn_history(run)
         length = drive.belt_length
-        places = _PLACES * length
-        curvature = np.interp(places, history.passed, history.curvature[:, 0], period=length)
-        self._history["tension"][index] = np.interp(places, history.passed, history.tension[:, 0], period=length)
-        self._history["bending_strain"][index] = -curvature * _inside_depth(drive)
+        kept = _extremes(drive, history)
+        self._history["tension"][index] = history.tension[kept, 0]
+        self._history["bending_strain"][index] = -history.curvature[kept, 0] * _inside_depth(drive)
         self._turns[index] = HOUR / history.time[-1] * history.passed[-1] / length
         bends = np.abs(history.curvature[:, 0])
         for number in range(len(drive.pulleys)):
@@ -226,6 +225,22 @@ class _Sums:
                 f"{law.halving_difference:.3g} K more would halve their life. Give belt.temperature, or a column "
                 '"temperature [°C]" of the table.'
             )
+
+
+def _extremes(drive: Drive, history: BeltHistory) -> IntArray:
+    """Numbers of the points of a history that are kept: in each cell of a turn that of an extreme of the cord force.
+
+    The largest in cells above the middle of its range, the least in those below; the nearest one in cells without any.
+    """
+    line = drive.belt.cord_fatigue
+    force = (np.abs(history.curvature) if line is None else cord_force(line, history))[:, 0]
+    turns = history.passed / drive.belt_length
+    excess = force - 0.5 * (force.min() + force.max())
+    cells = np.minimum((turns * _PLACES.size).astype(int), _PLACES.size - 1)
+    kept = np.abs(turns[:, None] - _PLACES).argmin(axis=0)
+    ascending = np.argsort(np.abs(excess), kind="stable")
+    kept[cells[ascending]] = ascending  # the last of a cell stays
+    return np.asarray(kept)
 
 
 def _inside_depth(drive: Drive) -> float:

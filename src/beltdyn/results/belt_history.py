@@ -6,20 +6,25 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 
 from beltdyn.arrays import FloatArray, IntArray
+from beltdyn.elements import ElementKind
 from beltdyn.errors import ModelError
 from beltdyn.kernel import kernel
 from beltdyn.model import Prepared
 from beltdyn.model.path import span_points
 from beltdyn.quadrature import running_integral
-from beltdyn.results.mechanics import element_lengths, mean_curvature, recorded_kind
+from beltdyn.results.mechanics import curvatures, element_lengths, mean_curvature, recorded_kind
 from beltdyn.results.run import Run
 
 if TYPE_CHECKING:
     import xarray as xr
 
 
+_SMOOTH_VECTORS = 6
+"""Vectors of an element whose nodes share place, slope and curvature."""
+PLACES = 8
+"""Places of an element at which its curvature is taken, its first node among them, where arcs end and extremes lie."""
 _STEPS = 2
-"""Instants in which a material point passes one element of mean length."""
+"""Least number of instants in which a material point passes one element of mean length."""
 
 
 class BeltHistory(NamedTuple):
@@ -30,7 +35,7 @@ class BeltHistory(NamedTuple):
     time: FloatArray
     """s, shape (k,)."""
     tension: FloatArray
-    """N, shape (k, points)."""
+    """Tension of the line of force, as of spans, N, shape (k, points)."""
     curvature: FloatArray
     """1/m, positive on pulleys inside the belt, shape (k, points)."""
     pulley: IntArray
@@ -38,22 +43,23 @@ class BeltHistory(NamedTuple):
 
 
 class _Fields(NamedTuple):
-    """What is known of each element at outputs along the belt, shapes (outputs, elements)."""
+    """What is known at places along the belt at outputs, shapes (outputs, places)."""
 
     time: FloatArray
     """Shape (outputs,), s."""
+    along: FloatArray
+    """Places on the unstretched belt, ascending, m, shape (places,)."""
     tension: FloatArray
     curvature: FloatArray
     pulley: IntArray
 
 
 def turn_history(run: Run) -> BeltHistory:
-    """History of any material point over a turn of the belt in steady running, shape (elements, 1)."""
+    """History of any material point over a turn of the belt in steady running, shape (places, 1)."""
     fields, prepared = _fields(run, slice(-1, None)), run.prepared
     speed = float(np.squeeze(run.dataset.attrs["belt_parameter"]))
-    along = run.dataset["element_coordinate"].values
     way = slice(None) if speed > 0.0 else slice(None, None, -1)
-    passed = along if speed > 0.0 else prepared.belt_length - along[::-1]
+    passed = fields.along if speed > 0.0 else prepared.belt_length - fields.along[::-1]
     tension, curvature, pulley = fields.tension[0, way], fields.curvature[0, way], fields.pulley[0, way]
     return BeltHistory(passed, passed / abs(speed), tension[:, None], curvature[:, None], pulley[:, None])
 
@@ -71,14 +77,15 @@ def belt_history(run: Run, points: int = 8) -> BeltHistory:
         Number of material points.
     """
     fields, prepared = _fields(run, slice(None)), run.prepared
+    in_turn = max(fields.along.size, _STEPS * run.dataset.sizes["element"])
     if len(fields.time) < 2:
         raise ModelError("the run has one output along the belt, which is no history. Choose a shorter field_interval.")
-    along, length = run.dataset["element_coordinate"].values, prepared.belt_length
+    along, length = fields.along, prepared.belt_length
     passed = np.interp(fields.time, run.dataset["time"].values, _passed(run))
     marks, parts = np.arange(points) * length / points, list[BeltHistory]()
     for output in range(len(fields.time) - 1):
         way = passed[output : output + 2]
-        steps = max(int(np.ceil(_STEPS * abs(way[1] - way[0]) / length * along.size)), 1)
+        steps = max(int(np.ceil(abs(way[1] - way[0]) / length * in_turn)), 1)
         part = np.arange(steps + (output == len(fields.time) - 2)) / steps
         now = way[0] + part * (way[1] - way[0])
         origin = np.zeros(2) if prepared.frame.stays else way
@@ -88,15 +95,15 @@ def belt_history(run: Run, points: int = 8) -> BeltHistory:
             + part[:, None] * np.interp(after, along, field[output + 1], period=length)
             for field in (fields.tension, fields.curvature)
         ]
-        nearest = fields.pulley[output][_nearest_element(along, length, before)]
+        nearest = fields.pulley[output][_nearest_place(along, length, before)]
         time = fields.time[output] + part * (fields.time[output + 1] - fields.time[output])
         parts.append(BeltHistory(now, time, mixed[0], mixed[1], nearest))
     passed, time, tension, curvature, pulley = map(np.concatenate, zip(*parts, strict=True))
     return BeltHistory(passed, time, tension, curvature, pulley)
 
 
-def _nearest_element(along: FloatArray, length: float, places: FloatArray) -> IntArray:
-    """Numbers of the elements whose middles are nearest to places along the belt."""
+def _nearest_place(along: FloatArray, length: float, places: FloatArray) -> IntArray:
+    """Numbers of the nearest of the places where something is known."""
     borders = 0.5 * (along + np.append(along[1:], along[0] + length))
     return np.asarray(np.searchsorted(borders, places) % along.size)
 
@@ -116,9 +123,30 @@ def _fields(run: Run, outputs: slice) -> _Fields:
     dataset = run.dataset.isel(field_time=outputs)
     nodes = dataset["nodal_coordinates"].values
     lengths = element_lengths(dataset, prepared.belt_length)
-    curvature = mean_curvature(recorded_kind(dataset, prepared), nodes, lengths)
-    times = dataset["field_time"].values
-    return _Fields(times, dataset["belt_tension"].values, curvature, _nearest_pulley(dataset, prepared, nodes[..., :2]))
+    along, curvature = _curvature(recorded_kind(dataset, prepared), nodes, lengths)
+    middles, places = dataset["element_coordinate"].values, along.ravel()
+    force_line = dataset["belt_tension"].values + _carried(prepared) * np.mean(curvature**2, axis=-1)
+    tension = np.stack([np.interp(places, middles, one, period=prepared.belt_length) for one in force_line])
+    pulley = np.repeat(_nearest_pulley(dataset, prepared, nodes[..., :2]), along.shape[-1], axis=-1)
+    bending = curvature.reshape(len(nodes), -1)
+    return _Fields(dataset["field_time"].values, places, tension, bending, pulley)
+
+
+def _carried(prepared: Prepared) -> float:
+    """Tension of the line of force less that of the elements, over the squared curvature, N m^2."""
+    return prepared.belt.bending_stiffness * (0.5 - prepared.element_kind.bent_strain)
+
+
+def _curvature(kind: ElementKind, nodes: FloatArray, lengths: FloatArray) -> tuple[FloatArray, FloatArray]:
+    """Places in elements, m, shape (elements, k), and the curvature there, shape (outputs, elements, k).
+
+    Of elements whose curvature jumps at nodes there is the mean alone.
+    """
+    starts = np.cumsum(lengths) - lengths
+    if len(kind.vectors) < _SMOOTH_VECTORS:
+        return (starts + 0.5 * lengths)[:, None], mean_curvature(kind, nodes, lengths)[..., None]
+    xi = np.arange(PLACES) / PLACES
+    return starts[:, None] + lengths[:, None] * xi, curvatures(kind, nodes, lengths, xi)
 
 
 def _nearest_pulley(dataset: "xr.Dataset", prepared: Prepared, nodes: FloatArray) -> IntArray:

@@ -184,14 +184,9 @@ class Lives:
             self.cord = min(self.cord, line.cycles[-1] / damage.turns)
 
 
-def cord_force(drive: Drive, line: CordFatigue, history: BeltHistory) -> FloatArray:
-    """Force in the cords, N, shape of the history.
-
-    T + EI κ²/2 is the tension that the belt would have without its bending stiffness, as S-N lines take it.
-    """
-    curvature = np.abs(history.curvature)
-    string = history.tension + 0.5 * drive.belt.bending_stiffness * curvature**2
-    return np.asarray(string + line.bending_force * curvature)
+def cord_force(line: CordFatigue, history: BeltHistory) -> FloatArray:
+    """Force in the cords, N, shape of the history: T + B |κ|, with the tension that S-N lines take."""
+    return np.asarray(history.tension + line.bending_force * np.abs(history.curvature))
 
 
 def _cord_damage(drive: Drive, history: BeltHistory, count: Callable[[FloatArray], Cycles]) -> tuple[FloatArray, float]:
@@ -200,7 +195,7 @@ def _cord_damage(drive: Drive, history: BeltHistory, count: Callable[[FloatArray
     damage = np.zeros(len(drive.pulleys))
     if line is None:
         return damage * np.nan, np.nan
-    forces, largest = cord_force(drive, line, history), 0.0
+    forces, largest = cord_force(line, history), 0.0
     for force, pulley in zip(forces.T, history.pulley.T, strict=True):
         part, most = miner(line, count(force).above(_LEAST_RANGE), pulley, damage.size)
         damage, largest = damage + part / forces.shape[1], max(largest, most)

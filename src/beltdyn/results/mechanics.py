@@ -222,6 +222,19 @@ def curve_controls(kind: ElementKind, coordinates: FloatArray, lengths: FloatArr
     return np.asarray(points.reshape(*instants, -1, control.shape[-2], 2))
 
 
+def curvatures(kind: ElementKind, coordinates: FloatArray, lengths: FloatArray, xi: FloatArray) -> FloatArray:
+    """Curvature of each curve at places xi in [0, 1], shape (..., curves, places), 1/m, positive to the left."""
+    controls = curve_controls(kind, coordinates, lengths)
+    degree, along = controls.shape[-2] - 1, xi[:, None]
+    first, second = np.diff(controls, axis=-2) * degree, np.diff(controls, n=2, axis=-2) * degree * (degree - 1)
+    slope, bend = (
+        np.einsum("kp,...pa->...ka", BINOMIALS[top, order] * along**order * (1.0 - along) ** (top - order), vectors)
+        for vectors, top, order in ((first, degree - 1, np.arange(degree)), (second, degree - 2, np.arange(degree - 1)))
+    )
+    cross = slope[..., 0] * bend[..., 1] - slope[..., 1] * bend[..., 0]
+    return np.asarray(cross / np.sum(slope**2, axis=-1) ** 1.5)
+
+
 def mean_curvature(kind: ElementKind, coordinates: FloatArray, lengths: FloatArray) -> FloatArray:
     """Mean curvature of each curve of a closed belt, shape (..., curves), 1/m, positive to the left.
 

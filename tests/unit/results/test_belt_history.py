@@ -72,7 +72,7 @@ def test_over_a_turn_of_steady_running(steady: Run) -> None:
     history, drive = turn_history(steady), steady.drive
     tensions = steady.dataset.span_tension.values[-1]
     assert history.tension.max() == pytest.approx(tensions.max(), rel=1e-4)
-    assert history.passed[0] > 0.0
+    assert history.passed[0] >= 0.0
     assert history.passed[-1] < drive.belt_length
     for number, radius in enumerate(drive.radii):
         curvature = history.curvature[history.pulley == number]

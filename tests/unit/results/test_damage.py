@@ -55,15 +55,19 @@ def test_slack_cords_do_no_damage(fatigue_drive: Drive) -> None:
 
 
 def test_cords_in_steady_running(steady: Run) -> None:
-    """The closed form, but that the belt unbends at the end of the driven arc before it has all of its tension."""
+    """The closed form, but that the belt unbends at the end of the driven arc before it has all of its tension.
+
+    At the ends of arcs the curvature swings over that of the pulley, by 1 % on the softness of this contact.
+    """
     drive, line = steady.drive, line_of(steady.drive)
     tight = float(steady.dataset.span_tension.values[-1].max())
     closed = tight + BENDING / drive.radii
     damage = hourly_damage(steady)
-    assert damage.force == pytest.approx(closed[0], rel=2e-3)
+    swung = tight + 1.01 * BENDING / drive.radii[0]
+    assert closed[0] < damage.force < swung
     slope = np.log(100.0) / np.log(900.0 / 600.0)
     by_hand = damage.turns / line.cycles_to_failure(closed)
-    assert damage.cord[0] == pytest.approx(by_hand[0], rel=2e-3 * slope)
+    assert 1.0 < damage.cord[0] / by_hand[0] < (swung / closed[0]) ** slope
     assert 0.97**slope < damage.cord[1] / by_hand[1] < 1.0
     speed = 157.08 * drive.radii[0]
     assert damage.turns == pytest.approx(HOUR * speed / drive.belt_length, rel=0.01)
