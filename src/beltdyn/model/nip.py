@@ -31,6 +31,9 @@ from beltdyn.theory.nip import (
 _DEEPEST = 0.5
 """Largest compression of a cover or of the belt between two rollers, over its thickness."""
 _ROUNDING = 1e-9
+DAMPER_RESISTANCE = 1e-5
+"""Rolling resistance by contact damping on each side of a nip, over its force: 0.1 % of a load of 2 % of that force."""
+_LARGEST_LOSS_FACTOR = 2.0
 
 
 class Nip(Part):
@@ -273,23 +276,28 @@ def foundations(pulleys: Sequence[Pulley], belt: Belt, stiffness: float) -> Floa
     return np.array([side_stiffness(one, belt, stiffness) / stiffness for one in pulleys])
 
 
+def has_losses(pulleys: Sequence[Pulley], belt: Belt) -> bool:
+    """Whether covers or the belt lose by compression in nips."""
+    return any([belt.compression_loss_factor, *(one.cover.loss_factor for one in pulleys if one.cover is not None)])
+
+
 def damping_ratios(path: Path, pulleys: Sequence[Pulley], belt: Belt, contact: Contact | None) -> FloatArray:
     """Damping over stiffness of contact with each pulley against that of the law, shape (n,).
 
     A damper c on a foundation k takes 2 c v a^3 / 3 R^2 of the line of centers where a nip of the half width a passes
-    with v, in place of the loss pi / 4 eta k d^2 of hysteresis with d = a^2 / 2 R.
+    with v, in place of the loss pi / 4 eta k d^2 of hysteresis with d = a^2 / 2 R. Without loss factors a nip resists
+    rolling by `DAMPER_RESISTANCE` at most.
     """
-    found = np.ones(len(pulleys))
-    covers = [one.cover.loss_factor for one in pulleys if one.cover is not None]
-    if contact is None or not any([belt.compression_loss_factor, *covers]):
+    found, speed, is_lossy = np.ones(len(pulleys)), fastest_rim(pulleys, np.abs(path.radii)), has_losses(pulleys, belt)
+    damping = 0.0 if contact is None else contact.given("damping")
+    if contact is None or not (is_lossy or damping * speed > 0.0):
         return found
-    stiffness, damping = contact.given("stiffness"), contact.given("damping")
     if damping == 0.0:
         raise ModelError(
             "contact.damping = 0 leaves no damper for the loss factors of covers and belt in nips. Omit it, or the "
             "loss factors."
         )
-    speed = fastest_rim(pulleys, np.abs(path.radii))
+    stiffness = contact.given("stiffness")
     for pair, depth in zip(path.nips, path.indentations.tolist(), strict=True):
         rollers = [pulleys[one] for one in pair]
         both = Pair.of(rollers[0], rollers[1], belt, stiffness)
@@ -297,9 +305,19 @@ def damping_ratios(path: Path, pulleys: Sequence[Pulley], belt: Belt, contact: C
             linear = 1.0 / side_stiffness(pulleys[one], belt, stiffness)
             curved = 4.0 / 3.0 * solid * both.peak(depth)
             share = curved / (linear + curved)
-            lost = (1.0 - share) * _loss_factor(pulleys[one], belt, stiffness) + share * _solid_loss_factor(rollers)
-            found[one] = nip_damping(lost, both.half_width(depth), speed, share) * stiffness / damping
+            if is_lossy:
+                lost = (1.0 - share) * _loss_factor(pulleys[one], belt, stiffness) + share * _solid_loss_factor(rollers)
+            else:
+                lost = _loss_factor_of_damper(both, depth, (1.0 - share) / 4.0 + share / 3.0, linear + curved)
+            ratio = nip_damping(lost, both.half_width(depth), speed, share) * stiffness / damping
+            found[one] = ratio if is_lossy else min(ratio, 1.0)
     return found
+
+
+def _loss_factor_of_damper(pair: Pair, depth: float, form: float, compliance: float) -> float:
+    """Loss factor at which a side of a nip has `DAMPER_RESISTANCE`, for its compliance (m^2/N) and form of losses."""
+    lost = pi * form * compliance * pair.peak(depth) ** 2
+    return min(DAMPER_RESISTANCE * pair.force(depth) / lost, _LARGEST_LOSS_FACTOR) if lost > 0.0 else 0.0
 
 
 def _solid_loss_factor(pair: Sequence[Pulley]) -> float:

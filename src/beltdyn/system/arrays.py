@@ -28,6 +28,7 @@ PULLEY = record(
     carrier="i8",  # tensioner that carries the pulley, -1 where its center is fixed
     foundation="f8",  # stiffness of contact over that without a cover
     damping="f8",  # damping over stiffness of contact against that of the law
+    lossy="i8",  # whether the damper stands for hysteresis of covers and belt
     rim_ratio="f8",  # radius at which the tension line rolls off over the effective radius
     hertz="f8",  # penetration of solid rollers of a nip over the square of the line force, m^3/N^2
     lasting="f8",  # compression of the belt that stays behind a nip, m

@@ -119,8 +119,7 @@ def add_machines(
     for p in range(system.pulleys.size):
         forces.force[p] += forces.moment[p]
         forces.power[FRICTION_LOSS] += forces.friction[p]
-        hysteresis = system.pulleys[p].damping != 1.0
-        forces.power[COMPRESSION_LOSS if hysteresis else DAMPING_LOSS] += forces.damping[p]
+        forces.power[COMPRESSION_LOSS if system.pulleys[p].lossy else DAMPING_LOSS] += forces.damping[p]
     _add_tensioners(system, motion, factors, corner, forces)
     _add_links(system, motion, factors, corner, forces)
     _take_shafts(system, motion, factors, corner, forces)

@@ -18,7 +18,7 @@ from beltdyn.errors import ModelError
 from beltdyn.machines import Goods, Tensioner
 from beltdyn.model import Belt, Contact, Path, Prepared, Pulley
 from beltdyn.model.hysteresis import Passing, bending_at_points, passing_strains, rolling_resistances
-from beltdyn.model.nip import beside_the_path, damping_ratios, foundations, rim_ratios
+from beltdyn.model.nip import beside_the_path, damping_ratios, foundations, has_losses, rim_ratios
 from beltdyn.model.pulley import friction_on, surface_part
 from beltdyn.model.routing import radii as effective_radii
 from beltdyn.quadrature import Quadrature, gauss_points, lobatto_points
@@ -172,6 +172,7 @@ def belt_system(
     if path is not None and path.nips:
         shafts["rim_ratio"] = rim_ratios(path.nips, pulleys, radii)
         shafts["damping"] = damping_ratios(path, pulleys, belt, contact)
+        shafts["lossy"] = has_losses(pulleys, belt) * np.isin(np.arange(len(pulleys)), path.nips)
         if contact is not None:
             for name, values in beside_the_path(path, pulleys, belt, contact.given("stiffness")).items():
                 shafts[name] = values

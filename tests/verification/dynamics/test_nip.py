@@ -199,6 +199,40 @@ def test_unequal_rollers_turn_as_their_surfaces_roll(radius: float) -> None:
     assert ratio == pytest.approx(-(DRUM + 3e-3) / radius, rel=2e-3)
 
 
+def require_no_loss_in_the_damper(seed: int) -> None:
+    """Power of the drum is that of the load and of friction; contact damping takes below 0.1 % of the load."""
+    rng = np.random.default_rng(seed)
+    force, tension = 10.0 ** rng.uniform(2.5, 3.8), 10.0 ** rng.uniform(2.7, 3.5)
+    load = rng.uniform(max(0.03 * force, 0.1 * tension), max(0.06 * force, 0.7 * tension))
+    cover = {"thickness": rng.uniform(5e-3, 15e-3), "youngs_modulus": 10.0 ** rng.uniform(6.5, 7.5)}
+    solid = {"youngs_modulus": 10.0 ** rng.uniform(7.5, 8.5)}
+    changes = {
+        "belt.installed_tension": tension,
+        "belt.contact_stiffness": 10.0 ** rng.uniform(9.0, 10.6),
+        "belt.mass_per_length": rng.uniform(0.2, 2.0),
+        "pulley[drum].speed": rng.uniform(0.5, 6.0) / DRUM,
+        "pulley[tail].torque": -load * TAIL,
+        "pulley[press].cover": {"poissons_ratio": 0.45, **(cover if rng.random() < 0.7 else solid)},
+        "nip[1].force": force,
+    }
+    last = bd.steady_state(drive(**changes)).dataset.isel(time=-1)
+    power = float((last.shaft_torque * last.pulley_speed).sum())
+    damped, rubbed = float(last.contact_damping_power.sum()), float(last.friction_power.sum())
+    carried = load * float(last.belt_speed.mean())
+    assert damped < 1e-3 * carried, seed
+    assert power == pytest.approx(damped + rubbed, abs=3e-4 * carried), seed
+
+
+def test_contact_damping_takes_no_power_in_a_nip() -> None:
+    require_no_loss_in_the_damper(57)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("seed", range(200, 240))
+def test_contact_damping_takes_no_power_in_drawn_nips(seed: int) -> None:
+    require_no_loss_in_the_damper(seed)
+
+
 @pytest.mark.slow
 def test_the_nip_grips_up_to_coulomb_friction() -> None:
     """M = mu F R; and beyond, the answer names the nip."""
