@@ -136,14 +136,18 @@ LIMBER = 0.02
 """Bending stiffness (N m^2) of a handrail that closed forms without it are compared with."""
 
 
-def rubbing(drive: bd.Drive, span: int) -> float:
-    """Friction of a guide along a span, N, without what hangs before and behind it: 1 of 460 N in a handrail."""
+def rubbing(drive: bd.Drive, span: int, hanging: float = 0.0) -> float:
+    """Friction of a guide along a span, N, with a part of the weight of what hangs before and behind it.
+
+    A guide carries half of that, 1.6 of 460 N of a handrail; as much as pulleys lose of their friction, where the belt
+    that hangs down from them touches them less.
+    """
     weight = -drive.belt.mass_per_length * drive.gravity[1]
     whole, level = drive.path.span_lengths[span], abs(float(drive.path.span_directions[span, 0]))
     for one in drive.supports:
         if isinstance(one, bd.model.Guide) and one.span == drive.spans[span]:
             length = (one.end or whole) - one.start
-            return one.friction * (one.pressing + weight * level) * length
+            return one.friction * (one.pressing * length + weight * level * (length + hanging * (whole - length)))
     return 0.0
 
 
@@ -182,8 +186,8 @@ def test_a_handrail_is_pulled_through_its_guides(gravity: float) -> None:
     np.testing.assert_allclose(found, expected, rtol=2e-3)
     speed = float(run.dataset.belt_speed[-1].mean())
     power = float(run.dataset.shaft_torque[-1, 0] * run.dataset.shaft_speed[-1, 0])
-    straight = sum(rubbing(drive, span) for span in range(4))
-    assert power / speed == pytest.approx(slipping.sum() / speed + straight, rel=4e-3)
+    straight = sum(rubbing(drive, span, hanging=0.5) for span in range(4))
+    assert power / speed == pytest.approx(slipping.sum() / speed + straight, rel=1e-3)
     safeties = [one.slip_safety for one in bd.summarize(run).pulleys]
     assert np.isnan(safeties[2:]).all()
     assert safeties[0] > 1.5
