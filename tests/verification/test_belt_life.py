@@ -59,7 +59,7 @@ def true_forces(run: Run) -> FloatArray:
     drive, nodes = run.drive, run.dataset["nodal_coordinates"].values[-1]
     lengths = element_lengths(run.dataset.isel(field_time=slice(-1, None)), drive.belt_length)
     lengths, xi = np.ravel(lengths), (np.arange(PLACES) + 0.5) / PLACES
-    line, curvatures, tensions = drive.belt.cord_fatigue, [], []
+    line, curvatures, tensions = drive.belt.cord_fatigue, list[FloatArray](), list[float]()
     assert line is not None
     for first, last, length in zip(nodes, np.roll(nodes, -1, axis=0), lengths, strict=True):
         values = [[first[0:2], first[2:4], first[4:6]], [last[0:2], last[2:4], last[4:6]]]
@@ -68,7 +68,7 @@ def true_forces(run: Run) -> FloatArray:
         stretch = np.linalg.norm(q, axis=1)
         curvatures.append((q[:, 0] * w[:, 1] - q[:, 1] * w[:, 0]) / stretch**3)
         axial = drive.belt.stretch_parameters.tension
-        tensions.append(np.mean([axial(one) for one in stretch[4::8]]))
+        tensions.append(float(np.mean([axial(one) for one in stretch[4::8]])))
     bending = np.stack(curvatures)
     force_line = np.array(tensions) + 2.0 * drive.belt.bending_stiffness * np.mean(bending**2, axis=1)
     ends = np.cumsum(lengths)

@@ -14,6 +14,7 @@ import numpy as np
 import pytest
 
 import beltdyn as bd
+from beltdyn.arrays import FloatArray
 from beltdyn.errors import BeltdynError
 from beltdyn.model import Drive
 from beltdyn.parts.change import entry_name
@@ -107,7 +108,7 @@ def changes_of(drive: Drive, only: str = ".*") -> Iterator[tuple[str, list[Drive
             yield path, found
 
 
-def numbers(result: Result) -> dict[str, np.ndarray]:
+def numbers(result: Result) -> dict[str, FloatArray]:
     """All numbers of a result."""
     found = {name: one.values for name, one in result.dataset.variables.items() if one.dtype.kind == "f"}
     return {name: np.asarray(values) for name, values in found.items()}

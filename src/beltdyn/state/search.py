@@ -488,20 +488,34 @@ class SteadySearch:
         own = own_torque(self.at(Setting()), self.state, driver, speed)
         self._supported, self._support, self.setting = driver, reaction - own, Setting(support=1.0)
         if not self._reach(Setting()):
-            raise self._weak_motor(driver, speed, reaction) or self._refusal()
+            raise self._weak_motor(driver, reaction) or self._refusal()
 
-    def _weak_motor(self, driver: int, speed: float, required: float) -> ConvergenceError | None:
-        """A driver that at no speed (rad/s) gives the required torque, N m; None if it does."""
-        speeds, sense, free = speed * np.linspace(0.0, 1.0, _MOTOR_SPEEDS), np.sign(speed), self.at(Setting())
-        torque = sense * np.array([own_torque(free, self.state, driver, each) for each in speeds.tolist()])
-        most, at = float(torque.max()), RPM * abs(float(speeds[int(torque.argmax())]))
-        if not sense * required > most:
+    def _weak_motor(self, driver: int, required: float) -> ConvergenceError | None:
+        """Machines that at no speed of the belt give what it takes, beside a held shaft with a torque (N m); else None.
+
+        Torques count by their powers at speeds in the ratios that shafts have.
+        """
+        speeds = self.state.velocity[self.system.first_body :][self.system.pulleys.shaft]
+        free, parts = self.at(Setting()), np.linspace(0.0, 1.0, _MOTOR_SPEEDS)
+        torques = np.array(
+            [
+                [own_torque(free, self.state, p, part * speed) for p, speed in enumerate(speeds.tolist())]
+                for part in parts.tolist()
+            ]
+        )
+        powers = torques * speeds
+        best, others = int(powers.sum(axis=1).argmax()), np.arange(speeds.size) != driver
+        missing = required * float(speeds[driver]) + float(powers[-1, others].sum() - powers[best].sum())
+        motor = int(powers[best].argmax())
+        if not (missing > 0.0 and powers[best, motor] > 0.0):
             return None
         self.is_limited = True
+        most, speed = abs(float(torques[best, motor])), abs(float(speeds[motor]))
         return ConvergenceError(
-            f"no steady running found at t = {self._time:g} s: the motor of `{self.prepared.pulleys[driver].name}`, "
-            f"less other loads of its shaft, gives at most {most:.4g} N m (at {at:.4g} rpm) of the "
-            f"{abs(required):.4g} N m required at {RPM * abs(speed):.4g} rpm. Use a larger motor, or reduce the load."
+            f"no steady running found at t = {self._time:g} s: the machine of "
+            f"`{self.prepared.pulleys[motor].name}`, less other loads of its shaft, gives at most {most:.4g} N m (at "
+            f"{RPM * parts[best] * speed:.4g} rpm) of the {most + missing / speed:.4g} N m required. Use a larger "
+            "motor, or reduce the load."
         )
 
     def _balance(self, driver: int) -> bool:

@@ -27,8 +27,9 @@ def test_spans_have_what_alignment_allows_and_angles_if_pulleys_are_out_of_line(
         for one in (drive, drive.with_({"pulley[alternator].tilt": ["0 ± 0.1 deg", "0.2 deg"]}))
     )
     words = [" ".join(heading.split()) for heading in skewed.headings]
-    assert words[2:5] == ["deflection mm", "at rest Hz", "at rest N"]
-    assert words[5:] == ["fleeting leaving", "angle reaching", "worst, with tolerances", "offset allowed mm"]
-    assert [len(row) for row in aligned.rows] == [6] * 3
+    assert words[2:7] == ["tension mean N", "min N", "max N", "at start N", "at end N"]
+    assert words[7:10] == ["deflection mm", "at rest Hz", "at rest N"]
+    assert words[10:] == ["fleeting leaving", "angle reaching", "worst, with tolerances", "offset allowed mm"]
+    assert [len(row) for row in aligned.rows] == [11] * 3
     less = [float(row[-1]) < float(other[-1]) for row, other in zip(skewed.rows, aligned.rows, strict=True)]
     assert less == [False, True, True]

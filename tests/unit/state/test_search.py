@@ -44,6 +44,6 @@ def test_a_motor_too_weak_for_what_the_belt_carries_is_named(breakdown: float) -
     if breakdown > 150.0:
         assert float(steady_state(drive).dataset.shaft_torque[-1, 0]) == pytest.approx(147.0, rel=0.02)
         return
-    with pytest.raises(ConvergenceError, match=r"the motor of `head`, .* at most 130 N m .* of the 14\d") as failure:
+    with pytest.raises(ConvergenceError, match=r"the machine of `head`, .* at most 130 N m .* of the 14\d") as failure:
         steady_state(drive)
     assert "Use a larger motor" in str(failure.value)
