@@ -487,15 +487,15 @@ class SteadySearch:
         self._hold(None)
         own = own_torque(self.at(Setting()), self.state, driver, speed)
         self._supported, self._support, self.setting = driver, reaction - own, Setting(support=1.0)
+        speeds = self.state.velocity[self.system.first_body :][self.system.pulleys.shaft].copy()
         if not self._reach(Setting()):
-            raise self._weak_motor(driver, reaction) or self._refusal()
+            raise self._weak_motor(speeds, driver, reaction) or self._refusal()
 
-    def _weak_motor(self, driver: int, required: float) -> ConvergenceError | None:
-        """Machines that at no speed of the belt give what it takes, beside a held shaft with a torque (N m); else None.
+    def _weak_motor(self, speeds: FloatArray, driver: int, required: float) -> ConvergenceError | None:
+        """Machines that at no speed of the belt give what it takes; None if they do.
 
-        Torques count by their powers at speeds in the ratios that shafts have.
+        At the speeds of shafts (rad/s) the held one requires a torque (N m). Torques count by their powers.
         """
-        speeds = self.state.velocity[self.system.first_body :][self.system.pulleys.shaft]
         free, parts = self.at(Setting()), np.linspace(0.0, 1.0, _MOTOR_SPEEDS)
         torques = np.array(
             [
