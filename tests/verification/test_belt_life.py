@@ -7,6 +7,8 @@ length, with the stretch g and the rate of turn t = k g: the axial force is dW/d
 smooth rim that and EI k^2 / 2 have a constant sum.
 """
 
+from typing import Any
+
 import numpy as np
 import pytest
 from scipy.interpolate import BPoly
@@ -32,15 +34,16 @@ def drawn(seed: int) -> bd.Drive:
         centers.append([0.5 * centers[1][0], rng.uniform(0.3, 0.6)])
     slope = rng.uniform(4.0, 12.0)
     load = -rng.uniform(0.2, 0.7) * tension * large
-    pulleys = [
+    pulleys: list[dict[str, Any]] = [
         {"name": f"p{number}", "center": center, "radius": radius}
         for number, (center, radius) in enumerate(zip(centers, radii, strict=True))
     ]
-    pulleys[0]["speed"] = float(rng.choice([-1.0, 1.0]) * rng.uniform(50.0, 200.0))
-    pulleys[1] |= {"torque": float(np.sign(pulleys[0]["speed"]) * load), "inertia": 0.01}
+    sense = float(rng.choice([-1.0, 1.0]))
+    pulleys[0]["speed"] = sense * rng.uniform(50.0, 200.0)
+    pulleys[1] |= {"torque": sense * load, "inertia": 0.01}
     for pulley in pulleys[2:]:
         pulley["inertia"] = 0.001
-    line = {"cycles": [1e6, 1e6 * 4.0**slope], "forces": [4.0 * tension, tension], "source": "drawn"}
+    line: dict[str, Any] = {"cycles": [1e6, 1e6 * 4.0**slope], "forces": [4.0 * tension, tension], "source": "drawn"}
     line |= {"range_exponent": float(rng.choice([0.0, 0.5, 1.0]))}
     belt = {
         "axial_stiffness": float(rng.uniform(1e5, 4e5)),

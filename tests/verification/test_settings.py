@@ -17,9 +17,9 @@ import beltdyn as bd
 from beltdyn.arrays import FloatArray
 from beltdyn.errors import BeltdynError
 from beltdyn.model import Drive
-from beltdyn.parts.change import entry_name
 from beltdyn.parts.kind_fields import NameOf
 from beltdyn.parts.part import Part
+from beltdyn.parts.text_file import entry_name
 from beltdyn.results import Result
 
 SPECIFIED = {"elements": 170, "force_tolerance": 2e-3, "max_step": 2e-5, "shear_correction": 0.8, "start_at": 0.01}
@@ -110,7 +110,7 @@ def changes_of(drive: Drive, only: str = ".*") -> Iterator[tuple[str, list[Drive
 
 def numbers(result: Result) -> dict[str, FloatArray]:
     """All numbers of a result."""
-    found = {name: one.values for name, one in result.dataset.variables.items() if one.dtype.kind == "f"}
+    found = {str(name): one.values for name, one in result.dataset.variables.items() if one.dtype.kind == "f"}
     return {name: np.asarray(values) for name, values in found.items()}
 
 

@@ -147,7 +147,9 @@ def rubbing(drive: bd.Drive, span: int, hanging: float = 0.0) -> float:
     for one in drive.supports:
         if isinstance(one, bd.model.Guide) and one.span == drive.spans[span]:
             length = (one.end or whole) - one.start
-            return one.friction * (one.pressing * length + weight * level * (length + hanging * (whole - length)))
+            return float(
+                one.friction * (one.pressing * length + weight * level * (length + hanging * (whole - length)))
+            )
     return 0.0
 
 
