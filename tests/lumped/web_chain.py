@@ -145,3 +145,85 @@ def _is_clear(rollers: Sequence[Roller], found: Chain) -> bool:
         if roller.speed
     ]
     return min(used) < _GRIPPING and min(found.tensions) > 5.0
+
+
+class ControlledLine(NamedTuple):
+    """A web line with control of tension, and what follows from its set value."""
+
+    drive: Drive
+    tensions: list[float]
+    """Of the spans in the order of results, N."""
+    trim: float
+    """That holds the set value."""
+
+
+def controlled_line(seed: int) -> ControlledLine:
+    """The line of a seed: a driven roller, a load cell or a dancer, and a roller that it trims; spans of 0.3 to 3 m."""
+    rng = np.random.default_rng([SEED, 7, seed])
+    while True:
+        found = _draw_controlled(rng)
+        if found is not None:
+            return found
+
+
+_BARE: dict[str, Any] = {"kind": "resistance", "constant": 1.0}
+"""Load of the trimmed roller while only the path is asked for."""
+
+
+def _draw_controlled(rng: np.random.Generator) -> ControlledLine | None:
+    """All idle rollers pass their tension on, so that the first roller and the set value give those of the spans."""
+    speed, length = 2.0, float(np.exp(rng.uniform(np.log(0.3), np.log(3.0))))
+    before, behind, further = (rng.random(3) < [0.5, 0.5, 0.3]).tolist()
+    kinds = ["driven", *["idle"] * before, "sensor", *["idle"] * behind, "trimmed", *["driven"] * further]
+    enters, held, leaves = np.exp(rng.uniform(np.log(60.0), np.log(250.0), 3)).tolist()
+    friction, draw = float(np.exp(rng.uniform(np.log(0.2), 0.0))), float(rng.uniform(-0.003, 0.003))
+    sensor, last = kinds.index("sensor"), kinds.index("trimmed")
+    is_dancer, is_speed = bool(rng.random() < 0.4), bool(rng.random() < 0.5)
+
+    def drive(force: float, load: dict[str, Any]) -> Drive:
+        pulleys = [
+            _pulley(k, "driven" if kind == "driven" else "idle", friction, speed * (1.0 + (draw if k else 0.0)))
+            for k, kind in enumerate(kinds)
+        ]
+        for k, pulley in enumerate(pulleys):
+            pulley["center"] = [length * (k + 1), pulley["center"][1]]
+        pulleys[sensor]["mass"], pulleys[last]["load"] = 1.0, [load]
+        cell = {"kind": "sliding", "pulley": f"roller {sensor}", "preload": force, "damping": 100.0}
+        return Drive(
+            belt={
+                "axial_stiffness": AXIAL,
+                "bending_stiffness": 1e-4,
+                "mass_per_length": MASS,
+                "thickness": 1e-4,
+                "width": 0.2,
+            },
+            unwinder={"point": [0.0, 0.3], "tension": enters},
+            pulley=pulleys,
+            winder={"point": [length * (len(kinds) + 1), 0.3 if len(kinds) % 2 else 0.0], "tension": leaves},
+            tensioner=[cell | {"direction": [0, -1 if sensor % 2 == 0 else 1], "rate": 500.0 if is_dancer else 1e6}],
+            simulation={"duration": 1.0},
+        )
+
+    path, passed = drive(100.0, _BARE).path, speed / (1.0 + enters / AXIAL)
+    grips = friction * path.wrap_angles
+    after = AXIAL * (speed * (1.0 + draw) / passed - 1.0) if further else leaves
+    if after < 30.0 or (further and abs(np.log(leaves / after)) > 0.9 * grips[-1]):
+        return None
+    if abs(np.log(held / enters)) > 0.9 * grips[0] or abs(np.log(after / held)) > 0.9 * grips[last]:
+        return None
+    force = (held - MASS * speed**2) * float(np.linalg.norm(path.gradient(sensor)[1]))
+    torque, sense = 0.05 * (held - after), 1.0 if last % 2 == 0 else -1.0
+    if is_speed:
+        gain, command = float(np.exp(rng.uniform(np.log(0.5), np.log(50.0)))), speed / 0.05 * rng.uniform(0.98, 1.02)
+        trim = (torque / gain + passed * (1.0 + held / AXIAL) / 0.05) / command - 1.0
+        load: dict[str, Any] = {"kind": "speed_trim", "speed": sense * command, "speed_gain": gain}
+    else:
+        command = torque * rng.uniform(0.6, 1.8)
+        trim = torque / command - 1.0
+        load = {"kind": "torque_trim", "torque": sense * command}
+    if abs(trim) > (0.09 if is_speed else 0.9) or abs(torque) < 0.1:
+        return None
+    set_value = {"position_gain": 0.1} if is_dancer else {"set_force": force, "force_gain": 1e-5}
+    load |= set_value | {"sensor": f"roller {sensor}", "integral_time": 2.0}
+    tensions = [held] * last + [after] + [leaves] * further + [enters]
+    return ControlledLine(drive(force, load), tensions, trim)

@@ -12,6 +12,7 @@ import numpy as np
 
 from beltdyn.arrays import FloatArray
 from beltdyn.errors import ConvergenceError, ModelError
+from beltdyn.machines.loads.shaft import ShaftLoads
 from beltdyn.model import Drive, Prepared
 from beltdyn.parts.messages import listing
 from beltdyn.parts.quantity import RPM
@@ -105,6 +106,8 @@ class SteadySearch:
         self._uniform, self._tension = self._wanted[: system.pulleys.size], 0.0
         self._prescribed = self.constant.bodies.unknown[self.constant.pulleys.shaft] < 0
         self._has_clutches = not np.all(rigid_links(self.constant))
+        self._controls = self.constant.shaft_loads.table["state"][:-1] >= 0
+        self._errors = np.zeros(self._controls.size)
         self._hold(None)
 
     def _hold(self, pulley: int | None) -> None:
@@ -198,6 +201,7 @@ class SteadySearch:
             self._held_speed = speed / float(self.prepared.path.radii[driver])
             self._hold(driver)
         self._uniform, self._tension = speed / self.prepared.path.radii, rest.tension
+        self._errors = self._errors_at(rest.place)
         if not self._run_up(rest.place, speed, self._gentle(speed, rest.tension)):
             raise self._refusal()
         if driver is not None:
@@ -600,7 +604,7 @@ class SteadySearch:
         if self._held is not None:
             driven[self._held], offset[self._held] = True, self._held_speed
         offset[:count] *= np.where(driven, setting.speed, setting.load)
-        offset[system.shaft_loads.table.schedule[:-1]] *= setting.load
+        offset[system.shaft_loads.table.schedule[:-1]] *= np.where(self._controls, 1.0, setting.load)
         if self._supported is not None:
             offset[self._supported] += setting.support * self._support
         friction, hysteresis = system.law.friction.smoothed(setting.smoothing), system.hysteresis.copy()
@@ -612,8 +616,26 @@ class SteadySearch:
             profiles=system.profiles._replace(segment=segment),
             carrying=with_resistance(system.carrying, setting.load),
             carriage=with_part_of_tensions(system.carriage, self._tension, setting.load),
+            shaft_loads=self._with_set_values(system.shaft_loads, setting.load),
         )
         return system if setting.bending_loss == 1.0 else with_bending_loss(system, setting.bending_loss)
+
+    def _errors_at(self, place: FloatArray) -> FloatArray:
+        """Errors that integrating controllers see in a place at rest, m or N; shape (L,)."""
+        table = self.constant.shaft_loads.table
+        errors = [row.sensor_rate * place[-row.sensor] + row.sensor_zero if row.sensor else 0.0 for row in table[:-1]]
+        return np.where(self._controls, errors, 0.0)
+
+    def _with_set_values(self, loads: ShaftLoads, load: float) -> ShaftLoads:
+        """Controllers with a part of the way from what they see at rest to their set values.
+
+        An integrating controller holds its set value with any torque: without torque there is no such state.
+        """
+        if load == 1.0 or not np.any(self._errors):
+            return loads
+        table = loads.table.copy()
+        table["sensor_zero"][:-1] -= (1.0 - load) * self._errors
+        return loads._replace(table=table)
 
 
 def _largest_load(passed: Sequence[Passed]) -> float:

@@ -8,7 +8,7 @@ import pytest
 import beltdyn as bd
 from beltdyn.errors import ConvergenceError
 from beltdyn.model import Drive
-from tests.lumped.web_chain import AXIAL, MASS, Roller, chain, drawn_line
+from tests.lumped.web_chain import AXIAL, MASS, Roller, chain, controlled_line, drawn_line
 
 
 @pytest.mark.parametrize("seeds", [range(3), pytest.param(range(3, 1000), marks=pytest.mark.slow)], ids=len)
@@ -31,6 +31,26 @@ def test_every_line_runs_with_the_tensions_of_the_chain(seeds: range, measured: 
     )
     assert len(refused) <= len(seeds) // 1000, refused
     assert errors[worst] < 0.02, worst
+
+
+@pytest.mark.parametrize("seeds", [range(1), pytest.param(range(1, 300), marks=pytest.mark.slow)], ids=len)
+def test_every_controlled_line_holds_its_set_value(seeds: range, measured: Callable[..., None]) -> None:
+    """By a load cell or a dancer, from any first guess of the roller that it trims; one of 1000 is refused."""
+    errors, refused = dict[int, float](), dict[int, str]()
+    for seed in seeds:
+        drawn = controlled_line(seed)
+        try:
+            run = bd.steady_state(drawn.drive)
+        except ConvergenceError as error:
+            refused[seed] = str(error)
+            continue
+        errors[seed] = float(np.max(np.abs(run.dataset.span_tension.values[-1] / drawn.tensions - 1.0)))
+    worst = max(errors, key=lambda seed: errors[seed])
+    measured(
+        lines=len(seeds), refused=len(refused), median=float(np.median(list(errors.values()))), worst=errors[worst]
+    )
+    assert len(refused) <= len(seeds) // 1000, refused
+    assert errors[worst] < 0.01, worst
 
 
 def line(speed: float, friction: float) -> Drive:
