@@ -14,7 +14,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 from pydantic import Field
 
-from beltdyn.arrays import ComplexArray, FloatArray, IntArray
+from beltdyn.arrays import BoolArray, ComplexArray, FloatArray, IntArray
 from beltdyn.errors import ModelError
 from beltdyn.model import Drive, prepare
 from beltdyn.parts.options import ForceTolerance, RangeCount, takes_options
@@ -22,6 +22,7 @@ from beltdyn.parts.quantity import RPM, Count, Numbers, numbers_in
 from beltdyn.points.changed_drive import at_instant, at_speed, driver_of, held_at, sense_of
 from beltdyn.points.operating_points import Axes, OperatingPoints
 from beltdyn.results import Result, Run, Variable
+from beltdyn.solvers.eigenvalues import lightly_damped
 from beltdyn.solvers.flutter import Vibrations, flutter_shift
 from beltdyn.solvers.run_progress import Report
 from beltdyn.state.linearized import SmallMotions
@@ -86,7 +87,7 @@ class SeenModes(NamedTuple):
 
 def seen_modes(motions: SmallMotions, count: int) -> SeenModes:
     """Modes of a drive about a state, as they are compared with those of other states."""
-    values, coordinates = eigenmodes(motions, count)
+    values, coordinates = eigenmodes(motions, count, counted=lightly_damped)
     points = even_points(motions)
     found = [
         np.concatenate(speeds_of(motions, points, value, vector))
@@ -105,7 +106,8 @@ class Tracks:
     """Modes over states that follow each other: a row of a table for each state, a column for each mode.
 
     A mode with which none of a state agrees pauses there, and one that agrees with none begins a column, if it is among
-    the `lowest` of its state.
+    the `lowest` lightly damped ones of a state or lies between them. Modes that are heavily damped in all states come
+    last.
     """
 
     def __init__(self, lowest: int) -> None:
@@ -155,10 +157,12 @@ class Tracks:
         agreed = np.full(places.shape, np.nan)
         for row, (own, agreement) in enumerate(zip(self._places, self._agreed, strict=True)):
             places[row, : own.size], agreed[row, : own.size] = own, agreement
-        columns = np.flatnonzero(np.any((places >= 0) & (places < self._lowest), axis=0))
+        counted = np.zeros(states, dtype=int)
+        counted[: len(self._seen)] = [0 if seen is None else self._counted(seen.values) for seen in self._seen]
+        columns = np.flatnonzero(np.any((places >= 0) & (places < counted[:, None]), axis=0))
         places, agreed = places[:, columns], agreed[:, columns]
         first = np.argmax(places >= 0, axis=0)
-        order = np.lexsort((np.take_along_axis(places, first[None], axis=0)[0], first))
+        order = np.lexsort((np.take_along_axis(places, first[None], axis=0)[0], first, self._heavy(places)))
         places, agreed = places[:, order], agreed[:, order]
         seen = [one for one in self._seen if one is not None]
         values = np.full(places.shape, complex(np.nan, np.nan))
@@ -170,6 +174,19 @@ class Tracks:
                 for part, given in zip(shares, one.shares, strict=True):
                     part[row, there] = given[places[row, there]]
         return ModeTable(values, agreed, shares)
+
+    def _counted(self, values: ComplexArray) -> int:
+        """Number of modes of a state up to the last of the lowest lightly damped ones."""
+        return int(np.searchsorted(np.cumsum(lightly_damped(values)), self._lowest)) + 1
+
+    def _heavy(self, places: IntArray) -> BoolArray:
+        """Whether modes are heavily damped in all states."""
+        heavy = np.ones(places.shape[1], dtype=bool)
+        for row, seen in zip(places, self._seen, strict=False):  # states to come are not known
+            known = np.flatnonzero(row >= 0)
+            if seen is not None:
+                heavy[known] &= ~lightly_damped(seen.values[row[known]])
+        return heavy
 
 
 class ModeTable(NamedTuple):
@@ -449,7 +466,8 @@ def campbell(
     points
         Number of speeds of a range.
     count
-        Number of modes at each speed, from the lowest frequency.
+        Number of lightly damped modes at each speed, from the lowest frequency, as for `modes`. Heavily damped modes
+        between them come last.
     orders
         Exciting orders of the pulley's rotation, such as "1, 2, 4" or [1, 2, 4]. By default the harmonics of speeds
         and loads in the drive file, and the rotation of all pulleys and of the belt.
