@@ -92,3 +92,17 @@ def scaled(drive: Drive, factor: float) -> Drive:
 def _rotating(drive: Drive) -> float:
     """Mass of the rollers of idlers, which count in what they resist, kg/m."""
     return float(sum(one.rotating_mass for one in drive.supports if isinstance(one, Idlers)))
+
+
+def tension_of_a_belt_as_long_as_its_path(drive: Drive) -> float:
+    """Tension N of a belt at rest whose stretch is what its free strands sag, N: a shorter one has more, none has less.
+
+    A strand of length L on a slope is longer than its chord by (w cos)^2 L^3 / (24 N^2), so that
+    N^3 = EA sum((w cos)^2 L^3) / (24 l).  Supported strands do not sag.
+    """
+    first, second = (np.array(pulley.center) for pulley in drive.pulleys)
+    length = float(np.linalg.norm(second - first))
+    normal = drive.belt.mass_per_length * GRAVITY * abs(float(first[0] - second[0])) / length
+    free = 2 - len(drive.supports)
+    sags = free * normal**2 * length**3 / 24.0
+    return float(np.cbrt(drive.belt.axial_stiffness * sags / drive.path.length))

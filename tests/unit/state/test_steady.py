@@ -173,7 +173,7 @@ def test_a_neighbour_begins_where_another_ended(loaded: Drive, run: Run) -> None
     driver, driven = run.drive.pulleys
     lighter = run.drive.replace(pulley=[driver, driven.replace(torque={"kind": "constant", "value": -40.0})])
     found, other = steady_state(lighter, start=run).dataset, steady_state(lighter).dataset
-    assert found.attrs["newton_iterations_of_search"] <= 4
+    assert found.attrs["newton_iterations_of_search"] <= min(4, other.attrs["newton_iterations_of_search"])
     np.testing.assert_array_equal(found.node_coordinate, run.dataset.node_coordinate)
     np.testing.assert_allclose(found.pulley_speed, other.pulley_speed, rtol=1e-5)
     np.testing.assert_allclose(found.span_tension, other.span_tension, rtol=1e-4)

@@ -3,17 +3,22 @@
 Whatever names a tension, in sheets, limits, tables and warnings, is the largest or least along the path.
 """
 
+import re
+
 import numpy as np
 import pytest
 
 import beltdyn as bd
+from beltdyn.errors import ConvergenceError
 from beltdyn.model import Drive
 from beltdyn.results import Run, key_numbers, summarize
 from beltdyn.state.steady import steady_state
-from tests.lumped.drawn_heavy import GRAVITY, drawn_heavy
+from tests.lumped.drawn_heavy import GRAVITY, drawn_heavy, tension_of_a_belt_as_long_as_its_path
 
 QUICK, ALL = (0, 8), (2, 3, 4, 5, 6, 7, *range(9, 22), *range(23, 35), *range(36, 41))
-"""Seeds; the belts of 1, 22 and 35 hang so deep that the installed tension needs one longer than the path."""
+"""Seeds whose belts have the installed tension with a length below that of the path."""
+DEEP = (1, 22, 35)
+"""Seeds whose belts hang so deep that the installed tension needs one longer than the path, which is refused."""
 WITHIN = 2e-3
 """Of the largest tension: bending takes part of it from the last elements of a span."""
 
@@ -60,6 +65,20 @@ def test_every_number_of_a_span_is_that_of_its_elements(seed: int) -> None:
     assert numbers["largest_tension"] == pytest.approx(largest, abs=WITHIN * scale)
     assert numbers["least_tension"] == pytest.approx(least, abs=WITHIN * scale)
     assert float(table.dataset.largest_tension[0]) == pytest.approx(largest, abs=WITHIN * scale)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("seed", DEEP)
+def test_a_belt_longer_than_its_path_is_refused_with_the_least_tension(seed: int) -> None:
+    """That of a belt as long as the path, by the parabolas of its strands; slopes and arcs make 5 %."""
+    drive = drawn_heavy(seed)
+    with pytest.raises(ConvergenceError, match="as long as the path around the pulleys, still has") as caught:
+        bd.equilibrium(drive)
+    stated = re.search(r"still has (\S+) N", str(caught.value))
+    assert stated
+    least = tension_of_a_belt_as_long_as_its_path(drive)
+    assert float(stated[1]) == pytest.approx(least, rel=0.05)
+    assert drive.belt.installed_tension < float(stated[1])
 
 
 @pytest.mark.parametrize("seed", [QUICK[1], *(pytest.param(seed, marks=pytest.mark.slow) for seed in ALL)])
