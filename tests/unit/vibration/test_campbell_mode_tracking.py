@@ -91,5 +91,5 @@ def test_heavily_damped_modes_do_not_count_and_come_last() -> None:
     values = np.array([-3.0 + 1.0j, -8.0 + 2.0j, -0.1 + 5.0j, -0.2 + 9.0j, -0.3 + 12.0j])
     tracks = Tracks(2)
     for _ in range(2):
-        tracks.take(seen([1.0, 2.0, 5.0, 9.0, 12.0], np.eye(5).tolist())._replace(values=values))
+        tracks.take(seen([1.0, 2.0, 5.0, 9.0, 12.0], np.eye(5, dtype=complex).tolist())._replace(values=values))
     assert angular(tracks, 2) == [[5.0, 9.0, 1.0, 2.0]] * 2
