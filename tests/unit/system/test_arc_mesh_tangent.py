@@ -12,7 +12,7 @@ from beltdyn.model import Path, Prepared, prepare
 from beltdyn.model.resolution import Laid
 from beltdyn.state.newton import steady_work
 from beltdyn.state.staying import laid_state
-from beltdyn.system.arc_mesh import change_shifts, fit_mesh, hold_arcs, largest_shift, shifts_of, zones_of
+from beltdyn.system.arc_mesh import change_shifts, fit_mesh, hold_arcs, largest_shift, passed_at, shifts_of, zones_of
 from beltdyn.system.arrays import NO_TANGENT, Equations, Motion, System, TangentFactors
 from beltdyn.system.build import flowing_system, staying_system
 from beltdyn.system.constant_drive import constant_drive, with_speeds_unknown
@@ -316,10 +316,28 @@ def test_belt_on_an_arc_moves_with_it_and_belt_on_spans_by_its_share() -> None:
         assert away @ frame.arcs.direction[arc] == pytest.approx(0.0, abs=1e-9)
     held = np.flatnonzero(frame.arcs.holding.any(axis=1))
     driver = next(zone for zone in zones if zone.arc == 0)
-    assert np.all((starts[held] > driver.start) & (starts[held] < driver.end))
+    size = abs(path.radii[0]) * path.wrap_angles[0] / laid.stretch
+    away_from_middle = np.abs(starts - 0.5 * (driver.start + driver.end)) / (0.5 * size)
+    inside, reached = (set(np.flatnonzero(away_from_middle < limit).tolist()) for limit in (1.0 - 1e-9, 1.0 + 1e-9))
+    assert inside <= set(held.tolist()) <= reached  # nodes at both ends of the arc are on it by rounding
+    assert held.size > 2
     assert np.linalg.norm(frame.arcs.holding, axis=1).sum() == pytest.approx(1.0)
     tangents = path.tangent(laid.start + laid.stretch * starts[held])
     assert np.sum(frame.arcs.holding[held] * tangents) == pytest.approx(1.0)
+
+
+def test_belt_that_passes_is_that_of_node_0_and_the_shifts() -> None:
+    """Linear between nodes, and around the belt: at its end as at node 0, which has no shift."""
+    system, state = over_time(*laid(**BARE), spread=1.0)
+    frame = system.frame
+    way = state.position[system.first_body : frame.place + 1] + 0.0j
+    way[-1] = 0.3 + 0.2j
+    shifts = np.array([interpreted(node_shift)(frame, state.position, node) for node in range(system.nodes)])
+    ends = np.append(0.0, np.cumsum(system.length))
+    assert shifts[0] == 0.0
+    along = np.append(ends, 0.5 * (ends[1:] + ends[:-1]))
+    expected = way[-1] + np.interp(along, ends, np.append(shifts, 0.0))
+    np.testing.assert_allclose(passed_at(system, way, along), expected, atol=1e-15)
 
 
 def nodes_of(prepared: Prepared, along: float) -> FloatArray:
