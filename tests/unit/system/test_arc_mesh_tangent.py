@@ -6,7 +6,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from beltdyn.arrays import FloatArray, IntArray
+from beltdyn.arrays import ComplexArray, FloatArray, IntArray
 from beltdyn.kernel import interpreted
 from beltdyn.model import Path, Prepared, prepare
 from beltdyn.model.resolution import Laid
@@ -330,13 +330,13 @@ def test_belt_that_passes_is_that_of_node_0_and_the_shifts() -> None:
     """Linear between nodes, and around the belt: at its end as at node 0, which has no shift."""
     system, state = over_time(*laid(**BARE), spread=1.0)
     frame = system.frame
-    way = state.position[system.first_body : frame.place + 1] + 0.0j
+    way: ComplexArray = state.position[system.first_body : frame.place + 1].astype(np.complex128)
     way[-1] = 0.3 + 0.2j
     shifts = np.array([interpreted(node_shift)(frame, state.position, node) for node in range(system.nodes)])
     ends = np.append(0.0, np.cumsum(system.length))
     assert shifts[0] == 0.0
     along = np.append(ends, 0.5 * (ends[1:] + ends[:-1]))
-    expected = way[-1] + np.interp(along, ends, np.append(shifts, 0.0))
+    expected: ComplexArray = way[-1] + np.interp(along, ends, np.append(shifts, 0.0))
     np.testing.assert_allclose(passed_at(system, way, along), expected, atol=1e-15)
 
 
