@@ -34,7 +34,11 @@ def residual(system: System, state: State, equations: Equations, factors: Tangen
 @pytest.fixture
 def ring(drive: Drive) -> System:
     """A belt without pulleys on elements of unequal lengths."""
-    belt = drive.belt.replace(discretization="quintic", elements=9, quadrature_points=8)
+    return ring_of(drive)
+
+
+def ring_of(drive: Drive, **losses: float) -> System:
+    belt = drive.belt.replace(discretization="quintic", elements=9, quadrature_points=8, **losses)
     lengths = np.linspace(1.0, 2.0, 9)
     given = belt_system(belt, closure="shared_node", lengths=belt.given_length * lengths / lengths.sum())
     mesh = given._replace(frame=staying(given.control, given.length, belt.mass_per_length))
@@ -89,6 +93,33 @@ def test_tangent(with_machines: Callable[..., Drive], tensioner: str, law: str, 
         way = 1e-9 * scale * random.normal(size=size)
         difference = 0.5 * (at(way) - at(-way))
         np.testing.assert_allclose(tangent @ way, difference, rtol=2e-4, atol=2e-6 * np.abs(difference).max())
+
+
+@pytest.mark.parametrize(
+    "losses", [{"stretch_loss_factor": 0.2}, {"bending_loss_factor": 0.3}], ids=["stretch", "bend"]
+)
+def test_losses_of_the_material_change_with_the_flow(drive: Drive, losses: dict[str, float]) -> None:
+    """By central differences, without those of a belt that loses nothing: of stretch and of bending each alone."""
+    systems, random = [ring_of(drive, **each) for each in (losses, {})], np.random.default_rng(8)
+    size = systems[0].first_body + 1
+    radius, along = drive.belt_length / (2.0 * np.pi), point_coordinates(systems[0])
+    angle = along / radius
+    out, tangent = np.stack([np.cos(angle), np.sin(angle)], 1), np.stack([-np.sin(angle), np.cos(angle)], 1)
+    nodes = nodal_coordinates(systems[0], radius * out, 1.001 * tangent, -1.001 / radius * out)
+    position = np.append(nodes.ravel(), 0.0) + 1e-3 * random.normal(size=size)
+    velocity = np.append(0.01 * random.normal(size=size - 1), SPEED)
+    columns, differences, step = [], [], 1e-3
+    for system in systems:
+        equations, sides = new_equations(system), []
+        residual(system, State(position, velocity, np.zeros(size)), equations, TangentFactors(0.0, 1.0, 0.0))
+        columns.append(equations.matrix.column[:, :, -1].ravel().copy())
+        for sense in (step, -step):
+            moved = velocity + sense * np.eye(size)[-1]
+            sides.append(residual(system, State(position, moved, np.zeros(size)), equations)[: size - 1])
+        differences.append((sides[0] - sides[1]) / (2.0 * step))
+    found, expected = (np.subtract(*each) for each in (columns, differences))
+    assert np.abs(expected).max() > 0.0
+    np.testing.assert_allclose(found, expected, atol=1e-5 * np.abs(expected).max())
 
 
 def test_inertia_is_that_of_material_points(ring: System) -> None:
