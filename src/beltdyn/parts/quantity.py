@@ -359,7 +359,6 @@ Name = Annotated[str, StringConstraints(max_length=60, pattern=r"^\w[\w .-]*$")]
 
 _RANGE_NUMBER = r"[+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?"
 _RANGE = re.compile(rf"\s*({_RANGE_NUMBER})\s*\.\.\s*({_RANGE_NUMBER})\s*(.*?)\s*")
-_LIST = re.compile(rf"\s*({_RANGE_NUMBER}(?:\s*,\s*{_RANGE_NUMBER})*)\s*(.*?)\s*")
 _MOST = 10_000
 
 
@@ -405,20 +404,21 @@ def _finite(name: str, given: Sequence[float] | FloatArray, unit: str) -> FloatA
 
 def _numbers_of_text(name: str, text: str, unit: str, count: int, example: str) -> FloatArray:
     """Numbers of a range or of a list."""
-    ranged, listed = _RANGE.fullmatch(text), _LIST.fullmatch(text)
+    ranged, listed = _RANGE.fullmatch(text), [_NUMBER.fullmatch(each) for each in text.split(",")]
     if ranged is not None:
         if not 2 <= count <= _MOST:
             raise ModelError(f"{count} points of {name} = {text!r} are not possible. Give 2 to {_MOST:,}.")
         first, last, given = ranged.groups()
         return np.linspace(_number(name, first, given, unit), _number(name, last, given, unit), count)
-    if listed is not None:
-        given = listed[2]
-        return np.array([_number(name, one.strip(), given, unit) for one in listed[1].split(",")])
+    matches = [match for match in listed if match is not None]
+    if len(matches) == len(listed):
+        last = matches[-1]["unit"]
+        return np.array([_number(name, match["number"], match["unit"] or last, unit) for match in matches])
     raise ModelError(f"{name} = {text!r} must be a range such as {example!r}, or numbers separated by commas.")
 
 
 def _number(name: str, number: str, given: str, unit: str) -> float:
-    """A number of a range in SI units."""
+    """A number of a range or a list in SI units."""
     if not unit and given in ("", "%"):
         return float(number) * (0.01 if given else 1.0)
     if not given:

@@ -17,6 +17,7 @@ from beltdyn.solvers.run_progress import Progress, Report
 from beltdyn.state.installation import Rest, on_equal_elements, rest_of
 from beltdyn.state.static import standing
 from beltdyn.system.constant_drive import constant_drive
+from beltdyn.theory.input_shaping import SHAPERS, fitted_shaper
 from beltdyn.vibration.small_motions import sticking_rate
 
 _INSET = 0.05
@@ -35,6 +36,12 @@ _VARIABLES = {
     "mode_frequency": Variable(_EACH, "Hz", "Natural frequencies, from the lowest on"),
     "mode_part": Variable(_EACH, "1", "Part with most of the kinetic energy", "str"),
 }
+_SHAPERS = ("shaper",)
+_OF_SHAPERS = {
+    "shaper_frequency": Variable(_SHAPERS, "Hz", "Frequency, for the stroke"),
+    "shaper_duration": Variable(_SHAPERS, "s", "Longer moves by"),
+    "shaper_residual": Variable(_SHAPERS, "1", "Vibration left, at most"),
+}
 BELT = "belt"
 """Name of the belt among what moves in a mode."""
 
@@ -52,7 +59,9 @@ def stroke(
 
     At each place of the carriage the axis is at rest with the same belt; prescribed pulleys are held, others turn, and
     the belt sticks to its pulleys or is held by its teeth. The stiffness is that of all spans, arcs and teeth at the
-    carriage. Of the natural modes that in which the carriage has most of the kinetic energy counts.
+    carriage. Of the natural modes that in which the carriage has most of the kinetic energy counts. For it the input
+    shapers ZV, MZV and EI are fitted (`beltdyn.theory.input_shaping`), each at the frequency that leaves least
+    vibration over the stroke.
 
     Parameters
     ----------
@@ -114,9 +123,33 @@ def stroke(
         ]
     numbers = np.arange(1, columns["mode_frequency"].shape[1] + 1)
     modes = Variable(("mode",), "1", "Mode", "int64")
-    result = build_result("stroke", drive, values, {"place": (axis, ways), "mode": (modes, numbers)}, doubts)
+    damping = _damping_ratio(first, float(columns["frequency"].mean()))
+    values["damping_ratio"] = Variable((), "1", "Damping ratio of the carriage by the losses of the belt"), damping
+    values |= _shapers(columns["frequency"], damping)
+    coordinates: dict[str, tuple[Variable, Any]] = {
+        "place": (axis, ways),
+        "mode": (modes, numbers),
+        "shaper": (Variable(_SHAPERS, "1", "Input shaper", "str"), list(SHAPERS)),
+    }
+    result = build_result("stroke", drive, values, coordinates, doubts)
     result.dataset.attrs.update(axes="place", columns_by="mode")
     return result
+
+
+def _damping_ratio(drive: Drive, frequency: float) -> float:
+    """Damping ratio of a vibration of a frequency (Hz) that stretches the belt."""
+    belt = drive.belt
+    return 0.5 * belt.stretch_loss_factor + np.pi * frequency * belt.stretch_damping_time
+
+
+def _shapers(frequencies: FloatArray, damping: float) -> dict[str, tuple[Variable, FloatArray]]:
+    """Values of `_OF_SHAPERS` for the natural frequencies (Hz) of the carriage over the stroke."""
+    fitted = [fitted_shaper(name, frequencies, damping) for name in SHAPERS]
+    rows = [(frequency, shaper.duration, residual) for frequency, residual, shaper in fitted]
+    return {
+        name: (variable, np.array(column))
+        for (name, variable), column in zip(_OF_SHAPERS.items(), zip(*rows, strict=True), strict=True)
+    }
 
 
 def _ways(prepared: Prepared, places: Numbers | None, points: int) -> FloatArray:

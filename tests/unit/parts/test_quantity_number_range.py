@@ -15,6 +15,7 @@ def test_a_range_is_divided_equally() -> None:
 
 def test_a_list_is_sorted() -> None:
     np.testing.assert_allclose(numbers_in("load", "1, 0.5,2", "", 40), [0.5, 1.0, 2.0])
+    np.testing.assert_allclose(numbers_in("places", "-20 mm, 0 mm, 3 cm", "m", 40), [-0.02, 0.0, 0.03])
     np.testing.assert_allclose(numbers_in("speed", "3 rad/s", "rad/s", 40), [3.0])
 
 

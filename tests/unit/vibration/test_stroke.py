@@ -4,6 +4,7 @@ import pytest
 
 import beltdyn as bd
 from beltdyn.errors import ModelError
+from beltdyn.theory.input_shaping import SHAPERS, residual_vibration
 
 AXIS = bd.example("printer_axis")
 
@@ -28,6 +29,11 @@ def test_it_is_stiffer_nearer_to_the_driver_and_swings_faster() -> None:
     assert float(halfway.mode_frequency[0]) == float(halfway.frequency)
     speed = (30.0 / AXIS.belt.mass_per_length) ** 0.5
     assert float(halfway.mode_frequency[1]) == pytest.approx(speed / (2.0 * taken_up), rel=0.01)  # the long way back
+    assert found.damping_ratio == 0.5 * AXIS.belt.stretch_loss_factor
+    for name, frequency, residual in zip(SHAPERS, found.shaper_frequency, found.shaper_residual, strict=True):
+        shaper = SHAPERS[name](float(frequency), float(found.damping_ratio))
+        left = residual_vibration(shaper, found.frequency.values, float(found.damping_ratio))
+        assert left.max() == pytest.approx(float(residual), rel=1e-12)
 
 
 def test_places_are_within_the_free_way() -> None:
