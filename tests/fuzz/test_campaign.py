@@ -19,12 +19,12 @@ from beltdyn.errors import BeltdynError, ModelError
 from beltdyn.model import Drive, loads
 from tools.campaign import damage, hostile
 from tools.campaign.__main__ import examples, odd, report
-from tools.campaign.crossed_examples import crossed
-from tools.campaign.crossing import CONSUMERS, OF_RUNS, with_gaps
+from tools.campaign.crossed_examples import _computed, crossed
+from tools.campaign.crossing import CONSUMERS, OF_RUNS, pair, with_gaps
 from tools.campaign.drive_mutations import bases
 from tools.campaign.mutants import balance, look, try_mutant
 from tools.campaign.odd_drives import odd_drive
-from tools.campaign.trial import attempt, outcome
+from tools.campaign.trial import attempt, attempt_here, outcome
 
 FIRST = int(os.environ.get("BELTDYN_FIRST_MUTATION", "0"))
 COUNT = int(os.environ.get("BELTDYN_MUTATIONS", "1000"))
@@ -101,11 +101,22 @@ def test_every_command_exists(tmp_path: Path) -> None:
 
 def test_every_consumer_reads_a_drive_at_rest(tmp_path: Path) -> None:
     """Or refuses it with the reason; the slow test has all results."""
-    rest = bd.equilibrium(bd.example("two_pulley"))
+    rest = bd.open_result(bd.equilibrium(bd.example("two_pulley")).save(tmp_path / "rest.nc"))
     consumers = {name: use for name, use in CONSUMERS.items() if name != "analyses of results"}
     ends = {name: outcome(partial(use, rest, tmp_path)) for name, use in consumers.items()}
     assert {name: end for name, end in ends.items() if end[0] not in ("fine", "refused")} == {}
     assert {name for name, end in ends.items() if end[0] == "refused"} == {"export to vtk"}
+    assert outcome(partial(pair, [rest, rest], tmp_path)) == ("fine", "")
+
+
+def test_faults_of_consumers_are_noticed(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Of commands, of warnings, and of trials in this process that take too long."""
+    rest = bd.open_result(bd.equilibrium(bd.example("two_pulley")).save(tmp_path / "rest.nc"))
+    monkeypatch.setattr("tools.campaign.crossing.run_command", lambda words: 5 * (words[0] == "export"))
+    assert CONSUMERS["commands"](rest, tmp_path) == "plot: exit code 0, and no word; export: exit code 5: "
+    assert attempt_here(lambda: "x" * next(one for one in iter(int, 1) if one), 0.2).kind == "too long"
+    told = rest.dataset.assign_attrs(warnings="no derivative: internal error in a.py:1 (KeyError: 'a').")
+    assert "internal error in a.py:1" in _computed(lambda: bd.Result(told, rest.drive))
 
 
 def test_gaps_without_a_word_are_noticed(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
@@ -127,7 +138,8 @@ def test_gaps_without_a_word_are_noticed(tmp_path: Path, monkeypatch: pytest.Mon
 @pytest.mark.slow
 @pytest.mark.parametrize("name", examples("all"))
 def test_every_consumer_reads_every_result(name: str, tmp_path: Path) -> None:
-    assert report(name, crossed(1, [name], tmp_path)) == 0
+    """Studies are of other analyses with each example."""
+    assert report(name, crossed(1 + examples("all").index(name), [name], tmp_path)) == 0
 
 
 @pytest.mark.slow

@@ -129,7 +129,8 @@ def paired(
 def coarse(name: str) -> Drive:
     """An example with short runs and coarse meshes."""
     drive = bd.example(name)
-    settings = drive.simulation.replace(duration=min(_SHORT, drive.simulation.duration))
+    interval = min(drive.simulation.output_interval, _SHORT / 3)
+    settings = drive.simulation.replace(duration=_SHORT, output_interval=interval, field_interval=None)
     return drive.replace(simulation=settings).with_({"steady.force_tolerance": _COARSE})
 
 

@@ -72,7 +72,7 @@ class _TooLong(BaseException):
 def attempt_here(work: Callable[[], str], seconds: float) -> Outcome:
     """Do something in this process, with what it has loaded; parameters as for `attempt`.
 
-    A trial that ends the process ends all.
+    A trial that ends the process ends all, and compiled code is not ended before it returns.
     """
 
     def end(*_: object) -> NoReturn:

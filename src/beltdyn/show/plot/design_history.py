@@ -9,10 +9,10 @@ from matplotlib.figure import Figure
 from matplotlib.ticker import MaxNLocator
 
 from beltdyn.errors import ModelError
-from beltdyn.parts.messages import suggest
 from beltdyn.parts.quantity import RPM
 from beltdyn.results import Result
 from beltdyn.show.plot.figures import Choice, always, figure
+from beltdyn.show.plot.study_values import chosen_of
 from beltdyn.show.plot.style import INK, axes_or_new, color, dash, name_lines, name_once, panels, rows
 
 # Tornado figures: sensitivity of results to the parameters of a drive
@@ -106,10 +106,7 @@ def tolerances(result: Result, of: str | None = None, *, ax: Axes | None = None)
 
 def _tornado(result: Result, of: str | None, variable: str, words: str, ax: Axes) -> Axes:
     """Draw bars of a variable over numbers, the largest on top; below them the spread of tolerances."""
-    names = [str(name) for name in result.dataset["result"].values]
-    name = names[0] if of is None else of
-    if name not in names:
-        raise ModelError(f"of = {name!r} is not a result. {suggest(name, names)}")
+    name = chosen_of([str(one) for one in result.dataset["result"].values], of)
     chosen = result.dataset.sel(result=name)
     effects = np.nan_to_num(chosen[variable].values)
     labels = [str(path) for path in chosen["number"].values]

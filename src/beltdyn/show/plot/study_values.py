@@ -2,7 +2,7 @@
 
 import json
 import re
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from functools import partial
 
 import numpy as np
@@ -117,10 +117,14 @@ def moved_from_base(values: xr.DataArray) -> BoolArray:
 
 def chosen_result(result: Result, of: str | None) -> str:
     """The requested result; by default the first."""
-    names = known_results(result)
+    return chosen_of(known_results(result), of)
+
+
+def chosen_of(names: Sequence[str], of: str | None) -> str:
+    """The requested one of the names of results; by default the first."""
     name = names[0] if of is None else of
     if name not in names:
-        raise ModelError(f"of = {name!r} is not a result of the study. {suggest(name, names)}")
+        raise ModelError(f"of = {name!r} is not a result. {suggest(name, list(names))}")
     return name
 
 
