@@ -152,6 +152,7 @@ def test_states_observed_together_are_those_observed_alone(fixed_points: System)
     alone = [see(system, position[k], velocity[k]) for k in range(4)]
     for name in ("span_tension", "belt_speed", "wrap_angle", "contact_pulley", "friction_force", "contact_position"):
         np.testing.assert_array_equal(getattr(together, name), [getattr(each, name)[0] for each in alone], name)
+    assert not together.wrap_angle[[1, 3]].any()
     for name in ("belt_tension", "kinetic_energy"):
         values = [getattr(each, name)[0] for each, kept in zip(alone, shown, strict=True) if kept]
         np.testing.assert_array_equal(getattr(together, name), values, name)

@@ -9,7 +9,7 @@ from hypothesis import strategies as st
 
 from beltdyn.arrays import FloatArray
 from beltdyn.system.arrays import RingMatrix
-from beltdyn.system.ring_matrix import clear, entries, places, ring_matrix, solve_ring, substitute
+from beltdyn.system.ring_matrix import clear, entries, hold_at_end, places, ring_matrix, solve_ring, substitute
 
 Dense = Callable[[RingMatrix, bool], tuple[FloatArray, FloatArray]]
 PARTS = ("diagonal", "upper", "lower", "column", "row", "corner", "node_side", "border_side")
@@ -44,6 +44,19 @@ def test_solves_what_lapack_solves(dense: Dense, dof: int, nodes: int, border: i
 def test_long_rings(dense: Dense, closed: bool) -> None:
     ring = random_ring(300, 2, 0)
     np.testing.assert_allclose(solution(ring, closed), np.linalg.solve(*dense(ring, closed)), atol=1e-12)
+
+
+@pytest.mark.parametrize("node", [0, 4])
+def test_a_coordinate_that_is_held_at_an_end_keeps_to_itself(dense: Dense, node: int) -> None:
+    ring = random_ring(5, 3, 6)
+    before = dense(ring, False)[0].copy()
+    hold_at_end(ring, node, 1)
+    after, place = dense(ring, False)[0], 6 * node + 1
+    unit = np.eye(len(after))[place]
+    np.testing.assert_array_equal(after[place], unit)
+    np.testing.assert_array_equal(after[:, place], unit)
+    others = np.arange(len(after)) != place
+    np.testing.assert_array_equal(after[others][:, others], before[others][:, others])
 
 
 def test_keeps_the_matrix() -> None:
