@@ -11,7 +11,7 @@ from beltdyn.system.arrays import NO_TANGENT, TORQUE_WORK, Motion, System
 from beltdyn.system.body_forces import new_body_forces
 from beltdyn.system.build import staying_system
 from beltdyn.system.state import State
-from beltdyn.system.web import content, hold_web, push_web, rebased, set_content
+from beltdyn.system.web import change_content, content, hold_web, push_web, rebased, set_content, way_of_content
 
 ENTERS, LEAVES = 100.0, 150.0
 
@@ -60,6 +60,14 @@ def test_a_content_is_a_belt_of_another_length(prepared: Prepared, system: Syste
         np.testing.assert_allclose(own, expected, rtol=1e-9, atol=1e-12 * np.abs(expected).max(), err_msg=name)
     np.testing.assert_allclose(system.supports.force, other.supports.force, rtol=1e-12, atol=1e-15)
     assert content(rebased(system)).tolist() == [1.0]
+
+
+def test_a_step_changes_the_content_by_the_last_unknown_but_one(system: System) -> None:
+    border, before = np.array([9.0, 2e-3, 7.0]), system.length.copy()
+    interpreted(change_content)(system.carriage, system, -0.5, border)
+    assert content(system) == pytest.approx([0.999], rel=1e-12)
+    np.testing.assert_allclose(system.length, 0.999 * before, rtol=1e-12)
+    assert interpreted(way_of_content)(system.carriage, border) == pytest.approx(2e-3 * before.sum(), rel=1e-12)
 
 
 def test_tensions_at_the_ends_are_equations_with_their_tangent(system: System, state: State) -> None:
