@@ -260,6 +260,7 @@ def test_without_flows_that_differ_it_is_the_mesh_without_arcs() -> None:
     system, state = over_time(*laid(**BARE), spread=0.0)
     bare = prepare(conveyor(pulley=PULLEYS, support=[], goods=[], gravity=[0.0, 0.0]))
     plain = flowing_system(staying_system(bare, bare.equal_lengths(ELEMENTS)), np.array([1.0, 0.0]))
+    assert shifts_of(plain.frame).size == 0
     shifts = system.frame.place - system.frame.arcs.node.size + np.arange(system.frame.arcs.node.size)
     same = State(*(np.delete(v, shifts) for v in (state.position, state.velocity, state.acceleration)))
     found, known = (residual(one, at, new_equations(one)) for one, at in ((system, state), (plain, same)))

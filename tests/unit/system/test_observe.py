@@ -141,18 +141,18 @@ def test_forces_at_points_add_up_to_hub_forces_and_torques(fixed_points: System)
 
 
 def test_states_observed_together_are_those_observed_alone(fixed_points: System) -> None:
-    """Of a belt that has left its pulleys and of one that lies on them; energies and tensions of those shown alone."""
+    """A belt on its pulleys, and one that has left them; energies and tensions of the one that is shown."""
     system, random = fixed_points, np.random.default_rng(4)
-    depths, shown = (-4e-4, 0.02, -4e-4, 0.02), np.array([False, True, True, False])
+    depths, shown = (-4e-4, 0.02), np.array([False, True])
     places = [laid(system, Path(system.pulleys.center, system.pulleys.radius + depth)).position for depth in depths]
     position = np.array([place + 1e-5 * random.normal(size=place.size) for place in places])
     velocity = 0.5 * random.normal(size=position.shape)
-    forces = body_forces_at(system, np.zeros(4), position, velocity)
+    forces = body_forces_at(system, np.zeros(2), position, velocity)
     together = observe_motion(system, position, velocity, forces, shown)
-    alone = [see(system, position[k], velocity[k]) for k in range(4)]
+    alone = [see(system, position[k], velocity[k]) for k in range(2)]
     for name in ("span_tension", "belt_speed", "wrap_angle", "contact_pulley", "friction_force", "contact_position"):
         np.testing.assert_array_equal(getattr(together, name), [getattr(each, name)[0] for each in alone], name)
-    assert not together.wrap_angle[[1, 3]].any()
+    assert not together.wrap_angle[1].any()
     for name in ("belt_tension", "kinetic_energy"):
         values = [getattr(each, name)[0] for each, kept in zip(alone, shown, strict=True) if kept]
         np.testing.assert_array_equal(getattr(together, name), values, name)
