@@ -19,7 +19,7 @@ from beltdyn.points.duty import Column, at_row, durations_of, duty_of
 from beltdyn.points.operating_points import PULLEY, Axes, OperatingPoints
 from beltdyn.results import Result, Run, Variable, open_result
 from beltdyn.results.belt_history import BeltHistory, turn_history
-from beltdyn.results.damage import HOUR, Damage, Lives, cord_force, damage_of_run, known_variables
+from beltdyn.results.damage import HOUR, Damage, Lives, cord_force, damage_of_run, known_variables, turning_points
 from beltdyn.results.dataset import is_result
 from beltdyn.results.run import run_of
 from beltdyn.solvers.run_progress import Report
@@ -230,7 +230,7 @@ class _Sums:
 def _extremes(drive: Drive, history: BeltHistory) -> IntArray:
     """Numbers of the points of a history that are kept: in each cell of a turn that of an extreme of the cord force.
 
-    The largest in cells above the middle of its range, the least in those below; the nearest one in cells without any.
+    Of several extremes that which is farthest from the middle of the range; the nearest point in cells without any.
     """
     line = drive.belt.cord_fatigue
     force = (np.abs(history.curvature) if line is None else cord_force(line, history))[:, 0]
@@ -238,7 +238,8 @@ def _extremes(drive: Drive, history: BeltHistory) -> IntArray:
     excess = force - 0.5 * (force.min() + force.max())
     cells = np.minimum((turns * _PLACES.size).astype(int), _PLACES.size - 1)
     kept = np.abs(turns[:, None] - _PLACES).argmin(axis=0)
-    ascending = np.argsort(np.abs(excess), kind="stable")
+    turns_back = np.isin(np.arange(force.size), turning_points(force))
+    ascending = np.lexsort((np.abs(excess), turns_back))
     kept[cells[ascending]] = ascending  # the last of a cell stays
     return np.asarray(kept)
 

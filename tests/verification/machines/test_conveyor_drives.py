@@ -113,3 +113,30 @@ def test_a_loaded_slope_is_stopped_and_held() -> None:
     held = float(run.shaft_torque.values[time > 20.0, 0].mean())
     lifted, idle = lift * GRAVITY * GOODS * RADIUS, FRICTION * GRAVITY * length * (2.0 * BELT + GOODS + 24.4) * RADIUS
     assert lifted - idle < held < lifted + idle
+
+
+@pytest.mark.slow
+def test_an_overland_conveyor_stops_in_eight_seconds() -> None:
+    """The motor goes off and the brake comes on, with default settings: momentum over resistance, brake and slope."""
+    drive, stop, brake = bd.example("conveyor_1km"), 1.0, 18e3
+    off = {"kind": "step", "time": stop, "before": 1.0, "value": 0.0}
+    loads = [
+        {
+            "kind": "motor",
+            "breakdown_torque": 60e3,
+            "breakdown_slip": 0.05,
+            "synchronous_speed": 8.1,
+            "schedule": off,
+        },
+        {"kind": "brake", "torque": {"kind": "ramp", "start": stop, "end": stop + 0.5, "value": brake}},
+    ]
+    head = drive.pulleys[0].replace(speed=None, inertia=500.0, load=loads)
+    settings = {"duration": 12.0, "start": "steady", "output_interval": "50 ms"}
+    run = bd.simulate(drive.replace(pulley=[head, drive.pulleys[1]], simulation=settings))
+    time, speed = run.dataset.time.values, run.dataset.belt_speed.values.mean(axis=1)
+    assert run.dataset.attrs["status"] == "completed"
+    assert float(np.abs(run.dataset.energy_closure).max()) < 1e-3
+    standing = time[np.abs(speed) < 0.05 * speed[0]]
+    assert stop + 6.5 < standing[0] < stop + 8.5
+    assert any("the belt goes slack" in text for text in run.warnings)
+    assert not any("inf" in text or " 0 m apart" in text for text in run.warnings)

@@ -95,7 +95,7 @@ def sagging_belt(evidence: Evidence) -> Iterator[Finding]:
         if not support.free_length > 0.0:
             continue
         on, weight = _on_support(evidence, support, fields)
-        taut = np.maximum(tension[:, on], np.finfo(float).tiny)
+        taut = np.maximum(tension[:, on], weight * support.free_length)  # below it hangs slack, and no spacing helps
         sag = sag_ratio(1.0, support.free_length, 1.0) * weight / taut
         if not sag.size or not sag.max() > (1.0 + NOTABLE) * MOST_SAG:
             continue
@@ -106,13 +106,14 @@ def sagging_belt(evidence: Evidence) -> Iterator[Finding]:
             f"{fields[row]:.4g} s, where its tension is {plain(tension[:, on][row, column])} N"
         )
         needed, spacing = max(needed, least), support.free_length * MOST_SAG / float(sag[row, column])
-        places.append(f"{plain(beyond(support.free_length, spacing, 3))} m apart in support[{number}]")
+        if tension[:, on][row, column] > weight[row, column] * support.free_length:
+            places.append(f"{plain(beyond(support.free_length, spacing, 3))} m apart in support[{number}]")
     if found:
         yield Finding(
             f"the belt sags between idlers by {listing(found)}, more than {MOST_SAG:.0%}.",
             "Goods work on the belt and may spill; the idlers resist more than their friction coefficient says.",
-            f"Raise the least tension to {plain(beyond(0.0, needed, 3))} N by a heavier take-up, or place idlers "
-            f"{listing(places)}.",
+            f"Raise the least tension to {plain(beyond(0.0, needed, 3))} N by a heavier take-up"
+            f"{f', or place idlers {listing(places)}' if places else ''}.",
         )
 
 
