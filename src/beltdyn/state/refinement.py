@@ -120,7 +120,7 @@ def steady_from_rest(
 def refine(search: SteadySearch, rule: MeshRule, tolerance: float) -> tuple[dict[str, float], MeshRule]:
     """Refine the mesh of a drive in steady running, which is changed in place."""
     before, errors = _solution(search), dict[str, float]()
-    if not before.arcs:
+    if not (np.any(before.seen.normal_force) or any(arc.nips for arc in before.arcs)):  # arcs may meet in a point
         raise ConvergenceError(
             "the belt has lifted off all pulleys, which can no longer drive it. Reduce the speed, or increase the "
             "installed tension."
