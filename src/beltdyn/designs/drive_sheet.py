@@ -517,7 +517,12 @@ class _DriveSheet:
             arms = np.array([place - np.array(one.anchor) for place, _ in places])
             self.variables["state_arm_angle"] = (Variable(_STATE, "rad", "Arm angle"), np.arctan2(*arms.T[::-1]))
         for name, (_, position, tension) in rows.items():
-            if name in longer and not lower < position < upper:
+            if np.isnan(position):
+                self._notes.append(
+                    f"the tensioner of {one.pulley} was not found in equilibrium with the belt of the position {name}. "
+                    "Change the belt length, the tolerance or wear, or the stops."
+                )
+            elif name in longer and not lower < position < upper:
                 left = f"with {tension:.4g} N" if tension > _SLACK * self._rest.tension else "where the belt is slack"
                 self._notes.append(
                     f"the belt of the position {name} moves the tensioner of {one.pulley} to its stop at "

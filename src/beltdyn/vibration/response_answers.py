@@ -24,7 +24,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from beltdyn.arrays import ComplexArray, FloatArray
-from beltdyn.errors import ModelError
+from beltdyn.errors import ConvergenceError, ModelError
 from beltdyn.model import Drive, Prepared
 from beltdyn.parts.quantity import RPM
 from beltdyn.points.operating_points import Axes, labels_of
@@ -275,7 +275,13 @@ class ForcedMotion:
         for target, given in ((moved, excited.angles), (load, excited.torques)):
             for pulley, amplitude in given.items():
                 target[shafts[pulley]] += amplitude
-        factors = splu(matrix[free][:, free].tocsc())
+        try:
+            factors = splu(matrix[free][:, free].tocsc())
+        except RuntimeError as error:  # SuperLU's word for a motion without stiffness, damping or inertia
+            raise ConvergenceError(
+                f"the drive has no response at {frequency / tau:.4g} Hz: some part moves there without any "
+                "force, such as a pulley that nothing holds. Hold it by a load, or vary the speed."
+            ) from error
         moved[free] = factors.solve((load - matrix @ moved)[free])
         chosen = np.asarray(places, dtype=int)
         by_force = np.zeros((matrix.shape[0], chosen.size), complex)
