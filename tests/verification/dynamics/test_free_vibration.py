@@ -1,6 +1,6 @@
 """Decay of a small free vibration after a kick of 1 % of the load, against that of linearised motion.
 
-What the time integrator adds is told with its amount: the rate in the run less that amount is the rate of `modes`.
+The rate in the run differs by no more than what is told of the time integrator; with the advised step it agrees.
 """
 
 import re
@@ -12,6 +12,8 @@ import beltdyn as bd
 from beltdyn.results.free_decay import free_decay, without_integrator
 
 KICK, LOAD, INERTIA = 0.01, 10.0, 3e-3
+LEFT = 0.02
+"""Part of the rate by which a kick of 1 % decays otherwise than infinitesimal motion."""
 LIMIT = 0.1
 """Relative error of a rate of decay from which on it is told."""
 
@@ -55,7 +57,7 @@ def rate_of_modes(drive: bd.Drive, frequency: float) -> float:
 @pytest.mark.slow
 @pytest.mark.parametrize(
     ("speed", "creep", "radius", "is_told"),
-    [(100.0, None, 0.6, False), (300.0, None, 0.6, False), (300.0, 1e-4, 0.6, False), (300.0, 1e-4, 0.0, True)],
+    [(100.0, None, 0.6, False), (300.0, None, 0.6, False), (300.0, 1e-4, 0.6, False), (100.0, 1e-4, 0.3, True)],
 )
 def test_what_the_integrator_does_to_a_decay_is_told(
     speed: float, creep: float | None, radius: float, is_told: bool
@@ -66,13 +68,16 @@ def test_what_the_integrator_does_to_a_decay_is_told(
     found = free_decay(time[late][:-1], run.dataset.span_tension.values[late, 0][:-1])
     assert found is not None
     step = float(np.mean(steps[late & (time <= found.until)] ** 3) ** (1.0 / 3.0))
-    exact = rate_of_modes(run.drive, found.frequency)
-    assert without_integrator(radius, found, step).rate == pytest.approx(exact, rel=0.05)
+    real = without_integrator(radius, found, step)
+    exact, part = rate_of_modes(run.drive, real.frequency), abs(found.rate - real.rate)
+    assert abs(found.rate - exact) < part + LEFT * exact
     told = [text for text in run.warnings if "the time integrator changes" in text]
-    assert bool(told) == is_told == (abs(found.rate / exact - 1.0) > LIMIT)
+    assert bool(told) == is_told == (part > LIMIT * found.rate)
     if told:
-        rate = float(re.search(r"Hz and ([\d.]+) 1/s", told[0])[1])  # type: ignore[index]
-        assert rate == pytest.approx(exact, rel=0.05)
+        assert float(re.search(r"off by up to ([\d.]+) 1/s", told[0])[1]) == pytest.approx(part, rel=0.05)  # type: ignore[index]
         shorter = float(re.search(r"max_step = ([\d.e-]+)", told[0])[1])  # type: ignore[index]
         again = bd.simulate(kicked(speed, creep, spectral_radius=radius, max_step=shorter))
         assert not [text for text in again.warnings if "the time integrator changes" in text]
+        close = free_decay(time[late][:-1], again.dataset.span_tension.values[late, 0][:-1])
+        assert close is not None
+        assert close.rate == pytest.approx(exact, rel=0.05)
