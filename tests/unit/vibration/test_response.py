@@ -5,6 +5,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+from scipy.sparse import linalg
 
 import beltdyn as bd
 from beltdyn.errors import ModelError
@@ -131,3 +132,20 @@ def test_nothing_excites() -> None:
 def test_steady_running_is_that_of_the_mean(shaken: Drive, found: bd.Result) -> None:
     run = steady_state(shaken, at=1.0)
     np.testing.assert_allclose(found.dataset.span_tension.sel(speed=120.0), run.dataset.span_tension[-1], rtol=1e-3)
+
+
+def test_a_motion_that_nothing_holds_has_no_response(shaken: Drive, monkeypatch: pytest.MonkeyPatch) -> None:
+    """At a point where SuperLU finds the dynamic stiffness singular; the other point is there."""
+    factorized, singular = linalg.splu, iter([True])
+
+    def splu(matrix: Any, **options: Any) -> Any:
+        if matrix.dtype.kind == "c" and next(singular, False):
+            raise RuntimeError("Factor is exactly singular")
+        return factorized(matrix, **options)
+
+    monkeypatch.setattr(linalg, "splu", splu)
+    found = response(shaken, speed="60, 120 rad/s").dataset
+    failures = found["failure"].values.tolist()
+    assert "the drive has no response at" in failures[0]
+    assert failures[1] == ""
+    assert np.isfinite(found["span_tension_amplitude"].sel(speed=120.0)).all()
