@@ -38,7 +38,7 @@ RUNS = r"simulation\.(?!duration).*|.*\.inertia|tensioner.*\.damping|.*\.(schedu
 TRAVELLING = r"(belt|contact)\.(integration|quadrature_points|sampling)|belt\.shear_correction"
 MOTION = (
     r"pulley.*\.(torque|load|speed|harmonics|hub|friction).*|.*\.(damping|creep_ratio|standstill_creep|moment_arm)|"
-    r"belt\..*(damping_time|loss_factor)|.*friction.*|belt\.wedge_angle|rotation|simulation\.duration"
+    r"belt\..*(damping_time|loss_factor)|.*friction.*|belt\.wedge_angle|belt\.contact_stiffness|contact\.normal_law|rotation|simulation\.duration"
 )
 ALWAYS = (TEXTS, JUDGED, SOLD, OUT_OF_PLANE, ABSENT)
 WITHOUT_EFFECT: Mapping[str, tuple[str, ...]] = {
@@ -51,7 +51,8 @@ WITHOUT_EFFECT: Mapping[str, tuple[str, ...]] = {
 """Keys that by their meaning cannot matter, as the manual says. To all: texts; limits and fatigue data; numbers that
 are read of belts and pulleys as sold, or only checked; what has no effect in the plane; and what belongs to a part that
 the drive lacks (weight without gravity, nips, dry friction). To states that stay: settings of runs, inertia, when ramps
-begin, and elements of the travelling mesh, which results list as not used. At rest: what acts in motion alone."""
+begin, and elements of the travelling mesh, which results list as not used. At rest: what acts in motion alone,
+and a stiffness that counts only where it is the largest of several."""
 
 
 def changed_values(key: str, value: Any, annotation: Any) -> list[Any]:
