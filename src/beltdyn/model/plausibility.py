@@ -373,9 +373,9 @@ def _massless(drive: Drive) -> Iterator[Finding]:
 
 
 def _driving_loads(drive: Drive, installation: Installation) -> Iterator[Finding]:
-    """Constant torques that turn the drive, which its driver brakes, as a load of the wrong sign does."""
+    """Constant torques that turn a closed belt, which its driver brakes, as a load of the wrong sign does."""
     driver = drive.driver
-    if driver is None or drive.pulleys[driver].speed is None:
+    if driver is None or drive.pulleys[driver].speed is None or drive.ends or drive.nips:
         return
     powers = powers_drawn(drive, driver, installation)[0]
     if powers.sum() >= 0.0:
