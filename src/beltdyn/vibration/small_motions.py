@@ -12,10 +12,12 @@ from beltdyn.state.settling import DIRECTION
 from beltdyn.state.static import standing
 from beltdyn.state.staying import Standing, bring_to_stand
 from beltdyn.state.steady import search_from, steady_from
+from beltdyn.system.arc_mesh import arc_count, fitted
 from beltdyn.system.arrays import System
 from beltdyn.system.build import drive_system, flowing_system, staying_system, without_hysteresis
 from beltdyn.system.build_machines import with_resistance
 from beltdyn.system.constant_drive import constant_drive, dry_friction_of, without_actions
+from beltdyn.system.frame import StayingByArcs
 from beltdyn.system.meshing import stopped
 from beltdyn.system.state import State
 from beltdyn.transient.beginning import recorded_state, staying_mesh
@@ -38,10 +40,14 @@ def state_of(run: Run, time: float) -> tuple[System, State, float]:
     given = staying_mesh(run.prepared, run)
     flowing = flowing_system(given, np.array(run.dataset.attrs[DIRECTION]))
     moving, place = recorded_state(run, time, flowing), flowing.frame.place
-    speed = float(moving.velocity[place])
-    state = State(*(np.delete(vector, place) for vector in (moving.position, moving.velocity, moving.acceleration)))
+    speed, first_flow = float(moving.velocity[place]), place - arc_count(flowing.frame)
+    flows = np.arange(first_flow, place + 1)
+    state = State(*(np.delete(vector, flows) for vector in (moving.position, moving.velocity, moving.acceleration)))
     held = constant_drive(given, time)._replace(element=staying_system(run.prepared, given.length).element)
     held.frame.speed[0] = speed
+    if isinstance(held.frame, StayingByArcs):
+        held.frame.shift[:] = moving.position[first_flow:place]
+        fitted(held, state.position)
     angles = state.position[held.first_body :][: held.pulleys.size]
     return stopped(held, angles, float(moving.position[place])), state, speed
 
