@@ -42,13 +42,20 @@ def test_the_belt_passes_as_in_steady_running(settled: bd.Run, steady: bd.Run) -
 
 
 def test_modes_of_a_settled_run_are_those_of_steady_running(settled: bd.Run, steady: bd.Run) -> None:
-    """Frequencies to 0.1 %; those of their two meshes, of 29 and 35 elements, differ by 0.014 %."""
+    """Frequencies to 0.1 %; those of their two meshes, of 30 and 40 elements, differ by 0.02 %.
+
+    Damping of a thousandth differs by up to 7 % between meshes of 30 to 83 elements, and is compared on that of a run,
+    which begins in steady running.
+    """
     assert settled.path is not None
-    found, expected = (modes(run, count=6).dataset for run in (bd.results.open_run(settled.path), steady))
+    run = bd.results.open_run(settled.path)
+    found, expected = (modes(about, count=6).dataset for about in (run, steady))
     light = (found.damping_ratio < 0.5).values
     assert np.count_nonzero(light) == 6
     np.testing.assert_allclose(found.frequency[light], expected.frequency[light], rtol=1e-3)
-    np.testing.assert_allclose(found.damping_ratio, expected.damping_ratio, rtol=0.03)
+    begun = modes(run, at=0.0, count=6).dataset
+    np.testing.assert_allclose(found.damping_ratio, begun.damping_ratio, rtol=0.03)
+    np.testing.assert_allclose(begun.damping_ratio, expected.damping_ratio, rtol=0.07)
     assert found.kind.values.tolist() == expected.kind.values.tolist()
     assert str(found.attrs["title"]).endswith("in its run at t = 0.3 s")
     again = modes(settled.drive, about=settled, at=0.3, count=2).dataset
