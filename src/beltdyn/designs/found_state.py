@@ -362,14 +362,14 @@ AtRest = Standing | Rest
 
 def bring_at_rest(prepared: Prepared) -> AtRest:
     """Find the equilibrium of a drive at rest, with the installed tension that was asked for if one was."""
-    if prepared.drive.ends and not prepared.drive.is_web:
+    if prepared.ends and not prepared.drive.is_web:
         return rest_of(prepare(on_equal_elements(prepared.drive)))
     return bring_to_stand(prepared)
 
 
 def rest_near(prepared: Prepared, near: AtRest) -> AtRest:
     """Find the equilibrium of a drive that differs a little from another one, on the same mesh."""
-    return stand_like(prepared, near) if isinstance(near, Standing) else rest_like(prepared, near)
+    return stand_like(prepared, near) if isinstance(near, Standing) else rest_like(prepared.drive, near)
 
 
 class Resting(FoundState):

@@ -91,6 +91,11 @@ _JUDGED_BY = {
 """Key of a limit -> the command that always judges it."""
 
 
+def has_limits(limits: Limits) -> bool:
+    """Whether a drive file gives any limit."""
+    return any(getattr(limits, key) is not None for key in _JUDGED_BY)
+
+
 def unjudged(result: Result) -> dict[str, str]:
     """Limits of the drive file that a result does not judge: key -> what does."""
     limits = result.drive.limits

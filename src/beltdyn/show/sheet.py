@@ -246,7 +246,6 @@ def _pulleys(title: str, summary: Summary, guides: BoolArray) -> Table:
     headings = (
         "",
         "rpm",
-        "rad/s",
         "torque\nN m",
         f"power\n{unit}",
         "slip",
@@ -257,7 +256,6 @@ def _pulleys(title: str, summary: Summary, guides: BoolArray) -> Table:
     columns = (
         (one.name for one in pulleys),
         aligned([RPM * one.speed for one in pulleys], 5),
-        aligned([one.speed for one in pulleys], 5),
         aligned([one.shaft_torque for one in pulleys]),
         aligned([one.power / watts for one in pulleys]),
         (_share(math.nan if stands else one.slip) for one, stands in zip(pulleys, guides, strict=True)),
@@ -271,7 +269,7 @@ def _pulleys(title: str, summary: Summary, guides: BoolArray) -> Table:
     )
     return Table(
         title,
-        (*headings, "tension ratio\nof allowed", "slip safety\nown load", "\nall loads", "hub load\nN"),
+        (*headings, "T ratio\n/allowed", "safety\nown", "\nall", "hub load\nN"),
         tuple(zip(*columns, strict=True)),
     )
 
@@ -305,12 +303,16 @@ def _share(part: float) -> str:
     return "–" if math.isnan(part) else f"{part:z.3%}"
 
 
+_LARGEST_RATIO = 99.0
+"""Largest tension ratio that is shown: no drive comes near."""
+
+
 def _ratio(pulley: PulleySummary) -> str:
     """The tension ratio and that which friction allows; a dash where that is not what holds the belt."""
     ratio, allowed = pulley.tension_ratio, pulley.allowed_tension_ratio
     if math.isnan(ratio) or not allowed > 1.0:
         return "–"
-    return f"{ratio:.2f} of {allowed:.3g}"
+    return f"{ratio:.2f}/{allowed:.2g}" if allowed < _LARGEST_RATIO else f"{ratio:.2f}/>{_LARGEST_RATIO:.0f}"
 
 
 def _safety(safety: float) -> str:

@@ -7,7 +7,7 @@ import numpy as np
 
 from beltdyn.parts.messages import listing
 from beltdyn.results.incidents import Incident, incidents
-from beltdyn.results.limits import KeyNumber, key_numbers, unjudged
+from beltdyn.results.limits import KeyNumber, has_limits, key_numbers, unjudged
 from beltdyn.results.result import Result
 from beltdyn.results.run import Run
 
@@ -79,6 +79,8 @@ def _unjudged(results: Sequence[Result]) -> dict[str, str]:
 def limit_rows(result: Result) -> list[tuple[str, ...]]:
     """Name, value, place, limit and verdict of each limit of the drive file."""
     rows: list[tuple[str, ...]] = []
+    if not has_limits(result.drive.limits):
+        return rows
     for number in key_numbers(result):
         if number.limit is not None and number.passes is not None:
             value = in_unit(number.value, number.unit)

@@ -115,10 +115,10 @@ def rest_of(prepared: Prepared, progress: Report | None = None) -> Rest:
     return rest._replace(unstable=_unstable(rest))
 
 
-def rest_like(prepared: Prepared, like: Rest) -> Rest:
+def rest_like(drive: Drive, like: Rest) -> Rest:
     """Static equilibrium of a drive that differs a little from another one, with as many equal elements."""
-    belt = prepared.belt.replace(elements=like.prepared.belt.given_elements)
-    prepared = prepare(on_equal_elements(prepared.drive.replace(belt=belt)))
+    belt = drive.belt.replace(elements=like.prepared.belt.given_elements)
+    prepared = prepare(on_equal_elements(drive.replace(belt=belt)))
     if has_teeth(like.system):
         return _at_rest(prepared)
     system = drive_system(prepared)

@@ -72,6 +72,8 @@ _MOST_PRESSES = 20
 """Of rollers of nips that are loaded by forces."""
 _STALLED = 0.5
 """Slip of a pulley that has stalled, beyond elastic creep: `slip_through` has 0.9, usable drives a few percent."""
+_USED_UP = 0.9
+"""Part of its friction that a pulley uses which has stalled: nearly 1 with laws as steep as creep needs."""
 _SLIDES = 0.05
 """Difference of a prescribed speed of a rim from that of the belt, relative, from which the belt slides on it: friction
 grows there with the loads, in place of the difference, which would be passed in a thousandth of the way."""
@@ -211,10 +213,13 @@ class SteadySearch:
         self._keep_content()
 
     def _stalls(self) -> bool:
-        """Whether a pulley that ran with the belt without loads has come to a standstill, or nearly so, under them."""
+        """Whether a pulley that ran with the belt without loads has come to a standstill, or nearly so, under them.
+
+        With nearly all of its friction: a flat friction law needs large slip for little of it, and tells so itself.
+        """
         rims = self.state.velocity[self.system.first_body :][: self._uniform.size]
         slow = np.abs(rims) < (1.0 - _STALLED) * np.abs(self._uniform)
-        if self.prepared.drive.is_web or self._loading is None or not np.any(slow):
+        if self.prepared.drive.is_web or self._loading is None or not np.any(slow & (self._here().used > _USED_UP)):
             return False
         if not self._passed:
             here, setting = self.unknowns(), self.setting

@@ -132,7 +132,7 @@ class Tensions(NamedTuple):
         """From solutions."""
         inertia = prepared.belt.mass_per_length * passed[-1].belt_parameter ** 2
         first, last = (solution.tensions - inertia for solution in (passed[0], passed[-1]))
-        fixed = not (prepared.moving_tensioners or prepared.drive.is_web or prepared.drive.carries)
+        fixed = not (prepared.moving_tensioners or prepared.drive.is_web or prepared.carries)
         return cls(inertia, first, last, fixed and passed[0].setting.load == 0.0)
 
     @property
@@ -155,7 +155,7 @@ def slack(prepared: Prepared, tensions: Tensions) -> str | None:
     span = tensions.slack_span
     if span is None:
         return None
-    return "the span from `{}` to `{}` goes slack".format(*prepared.drive.spans[span])
+    return "the span from `{}` to `{}` goes slack".format(*prepared.spans[span])
 
 
 def _slipping(

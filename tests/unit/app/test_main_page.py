@@ -314,7 +314,7 @@ def test_an_analysis_can_be_started_only_of_a_drive(workspace: Workspace) -> Non
         user.find(marker="undo").click()
         with user:
             marked(user, "analysis").value = "campbell"
-        await user.should_see("Number of modes at each speed")  # what an option means, below the pointer
+        await user.should_see("Number of lightly damped modes at each speed")  # what an option means, below the pointer
         assert marked(user, "option:speed").value == "450..1800 rpm"  # about the 1500 rpm of the drive
         with user:
             marked(user, "option:speed").value = ""

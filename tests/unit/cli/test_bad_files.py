@@ -35,7 +35,6 @@ def test_empty_file(refuse: Refuse, tmp_path: Path) -> None:
     assert [line.split(" is missing. Give the group")[0] for line in message.splitlines()] == [
         "error: belt",
         "error: pulley",
-        "error: simulation",
     ]
 
 

@@ -40,7 +40,7 @@ def test_what_has_a_dimension_names_its_unit(part: type[Part]) -> None:
 def test_defaults_and_limits_are_those_of_the_fields() -> None:
     assert entries(Belt)["elements"] == (
         "int, optional",
-        "The number of belt elements. At least 3 and at most 10000.",
+        "The number of belt elements; the least one of meshes that are refined. At least 3 and at most 10000.",
     )
     assert entries(Belt)["youngs_modulus"] == (
         "float or text with a unit",

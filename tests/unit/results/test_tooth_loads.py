@@ -127,7 +127,7 @@ def test_a_belt_that_flanks_push_off_does_not_run(run: Run) -> None:
     steep = run.drive.with_({"belt.toothing": toothing.replace(flank_angle=1.3), "pulley[driven].torque": -20.0})
     assert tooth_loads(bd.steady_state(steep))[0].jump_margin == 1.0  # all teeth of the driver have lifted, and hold
     steep = steep.with_({"pulley[driven].torque": -60.0})
-    with pytest.raises(ConvergenceError, match="goes slack or jumps beyond that"):
+    with pytest.raises(ConvergenceError, match="The belt jumps beyond that"):
         bd.steady_state(steep)
 
 
