@@ -89,6 +89,8 @@ def test_speeds_of_a_belt_that_turns_as_a_whole_while_it_passes(motions: SmallMo
     size = np.abs(np.concatenate([across, along])).max()
     np.testing.assert_allclose(found[0], across, atol=1e-9 * size)
     np.testing.assert_allclose(found[1], along, atol=1e-9 * size)
+    for part, later in zip(found, speeds_of(motions, points, value, 1j * vector), strict=True):
+        np.testing.assert_allclose(later, 1j * part, atol=1e-9 * size)  # a quarter of a period on
     energies = [np.sum(np.abs(part) ** 2) for part in (across, along)]
     energies += [system.bodies.kinetic[body] * abs(way * value) ** 2 for body, way in ((1, 2.0), (-1, 0.5))]
     shares = shares_of(motions, points, np.array([value]), vector[:, None]).of(0)

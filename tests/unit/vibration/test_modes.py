@@ -48,6 +48,7 @@ def test_shares_add_up_and_shapes_reach_one(found: bd.Result) -> None:
         parts = np.concatenate([one.belt_shape.values, one.rim_shape.values], axis=1)
         assert np.hypot(*parts).max() == pytest.approx(1.0)
     assert found.warnings == []
+    assert "dry_tensioners" not in dataset  # none slides or sticks
 
 
 def test_a_result_of_its_own(found: bd.Result, tmp_path: Path) -> None:

@@ -66,6 +66,21 @@ def test_a_hub_chain_has_a_mode_for_each_body(links: int) -> None:
         np.testing.assert_allclose(mode.shares[1:], np.diag(mass) * shape**2, atol=1e-3)
 
 
+def test_a_damped_chain_swings_as_two_bodies_on_springs_and_a_damper() -> None:
+    """Roots of (M s^2 + C s + K) x = 0; at standstill nothing else damps."""
+    lumped = lumps(hub=[{"kind": "isolator", "stiffness": 300.0, "damping": 0.3, "inertia": 0.004}])
+    link, mass = np.array([[1.0, -1.0], [-1.0, 1.0]]), np.diag([0.002, 0.004])
+    stiffness = 300.0 * link + np.diag([rate(lumped), 0.0])
+    inverse = np.linalg.inv(mass)
+    first_order = np.block([[np.zeros((2, 2)), np.eye(2)], [-inverse @ stiffness, -0.3 * inverse @ link]])
+    roots = np.linalg.eigvals(first_order)
+    roots = roots[roots.imag > 0.0]
+    roots = roots[np.argsort(roots.imag)]
+    modes = lumped.modes(4)
+    np.testing.assert_allclose([one.frequency for one in modes], roots.imag / (2.0 * np.pi), rtol=1e-3)
+    np.testing.assert_allclose([one.damping_ratio for one in modes], -roots.real / np.abs(roots), rtol=2e-3)
+
+
 def test_a_load_damps_its_shaft_by_its_slope_while_it_turns() -> None:
     load = {"kind": "resistance", "linear": 0.05, "quadratic": 1e-4}
     for speed, slope in ((20.0, 0.05 + 2e-4 * 20.0 / 0.05), (0.0, 0.0)):

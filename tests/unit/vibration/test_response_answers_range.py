@@ -76,6 +76,17 @@ def test_an_arc_that_slides_bounds_the_amplitude(drive: Drive) -> None:
     assert by_sliding == pytest.approx(150.0 / begins - 1.0, abs=0.06)
 
 
+def test_sliding_counts_with_the_part_of_the_vibration_that_it_takes(drive: Drive) -> None:
+    """Both spans swing alike but for a part, which the arcs take up: as much as that cannot be held is left out."""
+    weak, largest, other = drive.replace(contact=drive.contact.replace(friction=0.19)), 150.0, 30.0
+    swings = np.linspace(0.0, 1.0, 2001)
+    used = used_by(weak, TIGHT + largest * swings[:, None], SLACK + other * swings[:, None]).max(axis=1)
+    begins, part = float(swings[np.argmax(used >= 1.0)]), (largest - other) / largest
+    assert 0.3 < begins < 0.8
+    by_sliding = looked_at(weak, [largest, other]).error - RIPPLE_ERROR * (largest / TIGHT) ** 3
+    assert part * (1.0 / (begins + 1.0 / 40.0) - 1.0) <= by_sliding <= part * (1.0 / begins - 1.0)  # in 40 steps
+
+
 def test_a_pulley_counts_with_its_share(drive: Drive) -> None:
     """Where both spans swing alike its torque does not, and sliding leaves out nothing."""
     weak = drive.replace(contact=drive.contact.replace(friction=0.2))
@@ -108,7 +119,13 @@ def test_dashpots_take_the_work_of_friction() -> None:
 
 @pytest.mark.parametrize(
     ("frequencies", "window", "count"),
-    [((10.0,), 0.2 * np.pi, 24), ((10.0, 25.0), 0.4 * np.pi, 120), ((10.0, 10.0 * np.sqrt(2.0)), 2.4 * np.pi, 192)],
+    [
+        ((10.0,), 0.2 * np.pi, 24),
+        ((10.0, 25.0), 0.4 * np.pi, 120),
+        ((10.0, 25.0 * (1.0 - 0.9e-4)), 0.4 * np.pi, 120),
+        ((10.0, 25.0 * (1.0 + 1.5e-4)), 2.4 * np.pi, 192),
+        ((10.0, 10.0 * np.sqrt(2.0)), 2.4 * np.pi, 192),
+    ],
 )
 def test_instants_meet_all_phases(frequencies: tuple[float, ...], window: float, count: int) -> None:
     times = instants(frequencies)

@@ -1,8 +1,11 @@
 """Stiffness and frequency over the stroke: where the carriage may be, and what a drive needs for it."""
 
+import numpy as np
 import pytest
+from scipy.linalg import eigh
 
 import beltdyn as bd
+from beltdyn.arrays import FloatArray
 from beltdyn.errors import ModelError
 from beltdyn.theory.input_shaping import SHAPERS, residual_vibration
 
@@ -34,6 +37,72 @@ def test_it_is_stiffer_nearer_to_the_driver_and_swings_faster() -> None:
         shaper = SHAPERS[name](float(frequency), float(found.damping_ratio))
         left = residual_vibration(shaper, found.frequency.values, float(found.damping_ratio))
         assert left.max() == pytest.approx(float(residual), rel=1e-12)
+
+
+AXIAL, TOOTH, PITCH, TEETH = 1e5, 1e5, 8e-3, 20
+RADIUS = TEETH * PITCH / (2.0 * np.pi)
+DISTANCE, LENGTH, MASS, INERTIA = 0.298736, 0.02, 5.0, 1e-3
+DAMPING_TIME = 1e-4
+
+
+def short() -> bd.Drive:
+    """A light belt of few elements, stretched by 0.2 % around two equal pulleys, with a carriage on its upper span."""
+    size = {"teeth": 92, "width": 0.02, "thickness": 4e-3, "toothing": {"pitch": PITCH, "tooth_stiffness": TOOTH}}
+    law = {
+        "axial_stiffness": AXIAL,
+        "bending_stiffness": 1e-5,
+        "mass_per_length": 1e-3,
+        "elements": 40,
+        "stretch_damping_time": DAMPING_TIME,
+    }
+    return bd.Drive(
+        belt=size | law,
+        pulley=[
+            {"name": "motor", "center": [0.0, 0.0], "teeth": TEETH, "speed": 5.0},
+            {"name": "idler", "center": [DISTANCE, 0.0], "teeth": TEETH, "inertia": INERTIA},
+        ],
+        carriage={"center": [0.15, RADIUS], "direction": [-1.0, 0.0], "length": LENGTH, "mass": MASS},
+        contact={"friction": 0.0},
+        simulation={"duration": 0.1, "frame": "travelling", "output_interval": 1e-3},
+    )
+
+
+def springs(first: float, last: float) -> FloatArray:
+    """Stiffness of carriage and rim of the idler, N/m, by lengths of the spans on both sides of the carriage.
+
+    Spans are rods, and belts on arcs rods on the springs of the teeth: s^2 = p EA / c.  The ends of arcs have no mass.
+    """
+    share = np.sqrt(PITCH * AXIAL / TOOTH)
+    near, far = AXIAL / share / np.tanh(np.pi * RADIUS / share), -AXIAL / share / np.sinh(np.pi * RADIUS / share)
+    whole = np.zeros((6, 6))  # carriage, rim of the idler, ends of the motor's arc, ends of the idler's
+    for i, j, length in ((0, 2, first), (3, 4, DISTANCE), (5, 0, last)):
+        whole[np.ix_([i, j], [i, j])] += AXIAL / length * np.array([[1.0, -1.0], [-1.0, 1.0]])
+    arc = np.array([[near, far], [far, near]])
+    slip = np.array([[0, -1, 0, 0, 1, 0], [0, -1, 0, 0, 0, 1]])
+    whole[2:4, 2:4] += arc
+    whole += slip.T @ arc @ slip
+    return np.asarray(whole[:2, :2] - whole[:2, 2:] @ np.linalg.solve(whole[2:, 2:], whole[2:, :2]))
+
+
+def test_a_carriage_and_an_idler_on_springs() -> None:
+    """Within what 40 elements tell of arcs that have four each; the strings of the light belt are far above.
+
+    At both ends of the default range, which leaves out a twentieth of the free way before each pulley.
+    """
+    found = bd.stroke(short(), points=2, count=3).dataset
+    first, last = 0.14, DISTANCE - 0.16
+    np.testing.assert_allclose(found.place, [0.05 * first - 0.95 * last, 0.95 * first - 0.05 * last], rtol=1e-9)
+    for row, place in enumerate(found.place.values):
+        there, held = found.isel(place=row), springs(first - place, last + place)
+        squares, ways = eigh(held, np.diag([MASS, INERTIA / RADIUS**2]))
+        frequencies = np.sqrt(squares) / (2.0 * np.pi)
+        assert float(there.stiffness) == pytest.approx(1.0 / np.linalg.inv(held)[0, 0], rel=0.04)
+        np.testing.assert_allclose(there.mode_frequency[:2], frequencies, rtol=0.03)
+        assert float(there.frequency) == float(there.lowest_frequency) == float(there.mode_frequency[0])
+        assert float(there.carriage_share) == pytest.approx(MASS * ways[0, 0] ** 2, abs=0.01)
+        assert there.mode_part.values.tolist() == ["carriage", "idler", "belt"]
+    assert float(found.damping_ratio) == pytest.approx(np.pi * float(found.frequency.mean()) * DAMPING_TIME)
+    assert not found.attrs["warnings"]  # the guide runs along the belt, which keeps its tension
 
 
 def test_places_are_within_the_free_way() -> None:
