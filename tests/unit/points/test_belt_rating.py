@@ -121,7 +121,11 @@ def test_a_pulley_below_the_smallest_is_outside_the_rating(fan: Drive) -> None:
 
 
 def test_cogged_belts_say_that_they_are_rated_as_wrapped_ones(fan: Drive) -> None:
-    (warning,) = rating(fan.with_({"belt.profile": "XPA"})).warnings
+    found = rating(fan.with_({"belt.profile": "XPA", "limits.service_factor": None}))
+    (warning,) = found.warnings
+    power = found.dataset.power.sel(pulley="motor")
+    assert float(found.dataset.service_factor) == 1.0
+    assert float(found.dataset.utilization[0]) == pytest.approx(float(power / found.dataset.rated_power[0]), rel=5e-3)
     assert "The rating is that of the wrapped belt SPA, a lower bound" in warning
 
 

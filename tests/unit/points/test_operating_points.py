@@ -14,7 +14,7 @@ from beltdyn.model import Drive
 from beltdyn.points import operating_points
 from beltdyn.points.changed_drive import at_speed, held_at
 from beltdyn.points.duty import duty
-from beltdyn.points.operating_points import OperatingPoints, operating_map, serpentine
+from beltdyn.points.operating_points import OperatingPoints, load_factors, operating_map, serpentine
 from beltdyn.points.traction import traction
 from beltdyn.results import Result, Run, Variable
 from beltdyn.state.steady import steady_state
@@ -30,6 +30,12 @@ FIRST, SPAN = 10.0, 8.0
 def test_each_point_is_next_to_the_one_before() -> None:
     assert list(serpentine((2, 3))) == [(0, 0), (0, 1), (0, 2), (1, 2), (1, 1), (1, 0)]
     assert list(serpentine((3,))) == [(0,), (1,), (2,)]
+
+
+def test_factors_on_loads_begin_at_zero() -> None:
+    np.testing.assert_allclose(load_factors("0..1", 3), [0.0, 0.5, 1.0])
+    with pytest.raises(ModelError, match="contains a negative factor"):
+        load_factors("-0.5..1", 3)
 
 
 @pytest.mark.parametrize(("reach", "is_found"), [(SPAN, True), (0.3 * SPAN, True), (0.01 * SPAN, False)])

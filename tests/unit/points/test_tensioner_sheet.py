@@ -106,6 +106,9 @@ def test_an_arm_balances_the_belt_by_virtual_work() -> None:
         assert float(one.hub_load) == pytest.approx(
             2.0 * float(one.tension) * np.sin(0.5 * float(one.wrap_angle)), rel=0.02
         )
+        way = (longer.centers - shorter.centers)[carrier.pulley] / (2.0 * step)
+        pull = float(one.hub_load) * np.array([np.cos(one.hub_direction), np.sin(one.hub_direction)])
+        assert pull @ way == pytest.approx(-float(one.spring_load), rel=0.02)  # what turns the arm back
 
 
 @pytest.mark.slow  # kernels of teeth at rest

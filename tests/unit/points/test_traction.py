@@ -2,12 +2,15 @@
 
 from importlib.resources import files
 from pathlib import Path
+from types import SimpleNamespace
+from typing import Any
 
 import numpy as np
 import pytest
 import xarray as xr
 
-from beltdyn.errors import ModelError
+import beltdyn.points.traction as curves
+from beltdyn.errors import ConvergenceError, ModelError
 from beltdyn.model import Drive, load
 from beltdyn.points.traction import traction
 from beltdyn.results import open_result
@@ -54,6 +57,66 @@ def test_which_pulley(loaded: Drive) -> None:
         traction(loaded, pulley="driver")
     with pytest.raises(ModelError, match="points = 2 must be at least 3"):
         traction(loaded, points=2)
+
+
+@pytest.mark.parametrize("breaks", [False, True])
+@pytest.mark.parametrize("gross", [3e-4, 4e-3, 0.05, 0.3])
+def test_gross_slip_is_enclosed_within_two_percent(monkeypatch: pytest.MonkeyPatch, gross: float, breaks: bool) -> None:
+    """Of an arc that slides in proportion to its slip; beyond, steady running may not be found."""
+    tried = list[float]()
+
+    def running(slip: float, **_: Any) -> float:
+        tried.append(slip)
+        if breaks and slip > gross:
+            raise ConvergenceError("no steady running")
+        return slip
+
+    monkeypatch.setattr(curves, "steady_state", running)
+    monkeypatch.setattr(curves, "_sliding", lambda slip, _number: (0.5, min(slip / gross, 1.0)))
+    slips = curves._past_gross_slip(lambda part, _firmer: part, 1, 7)  # type: ignore[arg-type, return-value]
+    np.testing.assert_allclose(slips, np.linspace(0.0, slips[-1], 7))
+    assert 0.99 * gross <= slips[-1] / 1.2 <= gross / 0.98
+    assert len(tried) < 20
+
+
+def test_where_no_slip_has_steady_running_the_cause_is_told(monkeypatch: pytest.MonkeyPatch) -> None:
+    def never(*_: object, **__: object) -> None:
+        raise ConvergenceError("the cause")
+
+    monkeypatch.setattr(curves, "steady_state", never)
+    with pytest.raises(ConvergenceError, match="no steady running found at any slip: the cause"):
+        curves._past_gross_slip(lambda part, _firmer: part, 1, 7)  # type: ignore[arg-type, return-value]
+
+
+@pytest.mark.parametrize("limit", [0.3, 2.0, 57.0, 900.0])
+def test_the_torque_of_the_jump_is_enclosed_within_two_percent(monkeypatch: pytest.MonkeyPatch, limit: float) -> None:
+    """Of a belt that holds any smaller torque; without any, the cause is told."""
+    radius, stiffness, tension = 0.05, 1e5, xr.DataArray([[400.0, 200.0]])
+    prepared = SimpleNamespace(radii=[0.1, radius], belt=SimpleNamespace(axial_stiffness=stiffness))
+    holds = [limit]
+
+    def running(torque: float, **_: Any) -> Any:
+        if torque > holds[0]:
+            raise ConvergenceError("the cause")
+        return SimpleNamespace(prepared=prepared, dataset={"span_tension": tension})
+
+    monkeypatch.setattr(curves, "steady_state", running)
+    found = curves._jump_torque(lambda torque: torque, 1, None)  # type: ignore[arg-type, return-value]
+    assert 0.98 * limit <= found <= limit
+    holds[0] = 0.0
+    with pytest.raises(ConvergenceError, match="no steady running found under any torque: the cause"):
+        curves._jump_torque(lambda torque: torque, 1, None)  # type: ignore[arg-type, return-value]
+
+
+def test_wind_up_counts_from_the_first_point_that_is_found() -> None:
+    torques, wind_up = np.array([0.0, 2.0, 4.0, 6.0]), np.array([np.nan, 0.3, 0.5, np.nan])
+    for speeds, ahead, limit in (
+        ([np.nan, 1.0, 1.0, np.nan], [np.nan, 0.0, 0.2, np.nan], 4.0),
+        ([np.nan] * 4, wind_up, -np.inf),
+    ):
+        found = curves._over_torque({"belt_speed": np.array(speeds)}, torques, wind_up)
+        np.testing.assert_allclose(np.asarray(found["wind_up"][1]), ahead, atol=1e-15)
+        assert float(np.asarray(found["limit_torque"][1])) == limit
 
 
 @pytest.mark.slow

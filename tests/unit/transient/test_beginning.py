@@ -7,8 +7,9 @@ import pytest
 
 from beltdyn.errors import ModelError
 from beltdyn.model import Drive, prepare
+from beltdyn.results import Run
 from beltdyn.solvers.generalized_alpha import GeneralizedAlpha
-from beltdyn.transient.beginning import begin_on, mesh_of
+from beltdyn.transient.beginning import begin_on, instant_of, mesh_of
 from beltdyn.transient.simulate import choose_integrator, simulate
 from beltdyn.transient.simulator import Simulator
 
@@ -44,6 +45,19 @@ def test_the_mesh_that_travels_needs_no_search_where_the_belt_is_laid(drive: Dri
     assert begin_on(mesh, integrator) is mesh
     rest = begin_on(mesh_of(prepare(drive.with_({"simulation.start": "equilibrium"})), integrator), integrator)
     assert not np.array_equal(rest.state.position, mesh.state.position)
+
+
+def test_an_instant_is_one_of_the_outputs_along_the_belt(run: Run) -> None:
+    times = run.dataset.field_time.values
+    step = float(np.diff(times).min())
+    assert instant_of(run, None) == times[-1]
+    for time in times.tolist():
+        assert instant_of(run, time + 1e-7 * step) == time
+    for away in (0.5 * step, 1e-5 * step):
+        with pytest.raises(ModelError, match="is not an output along the belt of this run"):
+            instant_of(run, float(times[1]) + away)
+    with pytest.raises(ModelError):
+        instant_of(Run(run.dataset.isel(time=slice(0), field_time=slice(0)), run.drive), None)
 
 
 def test_other_integrators_know_no_flow(drive: Drive) -> None:

@@ -135,6 +135,31 @@ def test_going_back_takes_a_moved_center_back(simulator: Simulator) -> None:
     assert simulator.outputs() == first
 
 
+def test_a_tensioner_moves_its_own_pulley_alone() -> None:
+    """And a state that is restored forgets the inputs that were set for the next step."""
+    centers = {"left": (0.0, 0.0), "right": (0.4, 0.0), "idler": (0.2, 0.25)}
+    slide = {"kind": "sliding", "pulley": "idler", "direction": [0.0, 1.0], "mass": 0.5, "preload": 400.0, "rate": 2e4}
+    belt = {"width": 0.02, "thickness": 2e-3, "axial_stiffness": 1e5, "bending_stiffness": 0.02, "mass_per_length": 0.1}
+    drive = Drive(
+        belt=belt | {"installed_tension": 230.0, "elements": 40},
+        pulley=[{"name": name, "center": at, "radius": 0.06, "inertia": 2e-3} for name, at in centers.items()],
+        tensioner=[slide],
+        contact={"friction": 0.8, "stiffness": 1e8, "creep_ratio": 0.01},
+        simulation={"duration": 1e-3, "frame": "travelling", "start": "laid"},
+    )
+    simulator = Simulator(drive)
+    with pytest.raises(ModelError, match="'idler' is carried by a tensioner"):
+        simulator.set_center("idler", (0.2, 0.26))
+    saved = simulator.save()
+    simulator.set_center("right", (0.41, 0.0))
+    simulator.restore(saved)
+    simulator.step(1e-5)
+    assert simulator.center("right") == centers["right"]
+    outputs, (x, y) = simulator.outputs(), simulator.center("idler")
+    assert (x, y) == pytest.approx((0.2, 0.25 + outputs["tensioner_position[idler]"]), abs=1e-12)
+    assert outputs["tensioner_position[idler]"] != 0.0
+
+
 def test_what_cannot_be_set_is_told(simulator: Simulator, short: Drive) -> None:
     with pytest.raises(ModelError, match="turns freely"):
         simulator.set_speed("driven", 1.0)

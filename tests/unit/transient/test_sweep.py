@@ -1,6 +1,7 @@
 """A run-up of a drive."""
 
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
@@ -88,6 +89,18 @@ def test_a_sweep_is_a_run_that_names_its_pulley(drive: Drive) -> None:
     assert run.drive_as_given == drive.text
     assert float(run.dataset.pulley_speed.sel(pulley="driver")[-1]) == pytest.approx(40.0 * np.pi)
     assert float(run.dataset.time[-1]) == pytest.approx(0.01)
+
+
+@pytest.mark.parametrize(("rotation", "sense"), [("counter-clockwise", 1.0), ("clockwise", -1.0)])
+@pytest.mark.parametrize(("start", "rate"), [("0 rpm", 0.0), ("3 rpm clockwise", -0.1 * np.pi)])
+def test_it_begins_where_the_settling_ends_or_at_standstill(
+    drive: Drive, monkeypatch: pytest.MonkeyPatch, rotation: str, sense: float, start: str, rate: float
+) -> None:
+    """Texts tell their sense of rotation, whichever the drive counts as positive."""
+    begun: dict[str, Any] = {}
+    monkeypatch.setattr("beltdyn.transient.sweep.record_run", lambda *_, **options: begun.update(options))
+    sweep(drive.with_({"rotation": rotation}), pulley="driver", from_=start, to="6 rpm clockwise", duration=0.1)
+    assert begun["begin"] is None if rate == 0.0 else begun["begin"].speed == pytest.approx(sense * rate)
 
 
 @pytest.mark.slow
