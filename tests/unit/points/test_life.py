@@ -64,6 +64,10 @@ def test_history_over_a_turn(found: Result, fatigue_drive: Drive) -> None:
     middle = dataset.arc_place.values[0]
     assert np.all((middle >= 0.0) & (middle < 1.0))
     assert abs(middle[0] - middle[1]) == pytest.approx(0.5, abs=0.02)  # from half an arc over a span to half an arc
+    turns = np.exp(2j * np.pi * dataset.place.values)
+    for number, bend in enumerate(strain):  # each where the belt bends as much as on that pulley
+        on_arc = np.abs(-dataset.bending_strain.values[0] / bend - 1.0) < 0.05
+        assert np.angle(turns[on_arc].mean() / np.exp(2j * np.pi * middle[number])) == pytest.approx(0.0, abs=0.3)
 
 
 def test_relative_to_a_reference(fatigue_drive: Drive, table: Path, found: Result, tmp_path: Path) -> None:

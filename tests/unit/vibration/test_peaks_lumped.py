@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 from scipy.linalg import eigh
 
+from beltdyn.arrays import FloatArray
 from beltdyn.model import Drive, Prepared, prepare
 from beltdyn.points.quasi_steady import Running
 from beltdyn.vibration.excitation import speed_waves
@@ -22,9 +23,10 @@ def lumps(
     speed: float = 0.0,
     belt: dict[str, float] | None = None,
     contact: dict[str, object] | None = None,
+    tensions: FloatArray | None = None,
     **driven: object,
 ) -> LumpedDrive:
-    """A crank and a rotor of equal radii, with equal tensions."""
+    """A crank and a rotor of equal radii, with equal tensions unless others are given."""
     pulleys = [
         {"name": "crank", "center": [0.0, 0.0], "radius": 0.05, "speed": 1.0},
         {"name": "rotor", "center": [0.4, 0.0], "radius": 0.05, "inertia": 0.002} | driven,
@@ -33,7 +35,8 @@ def lumps(
     law = contact or {"friction": 0.8, "creep_ratio": CREEP}
     prepared = prepare(Drive(belt=given, pulley=pulleys, contact=law, simulation={"duration": 1.0}))
     rest = prepared.installation
-    return lumped_drive(prepared, rest.span_tensions, rest.path.centers, np.zeros(0), speed)
+    tensions = rest.span_tensions if tensions is None else tensions
+    return lumped_drive(prepared, tensions, rest.path.centers, np.zeros(0), speed)
 
 
 def rate(lumped: LumpedDrive) -> float:
@@ -106,6 +109,14 @@ def test_strain_that_flows_with_the_belt_damps_rotation(law: str) -> None:
     assert lumped.delay == pytest.approx(arc / speed, rel=2e-3)
     assert mode.frequency == pytest.approx(swing.imag / (2.0 * np.pi), rel=2e-3)
     assert mode.damping_ratio == pytest.approx(-swing.real / abs(swing), rel=2e-2)
+
+
+@pytest.mark.parametrize("friction", [0.8, 0.02, 1.5e-3])
+def test_strain_waits_while_it_passes_where_the_arc_adheres(friction: float) -> None:
+    """By Euler half of an arc slides where the tensions differ by half of what its friction holds, however small."""
+    tensions = TENSION * np.exp(np.array([0.5, 0.0]) * np.pi * friction)
+    lumped = lumps(20.0, contact={"friction": friction, "creep_ratio": CREEP}, tensions=tensions)
+    assert lumped.delay == pytest.approx(0.5 * np.pi * 0.05 / 20.0, rel=2e-3)
 
 
 def test_waves_of_strain_pass_in_modes_and_answers_alike() -> None:

@@ -3,10 +3,11 @@
 import numpy as np
 import pytest
 
-from beltdyn.model import Drive
+from beltdyn.model import Drive, example
+from beltdyn.points.changed_drive import driver_of
 from beltdyn.results import Run
 from beltdyn.state.steady import steady_state
-from beltdyn.vibration.response_answers import Excited, ForcedMotion
+from beltdyn.vibration.response_answers import Answers, Excited, ForcedMotion
 from validation.published.cases import better, loaded_two_pulley
 
 RADIUS, INERTIA = 0.08125, 0.25
@@ -102,3 +103,13 @@ def with_friction(run: Run, friction: float) -> Run:
     (slide,) = run.drive.tensioners
     rubbed = slide.replace(tensioning_friction=1.5 * friction, yielding_friction=0.5 * friction, creep_speed=CREEPING)
     return Run(run.dataset, run.drive.replace(tensioner=[rubbed]))
+
+
+def test_tensioners_have_the_unit_of_their_motion(tensioned: Run) -> None:
+    for drive, unit in ((tensioned.drive, "m"), (example("alternator_drive"), "rad")):
+        waves = [{"order": 2, "amplitude": 0.01}]
+        pulleys = [one.replace(harmonics=waves) if one.prescribed else one for one in drive.pulleys]
+        shaken = drive.replace(pulley=pulleys)
+        variables = Answers(shaken, driver_of(shaken), np.array([10.0])).variables()
+        for name in ("tensioner_position_amplitude", "largest_tensioner_position_amplitude"):
+            assert variables[name][0].units == unit

@@ -11,6 +11,7 @@ from beltdyn.model import Drive, prepare
 from beltdyn.results.mechanics import SpanTension
 from beltdyn.vibration.response_answers import (
     RIPPLE_ERROR,
+    SMALL_ERROR,
     Range,
     SteadyValues,
     friction_dashpots,
@@ -48,6 +49,13 @@ def test_small_vibrations_are_within_the_range(drive: Drive) -> None:
     np.testing.assert_allclose(found.ripple, [30.0 / TIGHT, 30.0 / SLACK])
     np.testing.assert_allclose(found.friction_used, used_by(drive, TIGHT + 30.0, SLACK - 30.0), rtol=1e-9)
     assert found.error == pytest.approx(RIPPLE_ERROR * 0.1**3)
+
+
+def test_a_ripple_of_a_half_ends_the_range(drive: Drive) -> None:
+    """A span that swings between half and one and a half of its mean, and no arc slides."""
+    found = looked_at(drive, [0.0, 0.5 * SLACK])
+    assert found.friction_used.max() < 1.0
+    assert found.error == pytest.approx(SMALL_ERROR)
 
 
 def test_a_drive_without_vibration_is_within_the_range(drive: Drive) -> None:

@@ -4,9 +4,14 @@ import numpy as np
 import pytest
 
 from beltdyn.errors import ModelError
-from beltdyn.model import Drive, prepare
+from beltdyn.model import Drive, Path, prepare
+from beltdyn.model.resolution import Laid
 from beltdyn.state.linearized import SmallMotions
-from beltdyn.vibration.small_motions import about_rest, dry_tensioners
+from beltdyn.state.staying import Standing, laid_state
+from beltdyn.system.arrays import Carrying
+from beltdyn.system.build import staying_system
+from beltdyn.vibration.small_motions import about_rest, about_standing, dry_tensioners
+from tests.unit.model.test_carrying import conveyor
 
 RADIUS = 0.06
 CONTACT = {
@@ -71,6 +76,18 @@ def test_hysteresis_is_left_out_at_rest() -> None:
     plain, left_out = about_rest(drive), about_rest(lossy)
     scale = abs(plain.damping).max()
     np.testing.assert_allclose(left_out.damping.toarray(), plain.damping.toarray(), atol=1e-9 * scale)
+
+
+def test_supports_resist_nothing_at_rest() -> None:
+    """The resistance of idlers has a sense only while the belt passes."""
+    prepared = prepare(conveyor())
+    staying, path = staying_system(prepared, prepared.equal_lengths(40)), prepared.path
+    laid = laid_state(Laid.on(Path(path.centers, path.radii - 1e-3), prepared.belt_length, 0), staying, np.zeros(0))
+    motions = about_standing(Standing(prepared, staying, laid, laid.position, 2e3, 0.01, 1.0))
+    assert isinstance(staying.carrying, Carrying)
+    assert isinstance(motions.system.carrying, Carrying)
+    assert (np.asarray(staying.carrying.supports.resisting) == 1.0).all()
+    assert (np.asarray(motions.system.carrying.supports.resisting) == 0.0).all()
 
 
 def test_dry_tensioners() -> None:
