@@ -10,7 +10,7 @@ import beltdyn as bd
 from beltdyn.errors import ModelError
 from beltdyn.model import Drive, example, load
 from beltdyn.model.parameter_study import CalibrationStudy, OptimizationStudy
-from beltdyn.points.duty import at_row, duty, read_duty
+from beltdyn.points.duty import _means, at_row, duty, read_duty
 from validation.published.cases import better, loaded_two_pulley
 
 TABLE = "duration [min], driver speed [rpm], load, driven torque [N m]\n# comment\n2, 1000, 1, -20\n1, 600, 1, -40\n"
@@ -174,3 +174,20 @@ def test_what_gives_one_value_twice_is_refused(
     with pytest.raises(ModelError) as error:
         CONSUMERS[consumer](loaded_two_pulley(), table, number)
     assert message in str(error.value)
+
+
+def test_means_weigh_with_time_and_hub_loads_with_turns() -> None:
+    """Bearings live by the cube of the load over their turns (ISO 281); a pulley that stands still wears none."""
+    arrays = {
+        "power_in": np.array([100.0, np.nan, 300.0]),
+        "power_out": np.array([80.0, np.nan, 270.0]),
+        "pulley_speed": np.array([[10.0, 0.0], [20.0, 0.0], [-30.0, 0.0]]),
+        "hub_load": np.array([[200.0, 50.0], [900.0, 90.0], [400.0, 60.0]]),
+    }
+    found = {name: np.asarray(values) for name, (_, values) in _means(arrays, np.array([3.0, 5.0, 1.0])).items()}
+    assert float(found["mean_power_in"]) == pytest.approx((3.0 * 100.0 + 300.0) / 4.0)
+    assert float(found["mean_efficiency"]) == pytest.approx((3.0 * 80.0 + 270.0) / (3.0 * 100.0 + 300.0))
+    np.testing.assert_allclose(found["mean_hub_load"], [(3.0 * 200.0 + 400.0) / 4.0, (3.0 * 50.0 + 60.0) / 4.0])
+    cubic = (30.0 * 200.0**3 + 30.0 * 400.0**3) / 60.0
+    np.testing.assert_allclose(found["equivalent_hub_load"], [cubic ** (1.0 / 3.0), 0.0])
+    assert _means(arrays, np.zeros(3)) == {}

@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 from beltdyn.errors import ConvergenceError, ModelError
-from beltdyn.model import Drive
+from beltdyn.model import Drive, example
 from beltdyn.points import operating_points
 from beltdyn.points.changed_drive import at_speed, held_at
 from beltdyn.points.duty import duty
@@ -75,6 +75,13 @@ def test_strides_are_no_longer_than_asked_for(monkeypatch: pytest.MonkeyPatch) -
     ) as table:
         table.each(lambda speed: at_speed(drive, 0, speed), 0.05, stride=3.0)
     np.testing.assert_allclose(asked, [10.0, 13.0, 16.0, 18.0])
+
+
+def test_tensioners_have_the_unit_of_their_motion() -> None:
+    axes = {"speed": (Variable(("speed",), "rad/s", "Speed"), [10.0])}
+    about = Variable(("tensioner",), "m or rad", "Position")
+    table = OperatingPoints("operating_map", example("alternator_drive"), axes)
+    assert (table._labelled(about).units, table._labelled(about).dims) == ("rad", ("speed", "tensioner"))
 
 
 Analysis = Callable[[Drive, Path], Result]
