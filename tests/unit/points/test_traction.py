@@ -11,7 +11,7 @@ import xarray as xr
 
 import beltdyn.points.traction as curves
 from beltdyn.errors import ConvergenceError, ModelError
-from beltdyn.model import Drive, load
+from beltdyn.model import Drive, example, load
 from beltdyn.points.traction import traction
 from beltdyn.results import open_result
 from beltdyn.show.sheet import Table, sheet
@@ -50,6 +50,22 @@ def test_where_steps_of_the_slip_are_too_long_shorter_ones_are_taken() -> None:
     assert np.all(found.failure == "")
     assert np.all(np.diff(found.torque) > 0.0)
     assert found.sliding_share[-1] > 0.9
+
+
+def test_torques_go_from_zero_to_the_jump(monkeypatch: pytest.MonkeyPatch) -> None:
+    drive = example("timing_drive")
+    monkeypatch.setattr(curves, "_jump_torque", lambda *_: 10.0)
+    curve = curves._of_teeth(drive, 1, 100.0, None, 5, None)
+    np.testing.assert_allclose(curve.values, [0.0, 2.5, 5.0, 7.5, 10.0])
+    assert curve.label.units == "N m"
+
+
+def test_files_of_others_stay(loaded: Drive, tmp_path: Path) -> None:
+    file = tmp_path / "notes.txt"
+    file.write_text("of others", encoding="utf-8")
+    with pytest.raises(ModelError, match="overwrite"):
+        traction(loaded, slip="0.01, 0.02 %", output=file)
+    assert file.read_text(encoding="utf-8") == "of others"
 
 
 def test_which_pulley(loaded: Drive) -> None:

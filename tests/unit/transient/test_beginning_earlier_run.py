@@ -12,7 +12,7 @@ from beltdyn.cli import main
 from beltdyn.errors import ModelError
 from beltdyn.model import Drive, dumps, load
 from beltdyn.results import Run
-from beltdyn.transient.beginning import with_instant
+from beltdyn.transient.beginning import _difference, with_instant
 from beltdyn.transient.simulate import simulate
 
 END, MIDDLE = 0.04, 0.02
@@ -138,6 +138,12 @@ def test_frame_mesh_and_instant_must_fit(whole: Run, given: Drive) -> None:
         simulate(given.with_({**start, "belt.elements": 60}))
     with pytest.raises(ModelError, match=r"time = 0.02034 s is not an output along the belt"):
         simulate(given.with_({"simulation.start": {"file": str(whole.path), "time": 0.02034}}))
+
+
+def test_entries_without_names_are_told_by_their_number() -> None:
+    mine, other = ({"end": [{"kind": "held"}, {"kind": "weight", "mass": mass}]} for mass in (1.0, 2.0))
+    assert _difference(mine, other) == ("end[2].mass", "1.0", "2.0")
+    assert _difference(mine, mine) is None
 
 
 def test_what_is_no_earlier_run(given: Drive, tmp_path: Path) -> None:

@@ -94,6 +94,11 @@ def test_nothing_is_computed_for_a_file_that_cannot_be_written(change: Change, t
     told: list[Progress] = []
     with pytest.raises(ModelError):
         simulate(change(), tmp_path / "missing" / "run.nc", told.append)
+    notes = tmp_path / "notes.txt"
+    notes.write_text("of others", encoding="utf-8")
+    with pytest.raises(ModelError, match="overwrite"):
+        simulate(change(), notes, told.append)
+    assert notes.read_text(encoding="utf-8") == "of others"
     assert told == []
 
 
