@@ -12,6 +12,7 @@ import pytest
 from beltdyn.errors import ConvergenceError, ModelError
 from beltdyn.model import Drive, install, load, loads, prepare, tensioner_balances
 from beltdyn.results import open_run
+from beltdyn.solvers.run_progress import Progress
 from beltdyn.state.equilibrium import equilibrium
 from beltdyn.state.installation import bring_to_rest, follow
 from beltdyn.state.static import tensioner_compliance
@@ -126,9 +127,18 @@ def test_with_every_tensioner_and_weight(tensioner: Any) -> None:
 
 
 def test_take_up_for_a_tension() -> None:
-    """The length is given, too: the pulley moves, and the belt keeps its length."""
-    fixed = {"kind": "fixed", "pulley": "tensioner", "direction": (-1.0, 0.0)}
-    rest = bring_to_rest(serpentine([fixed], installed_tension=300.0, length=1.85))
+    """The length is given, too: the pulley moves, and the belt keeps its length.
+
+    It sinks into rims by its load per length over the stiffness of contact, T / R k.
+    """
+    fixed, told = {"kind": "fixed", "pulley": "tensioner", "direction": (-1.0, 0.0)}, list[Progress]()
+    rest = bring_to_rest(serpentine([fixed], installed_tension=300.0, length=1.85), told.append)
+    assert {(one.time, one.outputs_written, one.phase) for one in told} == {
+        (0.0, 0, "compiling"),
+        (0.0, 0, "equilibrium"),
+    }
+    depths = rest.tension / (rest.prepared.radii * rest.prepared.contact_stiffness)
+    np.testing.assert_allclose(rest.installation.penetrations, depths, rtol=0.2)  # bending lifts it off small ones
     assert rest.tension == pytest.approx(300.0, rel=ASKED)
     assert rest.drive.belt_length == 1.85
     assert rest.drive.centers[-1, 1] == 0.07
