@@ -127,3 +127,18 @@ def test_a_speed_that_fails_is_marked_and_others_stay(loaded: Drive) -> None:
 def test_options_that_make_no_sense(loaded: Drive, options: dict[str, Any], said: str) -> None:
     with pytest.raises(ModelError, match=said):
         campbell(loaded, **({"speed": "60, 120 rad/s"} | options))
+
+
+@pytest.mark.slow
+def test_near_standstill_lightly_damped_modes_come_first_and_responses_are_finite() -> None:
+    """Friction of a belt that hardly moves damps most modes; the start of a run-up is there at all."""
+    drive = bd.example("flat_belt_idler").with_(
+        {"pulley[motor].speed.start": 0.005, "pulley[motor].harmonics": [{"order": 2.0, "amplitude": 0.02}]}
+    )
+    found = bd.campbell(drive, speed="0.5, 5 rpm", count=4).dataset
+    ratios = found.damping_ratio.values[:, :4]
+    assert np.all((ratios < 0.5) | np.isnan(ratios))
+    assert np.isfinite(found.frequency.values[:, 0]).all()
+    answers = bd.response(drive, speed="0.5, 5 rpm").dataset
+    assert answers.failure.values.tolist() == ["", ""]
+    assert np.isfinite(answers.span_tension_amplitude.values).all()
