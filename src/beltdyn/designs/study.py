@@ -23,7 +23,7 @@ from beltdyn.model.pulley import refuse_functions
 from beltdyn.model.toml import read_study
 from beltdyn.parts.kind_fields import refuse_kinds_of_scripts
 from beltdyn.parts.options import options_of, read_options, require_options
-from beltdyn.points.duty import duty_of, require_distinct_columns
+from beltdyn.points.duty import Column, duty_of, require_distinct_columns
 from beltdyn.results import Result
 from beltdyn.results.atomic import make_folder, target_of
 from beltdyn.signals import uninterrupted
@@ -231,6 +231,9 @@ def study(
     plan = plan_of(given, drive, base)
     if isinstance(table := options.get("table"), Path):
         require_distinct_columns(drive, duty_of(drive, table) or [], table, plan.paths)
+    if any(key in options for key in ("speed", "from_")):
+        swept = Column("speed", str(options.get("pulley") or ""), [])
+        require_distinct_columns(drive, [swept], "[options]", plan.paths)
     require_possible(given.results, drive, plan.paths)
     path = None if output is None else Path(output)
     inputs = [study if isinstance(study, Path | str) else None, given.table and base / given.table]

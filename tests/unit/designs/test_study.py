@@ -165,6 +165,18 @@ def test_points_of_another_study_are_not_lost(
     assert study(study_file, output=tmp_path / "s.nc", jobs=1, overwrite=True).status == "completed"
 
 
+@pytest.mark.parametrize(
+    ("analysis", "options"),
+    [("operating_map", {"speed": "10..20 rad/s"}), ("sweep", {"pulley": "driver", "from_": "60 rpm", "to": "90 rpm"})],
+)
+def test_a_speed_that_the_options_run_through_does_not_vary_besides(
+    analysis: str, options: dict[str, str], drive: Drive
+) -> None:
+    number = {"path": "pulley[1].speed.value", "values": [10.0, 12.0]}
+    with pytest.raises(ModelError, match=r'the column ".*speed" gives the number "pulley\[1\].speed.value"'):
+        study(ParameterStudy(analysis=analysis, options=options, number=[number]), drive, jobs=1)
+
+
 @pytest.mark.parametrize("changed", ["duty.csv", "optimize.toml", "option"])
 def test_points_computed_with_other_options_are_not_taken(changed: str, drive: Drive, tmp_path: Path) -> None:
     """A file that an option names has changed, or one that such a file names, or an option itself."""
