@@ -308,11 +308,15 @@ _LARGEST_RATIO = 99.0
 
 
 def _ratio(pulley: PulleySummary) -> str:
-    """The tension ratio and that which friction allows; a dash where that is not what holds the belt."""
+    """The tension ratio over that which friction allows; a dash where that is not what holds the belt."""
     ratio, allowed = pulley.tension_ratio, pulley.allowed_tension_ratio
     if math.isnan(ratio) or not allowed > 1.0:
         return "–"
-    return f"{ratio:.2f}/{allowed:.2g}" if allowed < _LARGEST_RATIO else f"{ratio:.2f}/>{_LARGEST_RATIO:.0f}"
+    shown = (
+        f"{one:.{digits}}" if one < _LARGEST_RATIO else f">{_LARGEST_RATIO:.0f}"
+        for one, digits in ((ratio, "2f"), (allowed, "2g"))
+    )
+    return "/".join(shown)
 
 
 def _safety(safety: float) -> str:

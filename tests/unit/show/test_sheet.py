@@ -1,15 +1,16 @@
 """Tables and facts of results that are no runs, and of teeth; others of runs are seen on the screen."""
 
 import math
+from dataclasses import replace
 
 import numpy as np
 import pytest
 import xarray as xr
 
 from beltdyn.model import Drive, example
-from beltdyn.results import Result, tooth_loads
+from beltdyn.results import Result, Run, summarize, tooth_loads
 from beltdyn.results.schema import VARIOUS
-from beltdyn.show.sheet import Facts, Table, _column, sheet
+from beltdyn.show.sheet import Facts, Table, _column, _pulleys, sheet
 from beltdyn.state.steady import steady_state
 
 
@@ -77,3 +78,15 @@ def test_a_number_that_is_none_is_a_dash() -> None:
     values = xr.DataArray([1.5, np.nan], dims="requirement", attrs={"units": VARIOUS})
     assert _column(values) == ["1.5", "–"]
     assert "nan" not in " ".join(_column(values.assign_attrs(units="N")))
+
+
+@pytest.mark.parametrize(
+    ("ratio", "allowed", "words"),
+    [(1.25, 43.4, "1.25/43"), (np.inf, 43.4, ">99/43"), (2.0, np.inf, "2.00/>99"), (np.nan, 3.0, "–"), (1.0, 1.0, "–")],
+)
+def test_tension_ratios_are_short(ratio: float, allowed: float, words: str, run: Run) -> None:
+    """A span without tension has an infinite one."""
+    summary = summarize(run)
+    pulley = replace(summary.pulleys[1], tension_ratio=ratio, allowed_tension_ratio=allowed)
+    table = _pulleys("", replace(summary, pulleys=(pulley,)), np.zeros(1, dtype=bool))
+    assert table.rows[0][8] == words
