@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from beltdyn import Drive, Run, load, loads, simulate
-from beltdyn.results.tension_balance import largest_closure
+from beltdyn.results.energy_balance import largest_closure
 from validation.published import cases
 
 ALLOWED = 0.01

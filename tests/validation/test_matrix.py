@@ -20,8 +20,8 @@ from beltdyn import Drive, Pulley
 from beltdyn.designs.batch import simulate_all
 from beltdyn.model import CosineRamp, CosineRampPublished, Ramp
 from beltdyn.results.checks.power import CLOSURE_LIMIT, GROWTH_LIMIT
+from beltdyn.results.energy_balance import largest_closure
 from beltdyn.results.schema import attribute
-from beltdyn.results.tension_balance import largest_closure
 from validation.published import CASES as PUBLISHED
 from validation.published import better, loaded_two_pulley, two_pulley
 

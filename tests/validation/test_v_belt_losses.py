@@ -12,8 +12,8 @@ import pytest
 
 import beltdyn as bd
 from beltdyn.model.hysteresis import bending_resistance, compression_losses
+from beltdyn.results.energy_balance import Balance
 from beltdyn.results.summary import summarize
-from beltdyn.results.tension_balance import Balance
 from beltdyn.state.steady import steady_state
 
 pytestmark = pytest.mark.slow

@@ -13,7 +13,7 @@ import pytest
 import beltdyn as bd
 from beltdyn.arrays import FloatArray
 from beltdyn.results.derived.pulley_means import balance as power_balance
-from beltdyn.results.tension_balance import Balance
+from beltdyn.results.energy_balance import Balance
 from beltdyn.theory.nip import bending_loss, stretch_loss
 
 BENDING, STRETCH = 0.15, 0.05

@@ -24,10 +24,10 @@ from beltdyn.results.atomic import locked_output, require_replaceable
 from beltdyn.results.damage import VARIABLES as OF_FATIGUE
 from beltdyn.results.damage import fatigue_by_name, known_variables
 from beltdyn.results.dataset import is_result
+from beltdyn.results.energy_balance import causes_of
 from beltdyn.results.recorder import status_after
 from beltdyn.results.schema import AXIS_NAMES, COORDINATES, RECORDED, SPAN_TENSIONS, runs_steadily
 from beltdyn.results.summary import Means, means_of
-from beltdyn.results.tension_balance import causes_of
 from beltdyn.results.tooth_loads import ToothLoads, tooth_loads
 from beltdyn.signals import closing, uninterrupted
 from beltdyn.solvers.run_progress import Progress, Report

@@ -13,8 +13,9 @@ from beltdyn.model.nip import refuse_nips
 from beltdyn.model.path import span_directions
 from beltdyn.points.changed_drive import driver_of
 from beltdyn.results.mechanics import SpanTension
+from beltdyn.results.sag import weight_of_meter
 from beltdyn.results.slip_safety import SlipSafety, slip_safety_of_states
-from beltdyn.results.tension_balance import TensionBalance, weight_of_meter
+from beltdyn.results.tension_balance import TensionBalance
 from beltdyn.theory.nip import bending_loss
 
 Torques = Callable[[float], FloatArray]

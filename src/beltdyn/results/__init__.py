@@ -4,6 +4,7 @@ from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
 from beltdyn.results.checks import Finding
+from beltdyn.results.energy_balance import Balance, power_balance
 from beltdyn.results.export import export
 from beltdyn.results.incidents import Jump, jumps
 from beltdyn.results.layout import Layout, describe_size, expected_bytes, require_room
@@ -16,7 +17,6 @@ from beltdyn.results.run import Run, StaticResult, open_result, open_run, static
 from beltdyn.results.schema import COORDINATES, RECORDED, VARIABLES, Variable
 from beltdyn.results.summary import Compared, Summary, steady_comparison, summarize
 from beltdyn.results.tables import write_csv
-from beltdyn.results.tension_balance import Balance, power_balance
 from beltdyn.results.tooth_loads import ToothLoads, tooth_loads
 
 if TYPE_CHECKING:

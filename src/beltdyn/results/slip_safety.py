@@ -17,7 +17,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from beltdyn.arrays import FloatArray, IntArray
+from beltdyn.arrays import BoolArray, FloatArray, IntArray
 from beltdyn.model import Prepared
 from beltdyn.model.path import span_directions
 from beltdyn.results.mechanics import (
@@ -30,7 +30,8 @@ from beltdyn.results.mechanics import (
     sliding_shares,
     sliding_velocity,
 )
-from beltdyn.results.tension_balance import Loads, TensionBalance, wrap_with_sag
+from beltdyn.results.sag import wrap_with_sag
+from beltdyn.results.tension_balance import Loads, TensionBalance
 from beltdyn.theory.creep import entry_strain
 
 # Sliding of the belt on every pulley
@@ -261,9 +262,13 @@ def _directly(balance: TensionBalance, loads: Loads, pulley: IntArray) -> FloatA
         open_ = open_[~settled & np.isfinite(step).all(axis=1)]
         if not open_.size:
             break
+    return np.where(done & _presses(balance, loads, factor, unknowns), factor, np.nan)
+
+
+def _presses(balance: TensionBalance, loads: Loads, factor: FloatArray, unknowns: FloatArray) -> BoolArray:
+    """Whether no span is slack under factors on loads, shape (n,)."""
     mean = balance.tension.mean[loads.state].mean(axis=1)
-    presses = balance.pressing(loads, factor, unknowns).min(axis=1) >= _SLACK * mean
-    return np.where(done & presses, factor, np.nan)
+    return np.asarray(balance.pressing(loads, factor, unknowns).min(axis=1) >= _SLACK * mean)
 
 
 class _Way(NamedTuple):
@@ -279,10 +284,7 @@ def _at(balance: TensionBalance, loads: Loads, pulley: IntArray, factor: FloatAr
     """The state under a factor on the load, from a guess."""
     unknowns = balance.solve(loads, factor, guess)
     carried, held = (values[np.arange(pulley.size), pulley] for values in balance.edge(loads, factor, unknowns))
-    slack = balance.pressing(loads, factor, unknowns).min(axis=1) < _SLACK * balance.tension.mean[loads.state].mean(
-        axis=1
-    )
-    return _Way(factor, unknowns, np.where(slack, np.nan, held - carried))
+    return _Way(factor, unknowns, np.where(_presses(balance, loads, factor, unknowns), held - carried, np.nan))
 
 
 def _followed(balance: TensionBalance, loads: Loads, pulley: IntArray) -> FloatArray:

@@ -10,6 +10,7 @@ from beltdyn.model import Drive
 from beltdyn.model.simulation import Simulation
 from beltdyn.results.checks.mesh import STEADY_LOSSES, STEADY_SLIPS
 from beltdyn.results.cycles import Window, mean_window
+from beltdyn.results.energy_balance import Balance, causes_of, largest_closure, power_balance
 from beltdyn.results.means import (
     PulleySummary,
     SpanSummary,
@@ -21,7 +22,6 @@ from beltdyn.results.means import (
 from beltdyn.results.provenance import Resolution
 from beltdyn.results.run import Run
 from beltdyn.results.schema import Recorded, attribute
-from beltdyn.results.tension_balance import Balance, causes_of, largest_closure, power_balance
 
 
 class Means(NamedTuple):

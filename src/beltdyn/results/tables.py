@@ -13,11 +13,11 @@ from numpy.typing import NDArray
 
 from beltdyn.errors import Parts
 from beltdyn.results.atomic import atomic_path, make_folder, require_replaceable
+from beltdyn.results.energy_balance import losses_of
 from beltdyn.results.result import Result
 from beltdyn.results.run import Run
 from beltdyn.results.schema import SPAN_TENSIONS, VARIABLES
 from beltdyn.results.summary import Summary, summarize
-from beltdyn.results.tension_balance import losses_of
 
 if TYPE_CHECKING:
     import xarray as xr

@@ -6,207 +6,27 @@ belt; an end of an open belt that is pulled keeps its tension. All are taken as 
 else holds a tensioner there, as weight and dry friction, goes on holding it.
 """
 
-import math
-from collections.abc import Mapping
 from copy import copy
-from dataclasses import dataclass
 from typing import NamedTuple, Self
 
 import numpy as np
-from numpy.polynomial.legendre import leggauss
 
 from beltdyn.arrays import BoolArray, FloatArray, IntArray
 from beltdyn.machines.tensioners.tensioner import MovingTensioner
 from beltdyn.model import Prepared
 from beltdyn.model.path import span_directions, span_points, wrap_angles
-from beltdyn.results.cycles import Window, plain_window
 from beltdyn.results.mechanics import SpanTension, across
-from beltdyn.results.schema import Recorded
-
-LOSSES: Mapping[str, str] = {
-    "friction_loss": "friction",
-    "damping_loss": "contact damping",
-    "stretch_loss": "belt stretch",
-    "bending_loss": "belt bending",
-    "compression_loss": "belt compression",
-    "tensioner_loss": "tensioners",
-    "coupling_loss": "couplings",
-    "carrying_loss": "supports and goods",
-    "numerical_loss": "time integration",
-}
-"""Recorded works of the losses, and their causes in words."""
-
-OF_TEETH = "teeth and compression"
-"""Cause in words of `compression_loss` of belts with teeth: what these lose, store, and leave as they enter and leave
-under load, which may be negative."""
-
-_OF_GROOVES = "tooth_phases"
-"""Attribute of the results of belts with teeth."""
-
-WEB_LINE = "web_line"
-"""Attribute of the results of web lines, whose works of loads include those of both ends."""
-
-_BEFORE = {"material_loss": "belt material"}
-"""The combined loss of stretch and bending in files of earlier formats."""
-
-STORED = ("kinetic_energy", "strain_energy", "penalty_energy", "spring_energy", "potential_energy")
-"""Recorded energies that the drive holds."""
-
-
-@dataclass(frozen=True, slots=True)
-class Balance:
-    """Mean powers over a part of a run, W.
-
-    Examples
-    --------
-    >>> balance = bd.derived.balance(run)
-    >>> sorted(balance.losses)[:3]
-    ['belt bending', 'belt compression', 'belt stretch']
-    """
-
-    pulleys: tuple[float, ...]
-    """Power into the drive at each shaft, positive for a driving shaft."""
-    losses: Mapping[str, float]
-    """Power lost, by cause, such as "friction"."""
-    stored: float
-    """Rate of change of the stored energy: kinetic, strain, contact, spring and potential energy."""
-    web: float = 0.0
-    """Power that comes in with the web of a line, less that which goes out with it."""
-
-    @property
-    def power_in(self) -> float:
-        """Power input of the driving shafts, and of a web that brings more than it takes along."""
-        return sum(power for power in (*self.pulleys, self.web) if power > 0.0)
-
-    @property
-    def power_out(self) -> float:
-        """Power output to the loads, and to a web that takes more along than it brings."""
-        return -sum(power for power in (*self.pulleys, self.web) if power < 0.0)
-
-    @property
-    def efficiency(self) -> float:
-        """Power output over the sum of power output and losses; NaN without power input, or power output (a conveyor).
-
-        In steady running this is power output over power input; stored and returned energy is not counted.
-        """
-        delivers = self.power_in > 0.0 and self.power_out > 0.0
-        return self.power_out / (self.power_out + self.lost) if delivers else math.nan
-
-    @property
-    def lost(self) -> float:
-        """Sum of the losses."""
-        return sum(self.losses.values())
-
-
-def losses_of(recorded: Recorded) -> Mapping[str, str]:
-    """Give the recorded works of the losses, and their causes in words."""
-    causes = causes_of(toothed=_OF_GROOVES in recorded.attrs)
-    return {name: cause for name, cause in causes.items() if name in recorded} | (
-        {} if "bending_loss" in recorded else _BEFORE
-    )
-
-
-def causes_of(*, toothed: bool) -> Mapping[str, str]:
-    """Works of the losses and their causes in words, of belts with or without teeth."""
-    return {**LOSSES, "compression_loss": OF_TEETH} if toothed else LOSSES
-
-
-def power_balance(recorded: Recorded, window: Window | None = None) -> Balance:
-    """Give mean powers over a window.
-
-    Shaft powers are means over outputs; losses and stored power are differences of recorded integrals. With a single
-    output all rates are zero.
-
-    Parameters
-    ----------
-    recorded : Recorded
-        The results.
-    window : Window, optional
-        The averaging window; by default from the first to the last output.
-
-    Returns
-    -------
-    Balance
-        The mean powers.
-
-    Examples
-    --------
-    >>> with run.recorded() as recorded:
-    ...     balance = bd.results.power_balance(recorded)
-    >>> sorted(balance.losses)[:2]
-    ['belt bending', 'belt compression']
-    """
-    window = plain_window(np.asarray(recorded["time"])) if window is None else window
-    pulleys = tuple(map(float, window.product(recorded, "shaft_torque", "shaft_speed")))
-    put_in = sum(float(window.rate(recorded, name)) for name in ("driver_work", "torque_work"))
-    return Balance(
-        pulleys=pulleys,
-        losses={cause: float(window.rate(recorded, name)) for name, cause in losses_of(recorded).items()},
-        stored=sum(float(window.rate(recorded, name)) for name in STORED),
-        web=put_in - sum(pulleys) if WEB_LINE in recorded.attrs else 0.0,
-    )
-
-
-# Largest energy balance error and numerical loss of a run
-
-
-class Closure(NamedTuple):
-    """Largest energy balance error of a run."""
-
-    time: float
-    """When, s."""
-    error: float
-    """Closure error at that time, over the energy put in by then."""
-
-
-def largest_closure(recorded: Recorded) -> Closure:
-    """Largest energy balance error over time."""
-    return _largest(recorded, np.asarray(recorded["energy_closure"]))
-
-
-def largest_numerical_share(recorded: Recorded) -> Closure:
-    """Largest share of the energy input lost in time integration."""
-    taken, given = np.asarray(recorded["numerical_loss"]), energy_put_in(recorded)
-    shares = np.divide(taken, given, out=np.zeros_like(given), where=given > 0.0)
-    return _largest(recorded, shares)
-
-
-def _largest(recorded: Recorded, shares: FloatArray) -> Closure:
-    """The share of largest magnitude, and its instant."""
-    worst = int(np.argmax(np.abs(shares)))
-    return Closure(float(recorded["time"][worst]), float(shares[worst]))
-
-
-def energy_put_in(recorded: Recorded) -> FloatArray:
-    """Energy put in up to each output, J: the energy stored at first, and the largest works of each kind by then.
-
-    Works of drivers and torques, and of springs and weight, count either way.
-    """
-
-    def values(name: str) -> FloatArray:
-        return np.asarray(recorded[name], dtype=np.float64)
-
-    stored = sum(float(values(name)[0]) for name in ("kinetic_energy", "strain_energy", "penalty_energy"))
-    kinds = ("driver_work", "torque_work", "spring_energy", "potential_energy")
-    done = np.abs(np.stack([values(name) - values(name)[0] for name in kinds]))
-    return np.asarray(stored + np.maximum.accumulate(done, axis=1).sum(axis=0))
-
-
-# What holds the tensions of a belt
+from beltdyn.results.sag import Sag, sag_of, turned, weight_of_meter, wrap_with_sag
 
 _MOST_ITERATIONS = 25
 _CONVERGED = 1e-9
 """Step of Newton's method, over the scale of each unknown."""
 _DIFFERENCE = 1e-6
 """Step of difference quotients, over the scale of each unknown."""
-_PRESSED = 0.1
-"""Least tension that presses the belt on, over that before a step of Newton's method."""
-_SLACK = 0.25
-"""Least tension that presses, over the weight across a span, of which the sag is taken: a belt hangs deeper below."""
-_PLACES, _WEIGHTS = (0.5 * (values + shift) for values, shift in zip(leggauss(8), (1.0, 0.0), strict=True))
-"""Gauss points and weights along a span."""
 _LONGEST = 0.2
 """Step of Newton's method for the place of a tensioner, over the way on which it moves by the smallest radius."""
+_PRESSED = 0.1
+"""Least tension that presses the belt on, over that before a step of Newton's method."""
 
 
 class Loads(NamedTuple):
@@ -499,7 +319,7 @@ class TensionBalance:
                 lifted[end]
                 + size
                 * (
-                    along * np.sum(turns * _turned(ways) * gravity[:, None], axis=-1)
+                    along * np.sum(turns * turned(ways) * gravity[:, None], axis=-1)
                     + inwards * np.sum(ways * gravity[:, None], axis=-1)
                 )
                 for end, ways in enumerate((shape.centers - place) / size[:, None] for place in places)
@@ -519,17 +339,18 @@ class TensionBalance:
             center = shape.centers[:, pulleys[on, end]]
             arm, turn = points[end][:, on] - center, angle[:, on, None]
             points[end] = points[end].copy()
-            points[end][:, on] = center + np.cos(turn) * arm + np.sin(turn) * _turned(arm)
+            points[end][:, on] = center + np.cos(turn) * arm + np.sin(turn) * turned(arm)
         return points[0], points[1]
 
     def _off(self, tension: SpanTension, rows: IntArray, shape: _Geometry, unknowns: FloatArray) -> FloatArray:
         """Unstretched length of the belt, m, or the tension of a pulled span, N, then the force on each tensioner."""
         path, lifted = self._prepared.path, self._lifted[rows]
-        first = self._belt_on(rows, tension, shape) if self._pulled is None else tension.mean[:, self._pulled]
+        sag = sag_of(self._prepared, tension, lifted, shape.directions)
+        first = self._belt_on(rows, tension, shape, sag) if self._pulled is None else tension.mean[:, self._pulled]
         missing = [first]
         if not self._carriers:
             return first[:, None]
-        starting, ending = self._pulls(tension, lifted, shape)
+        starting, ending = _pulls(tension, lifted, shape, sag)
         for number, one in enumerate(self._carriers):
             before, after = path.reaching[one.pulley], path.leaving[one.pulley]
             pull = starting[:, after] - ending[:, before]
@@ -537,20 +358,7 @@ class TensionBalance:
             missing.append(np.sum(pull * shape.slopes[:, number], axis=1) + _spring(one.tensioner, place))
         return np.column_stack(missing)
 
-    def _pulls(self, tension: SpanTension, lifted: FloatArray, shape: _Geometry) -> tuple[FloatArray, FloatArray]:
-        """Forces with which spans pull at their starts and ends, N, shape (n, spans, 2)."""
-        sag = sag_of(self._prepared, tension, lifted, shape.directions)
-        start, end = ((values - lifted)[..., None] * shape.directions for values in tension[:2])
-        if sag is None:
-            return start, end
-        left = _turned(shape.directions)
-        first, last = (
-            pull * (1.0 - 0.5 * slope**2)[..., None] + (slope * (values - lifted))[..., None] * left
-            for pull, values, slope in ((start, tension.start, sag.start), (end, tension.end, sag.end))
-        )
-        return first, last
-
-    def _belt_on(self, rows: IntArray, tension: SpanTension, shape: _Geometry) -> FloatArray:
+    def _belt_on(self, rows: IntArray, tension: SpanTension, shape: _Geometry, sag: Sag | None) -> FloatArray:
         """Unstretched length of the belt on its path, m."""
         prepared = self._prepared
         law, radii, friction = prepared.belt.stretch_parameters, np.abs(prepared.path.radii), self._frictions[rows]
@@ -567,7 +375,6 @@ class TensionBalance:
         mean = (1.0 - part) * reaching + part * sliding
         sunk = np.maximum(mean - lifted, 0.0) / (radii * prepared.contact_stiffness)
         arcs = shape.wrap * (radii - sunk) * ((1.0 - part) / law.stretch(reaching) + part / law.stretch(sliding))
-        sag = sag_of(prepared, tension, self._lifted[rows], shape.directions)
         spans = (shape.lengths + (0.0 if sag is None else sag.longer)) / law.stretch(tension.mean)
         return np.asarray(spans.sum(axis=1) + arcs.sum(axis=1))
 
@@ -584,65 +391,30 @@ class TensionBalance:
                 centers[:, one.pulley] += way[:, None] * along[1]
                 continue
             arm = centers[:, one.pulley] - np.array(pivot)
-            sense = np.sign(_turned(along[0] - np.array(pivot)) @ along[1])
+            sense = np.sign(turned(along[0] - np.array(pivot)) @ along[1])
             cosine, sine = np.cos(way)[:, None], sense * np.sin(way)[:, None]
-            arm = cosine * arm + sine * _turned(arm)
+            arm = cosine * arm + sine * turned(arm)
             centers[:, one.pulley] = pivot + arm
-            slopes[:, number] = sense * _turned(arm)
+            slopes[:, number] = sense * turned(arm)
         shape = self._prepared.path.shape
         directions, points = span_directions(centers, *shape), span_points(centers, *shape)
         lengths = np.linalg.norm(points[:, :, 1] - points[:, :, 0], axis=-1)
         return _Geometry(centers, directions, points, lengths, wrap_angles(directions, *shape), slopes)
 
 
-# Sag of spans that no support carries
-
-
-class Sag(NamedTuple):
-    """How spans sag, each of shape (n, spans)."""
-
-    longer: FloatArray
-    """Length beyond that of the straight line, m."""
-    start: FloatArray
-    """Angle by which sag turns the belt to the left where the span starts, rad."""
-    end: FloatArray
-    """The same where it ends."""
-
-
-def sag_of(prepared: Prepared, tension: SpanTension, lifted: FloatArray, directions: FloatArray) -> Sag | None:
-    """How spans sag by the weight w across them; None without gravity.
-
-    `tension`, `lifted`: T and m v^2, N, shape (n, spans); `directions`: shape (n, spans, 2). With T' = T - m v^2, which
-    is linear along the span of length L, its small slope y' has T' y' = c - w s, with c so that both ends stay where
-    they are.
-    """
-    if not any(prepared.gravity):
-        return None
-    supported = {one.span for one in prepared.supports}
-    length = np.where([span in supported for span in prepared.spans], 0.0, prepared.path.span_lengths)
-    across = np.sum(_turned(directions) * weight_of_meter(prepared, tension)[:, None], axis=-1) * length
-    least = _SLACK * np.abs(across) + np.finfo(float).tiny
-    first, last = (np.maximum(values - lifted, least) for values in tension[:2])
-    pressing = first[..., None] + (last - first)[..., None] * _PLACES
-    held = across * (_PLACES / pressing @ _WEIGHTS) / (1.0 / pressing @ _WEIGHTS)
-    slope = (held[..., None] - across[..., None] * _PLACES) / pressing
-    return Sag(0.5 * length * (slope**2 @ _WEIGHTS), held / first, (held - across) / last)
-
-
-def wrap_with_sag(prepared: Prepared, tension: SpanTension, lifted: FloatArray, directions: FloatArray) -> FloatArray:
-    """Wrap angles between spans that sag, rad, shape (n, pulleys); arguments as for `sag_of`."""
-    path = prepared.path
-    straight, sag = wrap_angles(directions, *path.shape), sag_of(prepared, tension, lifted, directions)
+def _pulls(
+    tension: SpanTension, lifted: FloatArray, shape: _Geometry, sag: Sag | None
+) -> tuple[FloatArray, FloatArray]:
+    """Forces with which spans pull at their starts and ends, N, shape (n, spans, 2)."""
+    start, end = ((values - lifted)[..., None] * shape.directions for values in tension[:2])
     if sag is None:
-        return straight
-    turned = np.sign(path.radii) * (sag.start[:, path.leaving] - sag.end[:, path.reaching])
-    return np.asarray(np.maximum(straight + turned, 0.0))
-
-
-def weight_of_meter(prepared: Prepared, tension: SpanTension) -> FloatArray:
-    """Weight of a meter of the stretched belt, N/m, shape (n, 2)."""
-    stretch = prepared.belt.stretch_parameters.stretch(tension.mean.mean(axis=-1))
-    return np.asarray(prepared.belt.mass_per_length / stretch[:, None] * np.array(prepared.gravity))
+        return start, end
+    left = turned(shape.directions)
+    first, last = (
+        pull * (1.0 - 0.5 * slope**2)[..., None] + (slope * (values - lifted))[..., None] * left
+        for pull, values, slope in ((start, tension.start, sag.start), (end, tension.end, sag.end))
+    )
+    return first, last
 
 
 def _pulled_span(prepared: Prepared) -> int | None:
@@ -660,8 +432,8 @@ def _places(prepared: Prepared, centers: FloatArray) -> FloatArray:
             found[:, number] = (centers[:, one.pulley] - nominal) @ along
         else:
             arm, here = nominal - np.array(pivot), centers[:, one.pulley] - np.array(pivot)
-            sense = np.sign(_turned(arm) @ along)
-            found[:, number] = sense * np.arctan2(here @ _turned(arm), here @ arm)
+            sense = np.sign(turned(arm) @ along)
+            found[:, number] = sense * np.arctan2(here @ turned(arm), here @ arm)
     return found
 
 
@@ -681,8 +453,3 @@ def _solved(slopes: FloatArray, off: FloatArray) -> FloatArray:
         found = np.full_like(off, np.nan)
         found[known] = (np.linalg.pinv(slopes[known]) @ off[known, :, None])[:, :, 0]
         return found
-
-
-def _turned(vectors: FloatArray) -> FloatArray:
-    """Vectors turned by a quarter to the left, shape (..., 2)."""
-    return np.stack([-vectors[..., 1], vectors[..., 0]], axis=-1)

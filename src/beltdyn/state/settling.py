@@ -17,8 +17,8 @@ from beltdyn.model.defaults import MOST
 from beltdyn.model.simulation import Instants
 from beltdyn.results import mesh_error_attribute
 from beltdyn.results.checks.ending import LEAST_WINDOWS, SETTLED, least_window
+from beltdyn.results.energy_balance import WEB_LINE
 from beltdyn.results.mechanics import MESH_BESIDE
-from beltdyn.results.tension_balance import WEB_LINE
 from beltdyn.solvers.run_progress import Progress, Report
 from beltdyn.solvers.trajectory import Chunk, Integrator, Statistics, Task, drive_task
 from beltdyn.state.installation import Rest, bring_to_rest

@@ -18,9 +18,9 @@ from beltdyn.parts.options import ForceTolerance, takes_options
 from beltdyn.parts.quantity import Count, number_in
 from beltdyn.results import Run, mesh_error_attribute
 from beltdyn.results.checks.machines import GROWTH
+from beltdyn.results.energy_balance import WEB_LINE
 from beltdyn.results.provenance import STAYING, mesh_used
 from beltdyn.results.schema import runs_steadily
-from beltdyn.results.tension_balance import WEB_LINE
 from beltdyn.solvers.run_progress import Progress, Report
 from beltdyn.solvers.trajectory import Chunk
 from beltdyn.state.linearized import growing, in_motion

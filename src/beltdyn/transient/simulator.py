@@ -14,8 +14,8 @@ from beltdyn.kernel import interpreted
 from beltdyn.machines.profiles.functions import go_on, profile_integral, profile_value
 from beltdyn.model import Drive, Pulley, prepare
 from beltdyn.parts.quantity import number_in
+from beltdyn.results.energy_balance import STORED
 from beltdyn.results.mechanics import wraps_of_contact
-from beltdyn.results.tension_balance import STORED
 from beltdyn.solvers.generalized_alpha import GeneralizedAlpha
 from beltdyn.solvers.integrator_state import IntegratorState, grown
 from beltdyn.solvers.run_progress import Report

@@ -10,7 +10,7 @@ import pytest
 from beltdyn.cosimulation.component import Component, ComponentState, Interface, choose_inputs, choose_outputs
 from beltdyn.errors import ConvergenceError, ModelError
 from beltdyn.model import Drive
-from beltdyn.results.tension_balance import LOSSES, STORED
+from beltdyn.results.energy_balance import LOSSES, STORED
 from beltdyn.transient.simulator import Simulator, SimulatorState
 
 SPEED, TORQUE = "pulley[driver].speed", "pulley[driven].torque"

@@ -12,7 +12,7 @@ from beltdyn.results import Run, summarize
 from beltdyn.results.checks import CHECKS
 from beltdyn.results.checks.mesh import COARSE_SETTINGS, STEADY_LOSSES, STEADY_SLIPS, unresolved_by_mesh
 from beltdyn.results.checks.power import unbalanced_powers
-from beltdyn.results.tension_balance import LOSSES
+from beltdyn.results.energy_balance import LOSSES
 
 MakeRun = Callable[..., Run]
 TURN = 0.3

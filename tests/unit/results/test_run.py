@@ -14,7 +14,7 @@ from beltdyn.results import FileRecorder, Layout, Run, open_run, summarize
 from beltdyn.results.checks import Evidence
 from beltdyn.results.checks.ending import NOTHING_RECORDED
 from beltdyn.results.checks.machines import stopped_tensioners
-from beltdyn.results.tension_balance import energy_put_in
+from beltdyn.results.energy_balance import energy_put_in
 
 MakeRun = Callable[..., Run]
 

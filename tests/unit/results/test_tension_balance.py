@@ -1,13 +1,11 @@
 """The balance of tensions under other loads, against an independent balance of lumped spans."""
 
-import math
-
 import numpy as np
 import pytest
 
 from beltdyn.model import prepare
 from beltdyn.results.mechanics import SpanTension
-from beltdyn.results.tension_balance import Balance, TensionBalance
+from beltdyn.results.tension_balance import TensionBalance
 from tests.lumped.drawn_drives import drawn_drive
 
 
@@ -40,9 +38,3 @@ def test_without_other_loads_the_known_state_stays() -> None:
     np.testing.assert_allclose(found.tension.mean, np.tile(rest.span_tensions, (3, 1)), rtol=1e-9)
     np.testing.assert_allclose(found.positions, np.tile(rest.tensioner_positions, (3, 1)), atol=1e-9)
     np.testing.assert_allclose(found.wrap, np.tile(rest.path.wrap_angles, (3, 1)), rtol=1e-9)
-
-
-def test_a_drive_that_delivers_no_power_has_no_efficiency() -> None:
-    """All power of a conveyor is lost to its supports and goods."""
-    assert math.isnan(Balance(pulleys=(1000.0, 0.0), losses={"supports and goods": 1000.0}, stored=0.0).efficiency)
-    assert Balance(pulleys=(1000.0, -900.0), losses={"friction": 100.0}, stored=0.0).efficiency == pytest.approx(0.9)

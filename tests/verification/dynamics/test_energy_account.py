@@ -8,7 +8,7 @@ import xarray as xr
 
 from beltdyn import simulate
 from beltdyn.model import Drive
-from beltdyn.results.tension_balance import energy_put_in
+from beltdyn.results.energy_balance import energy_put_in
 
 Change = Callable[..., Drive]
 Measured = Callable[..., None]

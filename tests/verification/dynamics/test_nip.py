@@ -12,7 +12,7 @@ import beltdyn as bd
 from beltdyn.arrays import FloatArray
 from beltdyn.errors import ConvergenceError, ModelError
 from beltdyn.model.nip import Pair, side_stiffness
-from beltdyn.results.tension_balance import largest_closure
+from beltdyn.results.energy_balance import largest_closure
 from beltdyn.theory.nip import (
     equivalent_radius,
     force,

@@ -15,7 +15,7 @@ from scipy.optimize import brentq
 
 from beltdyn.model import Drive, loads
 from beltdyn.results import Run
-from beltdyn.results.tension_balance import largest_closure
+from beltdyn.results.energy_balance import largest_closure
 from beltdyn.solvers.flutter import Vibrations
 from beltdyn.state.equilibrium import equilibrium
 from beltdyn.system.build import belt_system

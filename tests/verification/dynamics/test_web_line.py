@@ -15,7 +15,7 @@ import pytest
 import beltdyn as bd
 from beltdyn.errors import ModelError
 from beltdyn.model import Drive
-from beltdyn.results.tension_balance import largest_closure
+from beltdyn.results.energy_balance import largest_closure
 
 RADIUS, SPEED, ENTERS, LEAVES = 0.05, 2.0, 100.0, 150.0
 

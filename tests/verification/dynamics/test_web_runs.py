@@ -17,7 +17,7 @@ from beltdyn.arrays import FloatArray
 from beltdyn.errors import ConvergenceError
 from beltdyn.model import Drive
 from beltdyn.results import Run
-from beltdyn.results.tension_balance import largest_closure
+from beltdyn.results.energy_balance import largest_closure
 
 pytestmark = pytest.mark.slow
 

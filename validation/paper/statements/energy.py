@@ -6,7 +6,7 @@ import numpy as np
 
 from beltdyn.model import Drive
 from beltdyn.results import Run
-from beltdyn.results.tension_balance import largest_closure
+from beltdyn.results.energy_balance import largest_closure
 from validation.paper.runs import Runs
 from validation.paper.statement import Finding, Number, Section, Statement, Table, Value, verdict
 from validation.published import better, two_pulley

@@ -8,7 +8,7 @@ from matplotlib.figure import Figure
 from beltdyn.arrays import FloatArray
 from beltdyn.model import Drive
 from beltdyn.results import Run
-from beltdyn.results.tension_balance import largest_closure
+from beltdyn.results.energy_balance import largest_closure
 from beltdyn.show.plot.style import INK, color, dash, new_figure
 from validation.paper.hand_formulas import creep_lag, gross_slip_torque
 from validation.paper.measures import DRIVER, RAMP_START, settled, settled_mean, speed, times

@@ -10,10 +10,10 @@ from beltdyn.arrays import FloatArray
 from beltdyn.model import Prepared
 from beltdyn.parts.messages import Finding
 from beltdyn.results.cycles import Window, mean_window
+from beltdyn.results.energy_balance import Balance, power_balance
 from beltdyn.results.means import PulleySummary, SpanSummary, pulley_means, span_means
 from beltdyn.results.provenance import Resolution
 from beltdyn.results.schema import Recorded
-from beltdyn.results.tension_balance import Balance, power_balance
 from beltdyn.results.tooth_loads import ToothLoads, extreme_loads
 
 IDLE = 0.01

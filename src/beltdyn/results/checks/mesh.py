@@ -12,9 +12,9 @@ from beltdyn.model.resolution import PRESSURES
 from beltdyn.parts.messages import Finding, listing
 from beltdyn.results.checks.creep import LOSS_LIMIT
 from beltdyn.results.checks.evidence import Evidence
+from beltdyn.results.energy_balance import OF_TEETH, causes_of
 from beltdyn.results.provenance import found_errors
 from beltdyn.results.schema import runs_steadily
-from beltdyn.results.tension_balance import OF_TEETH, causes_of
 
 
 def unresolved_by_mesh(evidence: Evidence) -> Iterator[Finding]:

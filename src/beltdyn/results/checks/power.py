@@ -11,9 +11,9 @@ from beltdyn.parts.messages import Finding, beyond, listing
 from beltdyn.parts.quantity import RPM
 from beltdyn.results.checks.evidence import Evidence, shorter_steps
 from beltdyn.results.cycles import last_change
+from beltdyn.results.energy_balance import OF_TEETH, Balance, largest_closure, largest_numerical_share
 from beltdyn.results.free_decay import free_decay, without_integrator
 from beltdyn.results.schema import attribute
-from beltdyn.results.tension_balance import OF_TEETH, Balance, largest_closure, largest_numerical_share
 
 DAMPING_LIMIT = 0.01
 """Largest share of the power (`Evidence.power`) that contact damping may dissipate without a warning."""

@@ -4,10 +4,10 @@ import numpy as np
 import xarray as xr
 
 from beltdyn.results.cycles import Cycle, Window, plain_window, turn_window
+from beltdyn.results.energy_balance import Balance, power_balance
 from beltdyn.results.mechanics import SpanTension, rim_speeds
 from beltdyn.results.run import Run, labelled, window
 from beltdyn.results.slip_safety import slip_parts, slip_safety_of
-from beltdyn.results.tension_balance import Balance, power_balance
 
 # Pulley powers over time
 

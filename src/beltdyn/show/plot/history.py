@@ -10,8 +10,8 @@ from matplotlib.axes import Axes
 from beltdyn.errors import ModelError
 from beltdyn.parts.quantity import RPM
 from beltdyn.results import Run, derived
+from beltdyn.results.energy_balance import largest_closure, losses_of
 from beltdyn.results.incidents import GROSS_SLIP, JUMP, SLACK, STOP, incidents
-from beltdyn.results.tension_balance import largest_closure, losses_of
 from beltdyn.show.plot.figures import figure, over_time
 from beltdyn.show.plot.style import (
     SHADE,

@@ -7,7 +7,7 @@ import pytest
 from matplotlib.axes import Axes
 
 from beltdyn.results import Run
-from beltdyn.results.tension_balance import losses_of
+from beltdyn.results.energy_balance import losses_of
 from beltdyn.show import plot
 from beltdyn.show.plot.style import LIMIT
 

@@ -1,5 +1,6 @@
 """Powers of a run made by formulas: 2.4375 N m at 12 rad/s, losses of 0.1 J for each radian."""
 
+import math
 from collections.abc import Callable
 from typing import Any
 
@@ -8,6 +9,7 @@ import pytest
 
 from beltdyn.results import Run, power_balance
 from beltdyn.results.cycles import plain_window
+from beltdyn.results.energy_balance import Balance
 
 TORQUE = 30.0 * 0.08125
 MakeRun = Callable[..., Run]
@@ -36,3 +38,9 @@ def test_one_output_has_no_rates(make_run: MakeRun) -> None:
     balance = power_balance(make_run(outputs=1).dataset)
     assert (balance.lost, balance.stored, balance.power_in) == (0.0, 0.0, 0.0)
     assert np.isnan(balance.efficiency)
+
+
+def test_a_drive_that_delivers_no_power_has_no_efficiency() -> None:
+    """All power of a conveyor is lost to its supports and goods."""
+    assert math.isnan(Balance(pulleys=(1000.0, 0.0), losses={"supports and goods": 1000.0}, stored=0.0).efficiency)
+    assert Balance(pulleys=(1000.0, -900.0), losses={"friction": 100.0}, stored=0.0).efficiency == pytest.approx(0.9)

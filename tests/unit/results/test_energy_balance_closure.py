@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 import xarray as xr
 
-from beltdyn.results.tension_balance import energy_put_in, largest_closure, largest_numerical_share
+from beltdyn.results.energy_balance import energy_put_in, largest_closure, largest_numerical_share
 
 TIME = np.array([0.0, 1.0, 2.0, 3.0])
 NOTHING = np.zeros(4)
