@@ -88,19 +88,12 @@ _JUDGED_BY = {
     "largest_slip": "`beltdyn sheet`, of a loaded drive",
     "least_slip_safety": "`beltdyn sheet`, of a loaded drive",
 }
-"""Key of a limit -> the command that always judges it."""
+"""Key of a limit -> the command that always judges it, and of what."""
 
 
-def has_limits(limits: Limits) -> bool:
-    """Whether a drive file gives any limit."""
-    return any(getattr(limits, key) is not None for key in _JUDGED_BY)
-
-
-def unjudged(result: Result) -> dict[str, str]:
-    """Limits of the drive file that a result does not judge: key -> what does."""
-    limits = result.drive.limits
-    judged = {number.key for number in key_numbers(result) if number.passes is not None}
-    return {key: what for key, what in _JUDGED_BY.items() if getattr(limits, key) is not None and key not in judged}
+def judging_commands(limits: Limits) -> dict[str, str]:
+    """Limits of a drive file: key -> the command that always judges it."""
+    return {key: command for key, command in _JUDGED_BY.items() if getattr(limits, key) is not None}
 
 
 _UNBOUNDED = ("largest_utilization",)

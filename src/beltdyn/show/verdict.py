@@ -7,7 +7,7 @@ import numpy as np
 
 from beltdyn.parts.messages import listing
 from beltdyn.results.incidents import Incident, incidents
-from beltdyn.results.limits import KeyNumber, has_limits, key_numbers, unjudged
+from beltdyn.results.limits import KeyNumber, judging_commands, key_numbers
 from beltdyn.results.result import Result
 from beltdyn.results.run import Run
 
@@ -24,6 +24,11 @@ class SideBySide(NamedTuple):
     """Key of its limit in the drive file."""
     numbers: list[KeyNumber | None]
     """One for each result; None where a result does not know it."""
+
+    @property
+    def limited(self) -> bool:
+        """Whether a drive gives a limit of it."""
+        return any(number is not None and number.limit is not None for number in self.numbers)
 
     def difference(self, number: int) -> str:
         """By how much a result differs from the first, in words; nothing where that is not known."""
@@ -48,17 +53,19 @@ def compared(results: Sequence[Result]) -> list[SideBySide]:
 
 def verdict(results: Sequence[Result]) -> tuple[str, str]:
     """Compare results with their limits: "pass", "fail" or "open", and why."""
-    numbers = [number for result in results for number in key_numbers(result) if number.passes is not None]
-    broken = [number for number in numbers if not number.passes]
+    known = list(map(key_numbers, results))
+    unjudged = list(_unjudged(results, known))
+    judged = [number for numbers in known for number in numbers if number.passes is not None]
+    broken = [number for number in judged if not number.passes]
     events = [event for result in results for event in _incidents(result)]
-    reserves = [*map(str, events), *(f"{key} is not judged here" for key in _unjudged(results))]
+    reserves = [*map(str, events), *(f"{name} is not judged here" for name in unjudged)]
     but = listing(reserves) if reserves else ""
     if broken:
-        words = f"{len(numbers) - len(broken)} of {len(numbers)} limits are met: {listing(list(map(_broken, broken)))}"
+        words = f"{len(judged) - len(broken)} of {len(judged)} limits are met: {listing(list(map(_broken, broken)))}"
         return "fail", f"{words}{but and f'; {but}'}"
-    if not numbers:
-        return "open", but[:1].upper() + but[1:] if _unjudged(results) else f"No limits are given{but and f'; {but}'}"
-    words = f"All {len(numbers)} limits are met" if len(numbers) > 1 else "The limit is met"
+    if not judged:
+        return "open", but[:1].upper() + but[1:] if unjudged else f"No limits are given{but and f'; {but}'}"
+    words = f"All {len(judged)} limits are met" if len(judged) > 1 else "The limit is met"
     if not reserves:
         return "pass", words
     return ("fail" if any(event.severe for event in events) else "open"), f"{words}, but {but}"
@@ -66,26 +73,29 @@ def verdict(results: Sequence[Result]) -> tuple[str, str]:
 
 def unjudged_in_words(results: Sequence[Result]) -> list[str]:
     """Limits that no result judges, each with what does."""
-    return [f"{key}: judged by {command}" for key, command in _unjudged(results).items()]
+    known = list(map(key_numbers, results))
+    return [f"{name}: judged by {command}" for name, command in _unjudged(results, known).items()]
 
 
-def _unjudged(results: Sequence[Result]) -> dict[str, str]:
-    """Limits that no result judges, in words -> the command that does."""
-    judged = {number.key for result in results for number in key_numbers(result) if number.passes is not None}
-    limits = {key: command for result in results for key, command in unjudged(result).items()}
-    return {key.replace("_", " "): command for key, command in limits.items() if key not in judged}
+def _unjudged(results: Sequence[Result], known: Sequence[Sequence[KeyNumber]]) -> dict[str, str]:
+    """Limits that no key number of the results judges, in words -> the command that does."""
+    judged = {number.key for numbers in known for number in numbers if number.passes is not None}
+    commands = {key: what for result in results for key, what in judging_commands(result.drive.limits).items()}
+    return {key.replace("_", " "): what for key, what in commands.items() if key not in judged}
 
 
 def limit_rows(result: Result) -> list[tuple[str, ...]]:
     """Name, value, place, limit and verdict of each limit of the drive file."""
     rows: list[tuple[str, ...]] = []
-    if not has_limits(result.drive.limits):
+    if not judging_commands(result.drive.limits):
         return rows
-    for number in key_numbers(result):
+    numbers = key_numbers(result)
+    for number in numbers:
         if number.limit is not None and number.passes is not None:
             value = in_unit(number.value, number.unit)
             rows.append((number.name, value, number.where, limit_in_words(number), _MARKS[number.passes]))
-    return rows + [(key, "–", "", "", f"not judged here, but by {what}") for key, what in _unjudged([result]).items()]
+    unjudged = _unjudged([result], [numbers])
+    return rows + [(name, "–", "", "", f"not judged here, but by {what}") for name, what in unjudged.items()]
 
 
 _MARKS = {True: "met", False: "broken"}

@@ -5,7 +5,7 @@ from pathlib import Path
 
 from beltdyn.results import Run, open_run
 from beltdyn.results.provenance import mesh_used
-from beltdyn.show.report.report import differing_keys, origin
+from beltdyn.show.report.report import differing_keys, origin, write_report
 
 
 def test_the_origin_names_versions_hashes_and_settings(run: Run, tmp_path: Path) -> None:
@@ -26,3 +26,14 @@ def test_differences_name_keys_and_values(run: Run) -> None:
         ("limits.least_slip_safety", ["by default", "2.0"]),
     ]
     assert differing_keys([run]) == []
+
+
+def test_limits_stand_beside_their_numbers_though_others_are_not_judged(run: Run, tmp_path: Path) -> None:
+    limits = {"largest_hub_load": 1e4, "least_cord_life": "100 h"}
+    text = write_report(Run(run.dataset, run.drive.replace(limits=limits)), tmp_path / "a.html").read_text("utf-8")
+    assert '<th scope="col">Limit</th>' in text
+    assert "Least cord life: judged by beltdyn life" in text
+    assert "gives no limits" not in text
+    without = write_report(Run(run.dataset, run.drive.replace(limits={})), tmp_path / "b.html").read_text("utf-8")
+    assert '<th scope="col">Limit</th>' not in without
+    assert "gives no limits" in without
