@@ -103,7 +103,7 @@ def _rows(entries: "Iterable[tuple[str, Entry]]") -> Iterator[tuple[str, ...]]:
 def _size(entry: "Entry") -> str:
     """The belt size of the values."""
     if entry.sold_by == "ribs":
-        return "1 belt" if entry.is_v_belt else "1 rib"
+        return f"1 {entry.piece}"
     return f"{1e3 * entry.width:.3g} mm {entry.sold_by}"
 
 
@@ -131,7 +131,7 @@ def _values(entry: "Entry") -> Iterator[tuple[str, str]]:
     """The values of a profile in the catalogue."""
     from beltdyn.model.belt_form import DAMPING_TIMES, LOSSES
 
-    yield "width", f"{1e3 * entry.width:.4g} mm{', the pitch or datum width' * (entry.is_v_belt)}"
+    yield "width", f"{1e3 * entry.width:.4g} mm{', the pitch or datum width' * entry.is_v_belt}"
     yield "thickness", f"{1e3 * entry.thickness:.4g} mm"
     yield "pitch_offset", f"{1e3 * entry.pitch_offset:.3g} mm from the inside surface to the tension line"
     yield "back_offset", f"{1e3 * entry.back_offset:.3g} mm from the back to the tension line"

@@ -455,7 +455,7 @@ class Belt(Part):
         """What carries more than this belt, in words."""
         if self.entry is None or self.entry.sold_by != "ribs":
             return "a larger belt"
-        return "more belts" if self.entry.is_v_belt else "more ribs"
+        return f"more {self.entry.piece}s"
 
     def rated(self, length: float) -> RatedBelt | RatedTeeth | None:
         """The belt as its profile is rated, with an unstretched length in m; None without a rating."""

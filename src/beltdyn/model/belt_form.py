@@ -91,8 +91,8 @@ class SoldAs(Sold):
 class Origin(Part):
     """Where the section of a belt comes from."""
 
-    sold: SoldAs | None = Field(
-        None, description="the profile and size of a belt whose section is given by its values, for its rating"
+    sold: SoldAs = Field(
+        description="the profile and size of a belt whose section is given by its values, for its rating"
     )
 
 
@@ -325,14 +325,13 @@ def as_sold(data: Any, belt: Any, base: Path | None) -> dict[str, Any] | None:
     return sold | {key: getattr(belt, key) for key in (*_SECTION, *stretch_keys()) if key in given}
 
 
-def _section_of(sold: SoldAs | None, belt: Any) -> dict[str, Any]:
+def _section_of(sold: SoldAs, belt: Any) -> dict[str, Any]:
     """The section of a belt with values, and the profile from which they came."""
-    assert sold is not None
-    section = sold.arguments
-    other = sorted(set(section.pop("given", ())) - {*_SECTION, *stretch_keys()})
+    other = sorted(set(sold.given) - {*_SECTION, *stretch_keys()})
     if other:
         raise ValueError(f'sold.given has "{other[0]}", which is no key of a section. Omit it')
-    return section | {key: getattr(belt, key) for key in sold.given}
+    of_profile = {key: value for key, value in sold.arguments.items() if key in Sold.model_fields}
+    return of_profile | {key: getattr(belt, key) for key in sold.given}
 
 
 def written_as_sold(section: Mapping[str, Any]) -> dict[str, Any]:

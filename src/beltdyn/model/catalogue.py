@@ -115,6 +115,11 @@ class Entry(Part):
         return self.pulley_diameter == "datum"
 
     @property
+    def piece(self) -> str:
+        """What a profile that is sold by ribs is counted in: "belt" or "rib"."""
+        return "belt" if self.is_v_belt else "rib"
+
+    @property
     def measured_stretch(self) -> float:
         """Stretch of the belt while its nominal length is measured, with half of the force in each strand."""
         curve = self.stretch_curve

@@ -76,10 +76,15 @@ def powers_drawn(drive: Drive, driver: int, installation: Installation) -> tuple
         if number == driver:
             continue
         turning = speed * float(radii[driver] / radii[number])
-        given = 0.0 if one.torque is None else float(one.torque.at([drive.simulation.end])[0])
         loads = sum(_torque(load, turning, drive.simulation.end) for load in one.load if load.has_mean)
-        taken[number] = -(given + loads) * turning
+        taken[number] = -(prescribed_torque(drive, number) + loads) * turning
     return taken, abs(speed * float(radii[driver]))
+
+
+def prescribed_torque(drive: Drive, number: int) -> float:
+    """Torque that the drive file gives a pulley beside its loads, at the end of the run, N m."""
+    torque = drive.pulleys[number].torque
+    return 0.0 if torque is None else float(torque.at([drive.simulation.end])[0])
 
 
 def _torque(load: Load, speed: float, time: float) -> float:

@@ -289,24 +289,28 @@ def _sized_by(belt: Belt) -> str:
 def check_length(belt: Belt, length: float, path: float, tensioned: bool = False) -> None:
     """Refuse a belt that is too long or too short for its path, with moving tensioners at rest."""
     where = "the path around the pulleys" + ", as placed by the tensioners" * tensioned
-    unstretched = f"belt.length = {length:.5g} m"
-    if belt.nominal_length is not None:
-        unstretched = f"belt.nominal_length = {1e3 * belt.nominal_length:.6g} mm ({length:.5g} m unstretched)"
-    elif belt.teeth is not None:
-        unstretched = f"belt.teeth = {belt.teeth} ({length:.5g} m unstretched)"
     if length >= path:
         exact, room = apart(length, path)
         raise ValueError(
-            f"{unstretched.replace(f'{length:.5g}', exact, 1)} is {'as long as' if length == path else 'longer than'} "
-            f"{where} ({room} m): the belt would hang slack. Shorten it, or "
+            f"{_length_as_given(belt, exact)} is {'as long as' if length == path else 'longer than'} {where} "
+            f"({room} m): the belt would hang slack. Shorten it, or "
             f"{'increase the preload' if tensioned else 'move the pulleys apart'}."
         )
     if path / length - 1 > LARGEST_STRAIN:
         raise ValueError(
-            f"{unstretched} is too short for {where} ({path:.5g} m): "
+            f"{_length_as_given(belt, f'{length:.5g}')} is too short for {where} ({path:.5g} m): "
             f"it would be stretched by {path / length - 1:.0%}; the limit is {LARGEST_STRAIN:.0%}. "
             f"Lengthen it, or {'reduce the preload' if tensioned else 'move the pulleys closer together'}."
         )
+
+
+def _length_as_given(belt: Belt, unstretched: str) -> str:
+    """The length of a belt by the key that gives it, with the unstretched one in m."""
+    if belt.nominal_length is not None:
+        return f"belt.nominal_length = {1e3 * belt.nominal_length:.6g} mm ({unstretched} m unstretched)"
+    if belt.teeth is not None:
+        return f"belt.teeth = {belt.teeth} ({unstretched} m unstretched)"
+    return f"belt.length = {unstretched} m"
 
 
 def check_teeth(belt: Belt, pulleys: Sequence[Pulley], path: Path | None) -> None:

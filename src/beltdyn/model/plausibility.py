@@ -7,7 +7,7 @@ import numpy as np
 
 from beltdyn.errors import BeltdynError
 from beltdyn.model.alignment import judge_alignment
-from beltdyn.model.demand import MAKERS, powers_drawn, required_tension
+from beltdyn.model.demand import MAKERS, powers_drawn, prescribed_torque, required_tension
 from beltdyn.model.drive import Drive
 from beltdyn.model.installation import RUN_IN, Installation
 from beltdyn.model.layout import mesh_misfit, teeth_in_mesh
@@ -64,14 +64,14 @@ def _tension(drive: Drive, installation: Installation) -> Iterator[Finding]:
     """Compare the tension with the rating, at rest or with the m v^2 that adds to it under a sprung tensioner."""
     belt, tension = drive.belt, installation.tension
     most, ribs = belt.largest_tension, belt.rib_count
-    unit = "belt" if belt.entry is not None and belt.entry.is_v_belt else "rib"
+    piece = "rib" if belt.entry is None else belt.entry.piece
     speed = fastest_rim(drive.pulleys, drive.radii)
     sprung = bool(drive.layout.given.springs)
     running = tension + sprung * belt.mass_per_length * speed**2
     if most is None or running < most:
         return
-    each = (lambda force: f"{force:.4g} N ({force / ribs:.3g} N per {unit})") if ribs else "{:.4g} N".format
-    more = f"Use at least {math.ceil(ribs * tension / most)} {unit}s, reduce" if ribs else "Use a larger belt, reduce"
+    each = (lambda force: f"{force:.4g} N ({force / ribs:.3g} N per {piece})") if ribs else "{:.4g} N".format
+    more = f"Use at least {math.ceil(ribs * tension / most)} {piece}s, reduce" if ribs else "Use a larger belt, reduce"
     if tension < most:
         limit = math.sqrt((most - tension) / belt.mass_per_length)
         yield Finding(
@@ -381,11 +381,10 @@ def _driving_loads(drive: Drive, installation: Installation) -> Iterator[Finding
     if powers.sum() >= 0.0:
         return
     for number in np.flatnonzero(powers < 0.0).tolist():
-        pulley = drive.pulleys[number]
-        torque = 0.0 if pulley.torque is None else float(pulley.torque.at([drive.simulation.end])[0])
+        torque = prescribed_torque(drive, number)
         if torque:
             yield Finding(
-                f"the torque of {pulley.name}, {torque:.4g} N m, acts in its sense of rotation and "
+                f"the torque of {drive.pulleys[number].name}, {torque:.4g} N m, acts in its sense of rotation and "
                 f"drives the belt, so that {drive.pulleys[driver].name} brakes.",
                 "The tight and the slack span are exchanged if it is a load.",
                 f"Give a load the opposite sign: {-torque:.4g} N m.",

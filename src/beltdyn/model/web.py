@@ -79,9 +79,7 @@ class WebEnd(Part):
         if self.roll is None:
             raise ValueError("torque acts on a roll, which is missing. Give the group roll, or tension instead")
         starts = np.maximum(self.torque.segments().start, 0.0)  # within a piece all kinds are monotonic
-        with np.errstate(under="ignore"):  # just after zero
-            after = np.nextafter(starts, np.inf)
-        least = float(np.min(self.torque.at([*starts, *after])))
+        least = float(np.min(self.torque.around(starts)))
         if least <= 0.0:
             raise ValueError(
                 f"torque = {least:g} N m must be positive: it tightens the web, at the unwinder and at the winder. "

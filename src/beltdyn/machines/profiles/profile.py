@@ -112,9 +112,13 @@ class Profile(Part, Generic[Value]):
         starts = self.segments().start
         end = min(duration, max(2.0 * starts[-1], 1.0))
         ends = np.concatenate([[0.0, end], starts[(starts > 0.0) & (starts < end)]])
+        return float(np.max(np.abs(self.around(ends, end))))
+
+    def around(self, times: FloatArray, end: float = np.inf) -> FloatArray:
+        """Values at times (s) and just after them, up to an end (s): before and after a jump."""
         with np.errstate(under="ignore"):  # just after zero
-            after = np.nextafter(ends, np.inf)
-        return float(np.max(np.abs(self.at(np.concatenate([ends, after[after <= end]])))))
+            after = np.nextafter(times, np.inf)
+        return self.at(np.concatenate([times, after[after <= end]]))
 
 
 PROFILES = Registry[type[Profile]]("profile", Profile)
