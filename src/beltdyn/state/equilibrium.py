@@ -13,7 +13,6 @@ from beltdyn.solvers.trajectory import Chunk
 from beltdyn.state.installation import bring_to_rest, holding_force, on_equal_elements, rest_of
 from beltdyn.state.refinement import refine_at_rest
 from beltdyn.state.static import standing
-from beltdyn.state.staying import bring_to_stand, first_fineness, stand
 from beltdyn.state.steady import require_tolerance
 from beltdyn.system.arrays import System
 from beltdyn.system.state import State
@@ -78,8 +77,7 @@ def _refined(drive: Drive, tolerance: float, progress: Report | None) -> StaticR
     prepared, unstable = prepare(drive), tuple[str, ...]()
     if not drive.stays_at_rest:
         unstable = bring_to_rest(drive, progress).unstable
-    rest = stand(bring_to_stand(prepared).prepared, fineness=first_fineness(prepared))
-    rest, errors = refine_at_rest(rest, tolerance)
+    rest, errors = refine_at_rest(prepared, tolerance)
     said = {"drive_as_given": drive.text} | {mesh_error_attribute(name): error for name, error in errors.items()}
     return _seen(prepared, rest.prepared, standing(rest.system), rest.state, unstable, progress, said)
 

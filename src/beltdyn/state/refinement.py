@@ -19,7 +19,9 @@ from beltdyn.state.staying import (
     MOST_ELEMENTS,
     Sampled,
     Standing,
+    bring_to_stand,
     depths,
+    first_fineness,
     found_arcs,
     require_one_pulley_at_a_time,
     sampled,
@@ -224,8 +226,9 @@ def errors_at_rest(rest: Standing, elements: int | None = None) -> dict[str, flo
         return {}
 
 
-def refine_at_rest(rest: Standing, tolerance: float) -> tuple[Standing, dict[str, float]]:
-    """Refine a graded mesh of a drive at rest."""
+def refine_at_rest(prepared: Prepared, tolerance: float) -> tuple[Standing, dict[str, float]]:
+    """Bring a drive to rest on a graded mesh, from one with at least the specified number of elements on."""
+    rest = stand(bring_to_stand(prepared).prepared, fineness=first_fineness(prepared))
     while True:
         finer = _finer(rest, None)
         errors = errors_between(rest, finer)

@@ -26,7 +26,7 @@ from beltdyn.state.loaded_teeth import with_loads_on_teeth
 from beltdyn.state.refinement import MeshRule, errors_at_rest, errors_between, refine_at_rest, steady_from_rest
 from beltdyn.state.search import SteadySearch
 from beltdyn.state.static import find_equilibrium
-from beltdyn.state.staying import FINER, Standing, bring_to_stand, first_fineness, on_nodes, stand
+from beltdyn.state.staying import FINER, Standing, bring_to_stand, on_nodes, stand
 from beltdyn.system.arc_mesh import base_lengths, mesh_attributes, shifts_of
 from beltdyn.system.arrays import System
 from beltdyn.system.build import axis_by_arcs, axis_system, flow_place, flowing_system, on_other_mesh, open_ended
@@ -251,8 +251,7 @@ def _meshed(prepared: Prepared) -> _Meshed:
         rest = bring_to_stand(prepared, prepared.elements)
         errors = errors_at_rest(rest, prepared.elements)
     elif settings.force_tolerance is not None:
-        rest = stand(bring_to_stand(prepared).prepared, fineness=first_fineness(prepared))
-        rest, errors = refine_at_rest(rest, settings.force_tolerance)
+        rest, errors = refine_at_rest(prepared, settings.force_tolerance)
     else:
         rest = bring_to_stand(prepared)
         fineness = rest.fineness * (given or MOST) / rest.system.nodes
