@@ -29,7 +29,7 @@ from beltdyn.points.quasi_steady import QuasiSteady, Running, Torques, torques_b
 from beltdyn.points.tensioner_sheet import lengths_of
 from beltdyn.results import Result, Variable, build_result
 from beltdyn.results.means import rate, utilization
-from beltdyn.results.schema import AXIS_NAMES, COORDINATES, RECORDED, SPAN_TENSIONS
+from beltdyn.results.schema import AXIS_NAMES, COORDINATES, RECORDED, SLIP_SAFETIES, SPAN_TENSIONS
 from beltdyn.solvers.run_progress import Progress, Report
 from beltdyn.state.installation import looked_at
 from beltdyn.state.staying import bring_to_stand
@@ -321,11 +321,10 @@ class _DriveSheet:
                 )
             },
             "hub_load": (Variable((dim, _PULLEY), "N", "Hub load"), hub[0]),
-            "slip_safety": (Variable((dim, _PULLEY), "1", "Slip safety"), by_all[0, nominal]),
-            "own_load_safety": (
-                Variable((dim, _PULLEY), "1", "Slip safety by the pulley's own load"),
-                by_own[0, nominal],
-            ),
+            **{
+                name: (Variable((dim, _PULLEY), "1", label), values[0, nominal])
+                for (name, label), values in zip(SLIP_SAFETIES.items(), (by_all, by_own), strict=True)
+            },
             "tension_of_case": (Variable((dim, "case", _SPAN), "N", "Span tension"), tension.transpose(1, 0, 2)),
             "slip_safety_of_case": (
                 Variable((dim, "case", "friction", _PULLEY), "1", "Slip safety"),

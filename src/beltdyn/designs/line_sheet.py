@@ -22,7 +22,7 @@ from beltdyn.points.duty import Column, at_row, durations_of
 from beltdyn.results import Run, Variable
 from beltdyn.results.derived import nips
 from beltdyn.results.mechanics import SpanTension
-from beltdyn.results.schema import COORDINATES, RECORDED
+from beltdyn.results.schema import COORDINATES, RECORDED, SLIP_SAFETIES
 from beltdyn.results.summary import Means, means_of
 from beltdyn.state.staying import bring_to_stand
 from beltdyn.state.steady import steady_state
@@ -185,8 +185,7 @@ class _Row:
             "shaft_torque": ("N m", "Shaft torque", "shaft_torque"),
             "power": ("W", "Power into the drive", "power"),
             "pulley_slip": ("1", "Slip", "slip"),
-            "slip_safety": ("1", "Slip safety", "slip_safety"),
-            "own_load_safety": ("1", "Slip safety by the pulley's own load", "own_load_safety"),
+            **{name: ("1", label, name) for name, label in SLIP_SAFETIES.items()},
             "tension_ratio": ("1", "Tension ratio", "tension_ratio"),
             "allowed_tension_ratio": ("1", "Tension ratio that friction allows", "allowed_tension_ratio"),
             "wrap_angle": ("rad", "Wrap angle", "wrap_angle"),

@@ -161,7 +161,7 @@ def _of_table(
     places = _places(dataset)
     for key, (name, of, unit) in variables.items():
         if {name, SUBSTITUTES.get(name)} & set(dataset):
-            variable = least_safeties(dataset) if name == SLIP_SAFETIES[0] else variable_of(dataset, name)
+            variable = least_safeties(dataset) if name in SLIP_SAFETIES else variable_of(dataset, name)
             values = variable.transpose(..., of).values.reshape(len(places), -1)
             values = _of_turning(result, values) if key == "largest_slip" else values
             yield _worst(key, values, unit, places, list(map(str, dataset[of].values)))

@@ -185,12 +185,12 @@ SPAN_TENSIONS = (
 )
 """The tension of a span: its mean, extremes, and values where the belt leaves a pulley and reaches the next one."""
 
-SLIP_SAFETIES = ("slip_safety", "own_load_safety")
-"""Slip safety of pulleys: factor on all loads, and on the pulley's own. The lesser counts."""
-
-SUBSTITUTES = MappingProxyType(
-    dict.fromkeys(SPAN_TENSIONS[1:], SPAN_TENSIONS[0]) | {SLIP_SAFETIES[1]: SLIP_SAFETIES[0]}
+SLIP_SAFETIES = MappingProxyType(
+    {"slip_safety": "Slip safety", "own_load_safety": "Slip safety by the pulley's own load"}
 )
+"""Slip safety of pulleys, with labels: factor on all loads, and on the pulley's own. The lesser counts."""
+
+SUBSTITUTES = MappingProxyType(dict.fromkeys(SPAN_TENSIONS[1:], SPAN_TENSIONS[0]) | {"own_load_safety": "slip_safety"})
 """Variable that results of earlier formats lack -> the one that stands for it."""
 
 FILTERED = (

@@ -6,25 +6,18 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from beltdyn.arrays import FloatArray
+from beltdyn.designs.drive_sheet import REST_TENSIONS
 from beltdyn.parts.messages import aligned, listing
 from beltdyn.parts.quantity import RPM
 from beltdyn.results import Result
 from beltdyn.results.schema import least_safeties, variable_of
 from beltdyn.show.line_sheet import line_sheet
-from beltdyn.show.sheet import Facts, Sheet, Table, safeties
+from beltdyn.show.sheet import TENSION_HEADINGS, Facts, Sheet, Table, safeties, tension_columns
 
 if TYPE_CHECKING:
     import xarray as xr
 
 _DEGREES = 180.0 / np.pi
-_REST_TENSIONS = {
-    "rest_tension": "tension\nmean N",
-    "least_rest_tension": "min\nN",
-    "largest_rest_tension": "max\nN",
-    "rest_tension_at_start": "at start\nN",
-    "rest_tension_at_end": "at end\nN",
-}
-"""Tensions of spans at rest, with their headings."""
 _STATES = {
     "free": "free arm",
     "replace": "replace (stretched)",
@@ -112,11 +105,9 @@ def _spans(dataset: "xr.Dataset") -> Table:
         aligned((1e3 * dataset["span_length"].values).tolist(), 4),
     ]
     headings: tuple[str, ...] = ("", "length\nmm")
-    names = [name for name in _REST_TENSIONS if name in dataset]
-    if names:
-        tensions = np.stack([dataset[name].values for name in names])
-        columns += np.reshape(aligned(tensions.ravel().tolist(), 4), tensions.shape).tolist()
-        headings = (*headings, *(_REST_TENSIONS[name] for name in names))
+    if REST_TENSIONS.keys() <= set(dataset):
+        columns += tension_columns(np.column_stack([dataset[name].values for name in REST_TENSIONS]))
+        headings = (*headings, *TENSION_HEADINGS)
     if "belt_state" in dataset.dims:
         columns.append(aligned((1e3 * dataset["deflection"].values).tolist(), 3))
         headings = (*headings, "deflection\nmm")

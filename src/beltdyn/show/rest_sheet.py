@@ -33,7 +33,7 @@ from beltdyn.model.toothing import RatedTeeth
 from beltdyn.parts.messages import Finding, aligned, listing
 from beltdyn.results.layout import describe_size
 from beltdyn.show.notebook import picture, templates
-from beltdyn.show.sheet import Facts, Sheet, Table, as_text
+from beltdyn.show.sheet import TENSION_HEADINGS, Facts, Sheet, Table, as_text, tension_columns
 from beltdyn.solvers.run_progress import Report
 from beltdyn.solvers.time_limit import time_limit
 from beltdyn.state.installation import bring_to_rest, is_compiled
@@ -226,10 +226,7 @@ _PULLEY_HEADINGS = (
 )
 
 
-_SPAN_HEADINGS = (
-    *("", "length\nm", "tension\nmean N", "min\nN", "max\nN", "at start\nN", "at end\nN"),
-    "first frequency\nHz",
-)
+_SPAN_HEADINGS = ("", "length\nm", *TENSION_HEADINGS, "first frequency\nHz")
 _TENSIONER_HEADINGS = ("", "position", "spring", "stops", "other equilibria")
 
 _TOOTH_HEADINGS = ("", "teeth", "teeth\nin mesh", "pitch\ndiameter mm", "turns over\nthose of the first")
@@ -449,10 +446,9 @@ def _teeth(drive: Drive, installation: Installation) -> list[tuple[str, ...]]:
 
 def _spans(drive: Drive, installation: Installation) -> list[tuple[str, ...]]:
     rows = np.column_stack([installation.span_tensions, installation.extreme_tensions, installation.end_tensions])
-    tensions = np.reshape(aligned(rows.ravel().tolist()), rows.shape).T.tolist()
     lengths, frequencies = installation.path.span_lengths.tolist(), installation.span_frequencies.tolist()
     names = (f"{start} to {end}" for start, end in drive.spans)
-    return list(zip(names, aligned(lengths), *tensions, aligned(frequencies), strict=True))
+    return list(zip(names, aligned(lengths), *tension_columns(rows), aligned(frequencies), strict=True))
 
 
 def _tensioners(drive: Drive, installation: Installation) -> list[tuple[str, ...]]:

@@ -326,23 +326,32 @@ def _safety(safety: float) -> str:
     return f"{safety:.3g}" if safety < _LARGEST_SAFETY else f"> {_LARGEST_SAFETY:.0f}"
 
 
+TENSION_HEADINGS = ("tension\nmean N", "min\nN", "max\nN", "at start\nN", "at end\nN")
+"""Of the columns of `tension_columns`."""
+
+
+def tension_columns(tensions: ArrayLike) -> list[list[str]]:
+    """Columns of tensions of spans (N), shape (spans, 5): mean, least, largest, at both ends; with equal decimals."""
+    rows = np.asarray(tensions)
+    columns: list[list[str]] = np.reshape(aligned(rows.ravel().tolist()), rows.shape).T.tolist()
+    return columns
+
+
 def _spans(run: Run, summary: Summary) -> Table:
     """The table of spans."""
-    headings = ("", "tension\nmean N", "min\nN", "max\nN", "at start\nN", "at end\nN", "belt speed\nm/s")
+    headings = ("", *TENSION_HEADINGS, "belt speed\nm/s")
     return Table(f"Spans{_window(run, summary)}", headings, tuple(_span_rows(summary)))
 
 
 def _span_rows(summary: Summary) -> Iterable[tuple[str, ...]]:
-    """Span rows, with the same number of decimals in all tension columns.
+    """Span rows.
 
     A span has no tension or speed while the belt has left one of its pulleys; a warning says so.
     """
     spans = summary.spans
-    rows = [(one.tension, one.lowest, one.highest, one.at_start, one.at_end) for one in spans]
-    tensions = np.reshape(aligned([tension for row in rows for tension in row]), (len(rows), -1)).tolist()
+    tensions = tension_columns([(one.tension, one.lowest, one.highest, one.at_start, one.at_end) for one in spans])
     speeds = aligned([one.belt_speed for one in spans])
-    for one, row, speed in zip(spans, tensions, speeds, strict=True):
-        yield one.name, *row, speed
+    return zip((one.name for one in spans), *tensions, speeds, strict=True)
 
 
 def _watts(power: float, digits: int = 4) -> str:

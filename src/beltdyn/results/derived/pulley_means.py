@@ -7,6 +7,7 @@ from beltdyn.results.cycles import Cycle, Window, plain_window, turn_window
 from beltdyn.results.energy_balance import Balance, power_balance
 from beltdyn.results.mechanics import SpanTension, rim_speeds
 from beltdyn.results.run import Run, labelled, window
+from beltdyn.results.schema import SLIP_SAFETIES
 from beltdyn.results.slip_safety import slip_parts, slip_safety_of
 
 # Pulley powers over time
@@ -351,11 +352,10 @@ def slip_safeties(run: Run, start: float | None = None, end: float | None = None
     """
     dataset = window(run, start, end)
     found = slip_safety_of(lambda name: dataset[name].values, run.prepared)
-    wrap = dataset["wrap_angle"]
     return xr.Dataset(
         {
-            "slip_safety": labelled(found.all_loads, wrap, "1", "Slip safety"),
-            "own_load_safety": labelled(found.own_load, wrap, "1", "Slip safety by the pulley's own load"),
+            name: labelled(values, dataset["wrap_angle"], "1", label)
+            for (name, label), values in zip(SLIP_SAFETIES.items(), found, strict=True)
         }
     )
 
