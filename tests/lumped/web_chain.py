@@ -21,6 +21,7 @@ from beltdyn.model import Drive
 
 SEED = 57
 AXIAL, MASS = 2e4, 0.05
+WEB = {"axial_stiffness": AXIAL, "bending_stiffness": 1e-4, "mass_per_length": MASS, "thickness": 1e-4, "width": 0.2}
 _GRIPPING = 0.97
 """Used part of the grip up to which a roller is taken to grip for sure, and over which to slide for sure, inverse."""
 
@@ -98,13 +99,7 @@ def _draw(rng: np.random.Generator) -> DrawnLine | None:
     ).tolist()
     pulleys = [_pulley(k, str(kind), frictions[k], speeds[k]) for k, kind in enumerate(kinds)]
     drive = Drive(
-        belt={
-            "axial_stiffness": AXIAL,
-            "bending_stiffness": 1e-4,
-            "mass_per_length": MASS,
-            "thickness": 1e-4,
-            "width": 0.2,
-        },
+        belt=WEB,
         unwinder={"point": [0.0, 0.3], "tension": unwinder},
         pulley=pulleys,
         winder={"point": [0.5 * (count + 1), 0.3 if count % 2 else 0.0], "tension": winder},
@@ -190,13 +185,7 @@ def _draw_controlled(rng: np.random.Generator) -> ControlledLine | None:
         pulleys[sensor]["mass"], pulleys[last]["load"] = 1.0, [load]
         cell = {"kind": "sliding", "pulley": f"roller {sensor}", "preload": force, "damping": 100.0}
         return Drive(
-            belt={
-                "axial_stiffness": AXIAL,
-                "bending_stiffness": 1e-4,
-                "mass_per_length": MASS,
-                "thickness": 1e-4,
-                "width": 0.2,
-            },
+            belt=WEB,
             unwinder={"point": [0.0, 0.3], "tension": enters},
             pulley=pulleys,
             winder={"point": [length * (len(kinds) + 1), 0.3 if len(kinds) % 2 else 0.0], "tension": leaves},

@@ -151,24 +151,42 @@ CONSUMERS: dict[str, Callable[[Drive, Path, dict[str, str]], object]] = {
 }
 
 
-@pytest.mark.parametrize("consumer", CONSUMERS)
+TWICE = {
+    "two speeds": (
+        "speed [rpm], driver speed [rpm]",
+        WIDTH,
+        '"speed" and "driver speed" both give the same value. Remove one.',
+    ),
+    "torque and power": (
+        "driven torque [N m], driven power [W]",
+        WIDTH,
+        '"driven torque" and "driven power" both give the torque.',
+    ),
+    "speed": (
+        "load, speed [rpm]",
+        SPEED,
+        'the column "speed" gives the number "pulley[1].speed.value", which varies',
+    ),
+    "speed by name": (
+        "driver speed [rpm], load",
+        SPEED,
+        'the column "driver speed" gives the number "pulley[1].speed.value"',
+    ),
+}
+"""Columns of a table, a number that varies, and what is said."""
+ASKED = {
+    **dict.fromkeys(("duty", "sheet"), ("two speeds", "torque and power")),  # in which no number varies
+    **dict.fromkeys(("study", "optimize"), tuple(TWICE)),
+    "calibrate": ("speed by name",),  # measurements are at speeds of pulleys by their names
+}
+
+
 @pytest.mark.parametrize(
-    ("columns", "number", "message"),
-    [
-        ("speed [rpm], driver speed [rpm]", WIDTH, '"speed" and "driver speed" both give the same value. Remove one.'),
-        ("driven torque [N m], driven power [W]", WIDTH, '"driven torque" and "driven power" both give the torque.'),
-        ("load, speed [rpm]", SPEED, 'the column "speed" gives the number "pulley[1].speed.value", which varies'),
-        ("driver speed [rpm], load", SPEED, 'the column "driver speed" gives the number "pulley[1].speed.value"'),
-    ],
+    ("consumer", "case"), [(consumer, case) for consumer, cases in ASKED.items() for case in cases]
 )
-def test_what_gives_one_value_twice_is_refused(
-    consumer: str, columns: str, number: dict[str, str], message: str, tmp_path: Path
-) -> None:
+def test_what_gives_one_value_twice_is_refused(consumer: str, case: str, tmp_path: Path) -> None:
     """By all that reads duty tables, before anything is computed."""
-    if number is SPEED and consumer in ("duty", "sheet"):
-        pytest.skip("no number varies")
-    if consumer == "calibrate" and not columns.startswith("driver speed"):
-        pytest.skip("measurements are at speeds and torques of pulleys by their names")
+    columns, number, message = TWICE[case]
     table = tmp_path / "duty.csv"
     table.write_text(f"share [%], {columns}\n50, 100, 1\n50, 200, 1\n", encoding="utf-8")
     with pytest.raises(ModelError) as error:

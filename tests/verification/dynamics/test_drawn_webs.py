@@ -8,7 +8,7 @@ import pytest
 import beltdyn as bd
 from beltdyn.errors import ConvergenceError
 from beltdyn.model import Drive
-from tests.lumped.web_chain import AXIAL, MASS, Roller, chain, controlled_line, drawn_line
+from tests.lumped.web_chain import WEB, Roller, chain, controlled_line, drawn_line
 
 
 @pytest.mark.parametrize("seeds", [range(3), pytest.param(range(3, 1000), marks=pytest.mark.slow)], ids=len)
@@ -56,13 +56,7 @@ def test_every_controlled_line_holds_its_set_value(seeds: range, measured: Calla
 def line(speed: float, friction: float) -> Drive:
     """A first roller of a speed (rad/s), and a driven one with much grip."""
     return Drive(
-        belt={
-            "axial_stiffness": AXIAL,
-            "bending_stiffness": 1e-4,
-            "mass_per_length": MASS,
-            "thickness": 1e-4,
-            "width": 0.2,
-        },
+        belt=WEB,
         unwinder={"point": [0.0, 0.3], "tension": 100.0},
         pulley=[
             {"name": "first", "center": [0.5, 0.0], "radius": 0.05, "speed": speed, "friction": friction},
