@@ -2,9 +2,10 @@
 
 import re
 from collections.abc import Mapping, Sequence
-from typing import Any, NoReturn
+from typing import Any, NoReturn, get_args
 
 from beltdyn.errors import ModelError
+from beltdyn.parts.kind_fields import OneOf
 from beltdyn.parts.messages import suggest
 from beltdyn.parts.part import Part
 from beltdyn.parts.quantity import tolerance_in, unit_of
@@ -52,6 +53,8 @@ def unit_at(part: Part, path: str) -> str:
 def number_path(part: Part, path: str) -> str:
     """The path of a number that a study varies: that of a constant in place of a profile is the path of its value."""
     value = value_at(part, path)
+    if value is None and _takes_group(part, path):
+        raise ModelError(f"{path} is not given, so it has no number to vary. Give it, or the path of another number.")
     if not isinstance(value, Part):
         return path
     if getattr(value, "kind", "") == "constant":
@@ -59,6 +62,14 @@ def number_path(part: Part, path: str) -> str:
     numbers = [f"{path}.{key}" for key, one in value.arguments.items() if isinstance(one, float)]
     remedy = f"Give the path of a number in it: {', '.join(numbers)}." if numbers else "Give the path of a number."
     raise ModelError(f"{path} is a group of keys, not a number. {remedy}")
+
+
+def _takes_group(part: Part, path: str) -> bool:
+    """Whether a path leads to a group of keys, such as a profile, given or not."""
+    inner, steps = _innermost(part, path)
+    field = type(inner).model_fields.get(steps[0])
+    choices = get_args(field.annotation) if field and len(steps) == 1 else ()
+    return any(isinstance(entry, OneOf) for choice in choices for entry in getattr(choice, "__metadata__", ()))
 
 
 def as_argument(part: Part, path: str, size: float) -> tuple[str, float]:

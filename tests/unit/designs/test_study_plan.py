@@ -45,6 +45,16 @@ def test_a_constant_in_place_of_a_profile_is_its_value(drive: Drive) -> None:
             plan(drive, {"path": "pulley[driver].speed", "values": values})
 
 
+@pytest.mark.parametrize("key", ["speed", "torque"])
+def test_a_profile_that_is_not_given_has_no_number_to_vary(drive: Drive, key: str) -> None:
+    load = {"kind": "fan", "rated_power": 40.0, "rated_speed": 10.0}
+    loaded = drive.with_({"pulley[driven].torque": None, "pulley[driven].load": [load]})
+    with pytest.raises(ModelError, match=rf"pulley\[driven\]\.{key} is not given, so it has no number to vary"):
+        plan(loaded, {"path": f"pulley[driven].{key}", "values": ["-8 N m", "-5 N m"]})
+    with pytest.raises(ModelError, match="is not in the catalogue"):  # a word may be varied all the same
+        plan(loaded, {"path": "belt.profile", "values": ["-8 N m", "-5 N m"]})
+
+
 def test_values_of_a_list_stand_as_in_a_drive_file(drive: Drive) -> None:
     found = plan(
         drive,
