@@ -2,6 +2,7 @@ from . import extend, model, results, theory
 from .cosimulation import fmu
 from .designs.batch import simulate_all
 from .designs.calibrate import calibrate
+from .designs.convergence import convergence
 from .designs.drive_sheet import sheet
 from .designs.optimize import optimize
 from .designs.selection import select
@@ -82,6 +83,7 @@ __all__ = [
     "calibrate",
     "campbell",
     "check",
+    "convergence",
     "derived",
     "dumps",
     "duty",

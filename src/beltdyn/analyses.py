@@ -99,6 +99,7 @@ for _analysis in (
     ),
     Analysis("beltdyn.points.belt_rating:rating", "Rate the belt: rated power, utilization, belts needed.", True),
     Analysis("beltdyn.designs.sensitivity:sensitivity", "Compute the sensitivity of results to each input.", True),
+    Analysis("beltdyn.designs.convergence:convergence", "Compute errors and orders over meshes and tolerances."),
     Analysis("beltdyn.vibration.modes:modes", "Compute natural modes: frequencies, damping, shapes.", True),
     Analysis("beltdyn.designs.optimize:optimize", "Optimize parameters of a drive for a goal."),
     Analysis("beltdyn.designs.calibrate:calibrate", "Fit parameters of a drive to measured results."),

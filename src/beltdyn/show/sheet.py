@@ -510,9 +510,9 @@ def _pieces(dataset: "xr.Dataset") -> Iterator[Callable[[], Pieces]]:
             labels = [one for one in dataset.coords.values() if one.dims and set(one.dims) <= set(dims)]
             shown = [*(one.broadcast_like(columns[0]) for one in labels), *columns]
             yield partial(_tables, shown, dataset.get(dataset.attrs.get("tables_by")))
-    across = dataset.attrs.get("columns_by")
+    across = str(dataset.attrs.get("columns_by", "")).split()
     for variable in variables:
-        if across and variable.dims == (*axes, across):
+        if variable.dims[:-1] == axes and variable.dims[-1:] in [(dimension,) for dimension in across]:
             yield partial(_table_across, variable)
 
 

@@ -11,6 +11,8 @@ from beltdyn.show.plot.contact_pressure import transmission_error as transmissio
 from beltdyn.show.plot.contact_pressure import transmission_orders as transmission_orders
 from beltdyn.show.plot.contact_pressure import wear_by_arc as wear_by_arc
 from beltdyn.show.plot.contact_pressure import wear_by_belt as wear_by_belt
+from beltdyn.show.plot.convergence import mesh_convergence as mesh_convergence
+from beltdyn.show.plot.convergence import tolerance_convergence as tolerance_convergence
 from beltdyn.show.plot.design_history import belt_history as belt_history
 from beltdyn.show.plot.design_history import damage_shares as damage_shares
 from beltdyn.show.plot.design_history import line_tensions as line_tensions
