@@ -39,7 +39,7 @@ def observed_order(sizes: Sequence[float], values: Sequence[float]) -> float:
     ratio = (first - second) / (second - third)
 
     def excess(order: float) -> float:
-        return ((coarse / middle) ** order - 1.0) / (1.0 - (fine / middle) ** order) - ratio
+        return float(np.expm1(order * log(coarse / middle)) / -np.expm1(order * log(fine / middle)) - ratio)
 
     if excess(_LOWEST_ORDER) >= 0.0 or excess(_HIGHEST_ORDER) <= 0.0:
         return np.nan
