@@ -1,7 +1,7 @@
 """Supports and goods on the spans of a drive: where they lie, and whether the belt can lie on them."""
 
 from collections.abc import Sequence
-from math import hypot
+from math import hypot, sqrt
 from typing import NamedTuple
 
 import numpy as np
@@ -65,12 +65,14 @@ def normal_load(
     return (belt_mass + most) * abs(float(upper_side(direction, gravity) @ np.array(gravity)))
 
 
-def stiffness_of(support: Support, load: float, tension: float, length: float) -> float:
-    """Normal stiffness of a support of a length (m) under a load of belt and goods (N/m) and a tension (N), N/m^2.
+def stiffness_of(support: Support, load: float, tension: float, bending: float, length: float) -> float:
+    """Normal stiffness of a support of a length (m) under a load of belt and goods (N/m), N/m^2.
 
-    At its ends a belt under the tension T on the stiffness k hangs over sqrt(T / k), and its load rests on the pulleys.
+    At its ends a belt under the tension T (N) with the bending stiffness EI (N m^2) hangs on the stiffness k over the
+    length a of k a^2 = T + 2 sqrt(EI k), and its load rests on the pulleys.
     """
-    hanging = max(tension, 0.0) / (HANGING * length) ** 2
+    square = (HANGING * length) ** 2
+    hanging = ((sqrt(bending) + sqrt(bending + max(tension, 0.0) * square)) / square) ** 2
     return support.stiffness or max(load, _LEAST_LINE_FORCE, SINKING * hanging) / SINKING
 
 
@@ -90,17 +92,24 @@ def in_batch(laid: Laid, stretch: Stretch, goods: Goods, along: FloatArray, pass
     return np.asarray((way >= goods.batch[0]) & (way <= goods.batch[1]))
 
 
+def hanging_parts(
+    supports: Sequence[Support], spans: Sequence[tuple[str, str]], path: Path
+) -> list[list[tuple[float, float]]]:
+    """Starts and ends of the parts of each span that no support carries, from the start of the span, m."""
+    parts = []
+    for span, length in zip(spans, path.span_lengths.tolist(), strict=True):
+        carried = [stretch_of(one, spans, path) for one in supports if one.span == span]
+        place, hanging = 0.0, list[tuple[float, float]]()
+        for start, end in sorted((one.start, one.end) for one in carried):
+            hanging.append((place, max(start, place)))
+            place = max(place, end)
+        parts.append([*hanging, (place, max(length, place))])
+    return parts
+
+
 def hanging_lengths(supports: Sequence[Support], spans: Sequence[tuple[str, str]], path: Path) -> list[FloatArray]:
     """Lengths of the parts of each span that no support carries, m."""
-    found = []
-    for span, length in zip(spans, path.span_lengths.tolist(), strict=True):
-        own = [stretch_of(one, spans, path) for one in supports if one.span == span]
-        place, parts = 0.0, list[float]()
-        for start, end in sorted((one.start, one.end) for one in own):
-            parts.append(start - place)
-            place = max(place, end)
-        found.append(np.maximum([*parts, length - place], 0.0))
-    return found
+    return [np.ptp(np.array(parts), axis=1) for parts in hanging_parts(supports, spans, path)]
 
 
 def swinging_lengths(supports: Sequence[Support], spans: Sequence[tuple[str, str]], path: Path) -> FloatArray:

@@ -7,7 +7,7 @@ import numpy as np
 
 from beltdyn.arrays import FloatArray
 from beltdyn.errors import ConvergenceError
-from beltdyn.model.carrying import swinging_lengths
+from beltdyn.model.carrying import hanging_parts
 from beltdyn.model.path import Path
 from beltdyn.model.prepared import Prepared
 from beltdyn.parts.messages import Finding, beyond, listing, plain
@@ -18,16 +18,34 @@ def least_strand_tensions(prepared: Prepared, path: Path) -> FloatArray:
 
     A strand that hangs freely over the horizontal length a sags by w a^2 / 8 T, an eighth of a where it weighs as much
     as it pulls; and where it rises by h, its lower end has w h / 2 less than its middle. Supported strands hang from
-    idler to idler. Goods on the strand count.
+    idler to idler. Goods count where they lie.
     """
     gravity = np.array(prepared.gravity, dtype=float)
-    loads = np.full(path.spans, prepared.belt.mass_per_length)
-    for one in prepared.goods:
-        loads[prepared.stretch(one).span] += one.mass_per_length
-    free = swinging_lengths(prepared.supports, prepared.spans, path)
     along = np.abs(path.span_directions @ gravity)
     across = np.abs(path.span_directions @ np.array([-gravity[1], gravity[0]]))
-    return np.asarray(loads * np.maximum(free * across, 0.5 * path.span_lengths * along))
+    hanging = [
+        max(_mass(prepared, span, start, end) for start, end in parts)
+        for span, parts in enumerate(hanging_parts(prepared.supports, prepared.spans, path))
+    ]
+    for support in prepared.supports:
+        span, _, _, start, end = prepared.stretch(support)
+        on_spacing = _mass(prepared, span, start, end) * support.free_length / (end - start)
+        hanging[span] = max(hanging[span], on_spacing)
+    halves = [
+        max(_mass(prepared, span, 0.0, 0.5 * length), _mass(prepared, span, 0.5 * length, length))
+        for span, length in enumerate(path.span_lengths.tolist())
+    ]
+    return np.maximum(np.array(hanging) * across, np.array(halves) * along)
+
+
+def _mass(prepared: Prepared, span: int, start: float, end: float) -> float:
+    """Mass of belt and goods on a part of a span (m), kg."""
+    mass = prepared.belt.mass_per_length * (end - start)
+    for goods in prepared.goods:
+        lying = prepared.stretch(goods)
+        if lying.span == span:
+            mass += goods.mass_per_length * max(min(end, lying.end) - max(start, lying.start), 0.0)
+    return mass
 
 
 def slack_strands(prepared: Prepared, path: Path, tension: FloatArray) -> Finding | None:

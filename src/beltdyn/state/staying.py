@@ -19,7 +19,7 @@ from beltdyn.state.tightening import Tightening, begin
 from beltdyn.system.arc_mesh import base_lengths, fitted, shifts_of
 from beltdyn.system.arrays import System
 from beltdyn.system.build import staying_system
-from beltdyn.system.build_machines import with_resistance
+from beltdyn.system.build_machines import with_clamping_supports, with_resistance
 from beltdyn.system.constant_drive import without_motion
 from beltdyn.system.frame import centreline_places, centreline_points
 from beltdyn.system.meshing import fit_phases, has_teeth, phases, unloaded, with_softer_teeth
@@ -188,8 +188,20 @@ def stand(prepared: Prepared, elements: int | None = None, *, fineness: float = 
 
 
 def _from_laid(prepared: Prepared, system: System) -> tuple[State, float]:
-    """Equilibrium from the belt laid on its path; see `_balanced`."""
-    return from_starts(prepared, lambda start: _balanced(prepared, system, _lying(prepared, system, start), start))
+    """Equilibrium from the belt laid on its path; see `_balanced`.
+
+    That path may lie above its idlers, by the penetration of the pulleys: goods that nothing carries there leave
+    Newton's method no way, so that supports first hold the belt on both sides.
+    """
+    clamping = system._replace(carrying=with_clamping_supports(system.carrying))
+
+    def begun(start: float) -> tuple[State, float]:
+        state = _lying(prepared, system, start)
+        if clamping.carrying is not system.carrying:
+            _balance(prepared, clamping, state, anchor_at(state, True), start)
+        return _balanced(prepared, system, state, start)
+
+    return from_starts(prepared, begun)
 
 
 def _balanced(prepared: Prepared, system: System, state: State, start: float = 1.0) -> tuple[State, float]:

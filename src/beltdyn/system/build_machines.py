@@ -240,6 +240,15 @@ def with_stiffer_supports(carrying: Bare | Carrying, factor: float) -> Bare | Ca
     return carrying._replace(supports=supports)
 
 
+def with_clamping_supports(carrying: Bare | Carrying) -> Bare | Carrying:
+    """The same supports, all of which hold the belt on both sides."""
+    if isinstance(carrying, Bare) or np.all(carrying.supports.both_sides == 1):
+        return carrying
+    supports = carrying.supports.copy()
+    supports["both_sides"] = 1
+    return carrying._replace(supports=supports)
+
+
 def _line(stretch: Stretch) -> dict[str, Any]:
     return {
         "origin": tuple(stretch.origin),
@@ -257,7 +266,8 @@ def _supports(prepared: Prepared) -> Records:
     for row, kind, one in zip(table, kinds, prepared.supports, strict=True):
         stretch = prepared.stretch(one)
         load = normal_load(one, prepared.goods, belt_mass, stretch.direction, prepared.gravity)
-        stiffness = stiffness_of(one, load, prepared.installation.tension, stretch.length)
+        tension, bending = prepared.installation.tension, prepared.belt.bending_stiffness
+        stiffness = stiffness_of(one, load, tension, bending, stretch.length)
         for name, value in _line(stretch).items():
             row.line[name] = value
         row.normal = upper_side(stretch.direction, prepared.gravity)

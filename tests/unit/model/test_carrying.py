@@ -63,16 +63,17 @@ def test_belt_and_goods_sink_in_by_a_millimeter() -> None:
     drive = conveyor()
     load = normal_load(drive.supports[0], drive.goods, 1.0, np.array([-1.0, 0.0]), GRAVITY)
     assert load == pytest.approx(31.0 * 9.81)
-    assert stiffness_of(drive.supports[0], load, 0.0, 10.0) == pytest.approx(load / SINKING)
-    assert stiffness_of(drive.supports[0].replace(stiffness=5e4), load, 1e3, 10.0) == 5e4
+    assert stiffness_of(drive.supports[0], load, 0.0, 0.0, 10.0) == pytest.approx(load / SINKING)
+    assert stiffness_of(drive.supports[0].replace(stiffness=5e4), load, 1e3, 0.0, 10.0) == 5e4
 
 
 def test_a_tight_belt_hangs_over_a_small_part_of_its_support() -> None:
-    """Over sqrt(T / k) at either end."""
+    """Over sqrt(T / k) at either end; clamped with its bending stiffness, sqrt((T + 2 sqrt(EI k)) / k)."""
     drive = conveyor()
-    stiffness = stiffness_of(drive.supports[0], 100.0, 2e3, 2.0)
-    assert stiffness > 100.0 / SINKING
-    assert sqrt(2e3 / stiffness) == pytest.approx(HANGING * 2.0)
+    for bending in (0.0, 1.0):
+        stiffness = stiffness_of(drive.supports[0], 100.0, 2e3, bending, 2.0)
+        assert stiffness > 100.0 / SINKING
+        assert sqrt((2e3 + 2.0 * sqrt(bending * stiffness)) / stiffness) == pytest.approx(HANGING * 2.0)
 
 
 GUIDE = {"kind": "guide", "span": ["tail", "head"], "friction": 0.2}

@@ -52,6 +52,17 @@ def test_idlers_and_goods_count() -> None:
     assert needed["head", "tail"] == pytest.approx(5.0 * G * 10.0)
 
 
+def test_goods_count_where_they_lie() -> None:
+    """On the idlers they do not load the belt that hangs before and behind these."""
+    on_idlers = {"span": ["tail", "head"], "start": 2.0, "end": 9.0}
+    carried = {"kind": "idlers", "spacing": 0.5} | on_idlers
+    drive = conveyor(2000.0, support=[carried], goods=[on_idlers | {"mass_per_length": 20.0}])
+    needed = dict(zip(drive.spans, least_strand_tensions(prepare(drive), drive.path), strict=True))
+    assert needed["tail", "head"] == pytest.approx(25.0 * G * 0.5)
+    longer = conveyor(2000.0, support=[carried], goods=[{"span": ["tail", "head"], "mass_per_length": 20.0}])
+    assert least_strand_tensions(prepare(longer), drive.path).max() == pytest.approx(25.0 * G * 2.0)
+
+
 def test_slack_strands_are_named_with_what_they_need() -> None:
     drive = conveyor(400.0)
     told = [text for text in advise(drive, install(drive)) if "heavier than their tension" in text]

@@ -5,7 +5,7 @@ A rigid bed carries all of belt and goods between the drums, so that the head pu
     F = sum over supports of L (f (m_b + m_g) g cos(a) + m_g g sin(a)).
 
 A belt of the tension T hangs over sqrt(T / k) at either end of a bed of the stiffness k; the default leaves less than
-1 % of the load there.
+1 % of the load there. Where a support ends before the drums, it carries half of the belt that hangs there.
 """
 
 from math import cos, exp, log, radians, sin
@@ -21,20 +21,22 @@ TOLERANCE = 0.012
 
 
 def drawn(seed: int) -> tuple[bd.Drive, float]:
-    """A conveyor with a bed or idlers under its upper strand, and its pull by the balance, N."""
+    """A conveyor with a bed or idlers under its upper strand, by odd seeds its lower one, and its pull, N."""
     rng = np.random.default_rng(seed)
     length = exp(rng.uniform(0.0, log(40.0)))
     slope = radians(rng.uniform(0.0, 35.0)) if rng.random() < 0.5 else 0.0
     radius, friction = rng.uniform(0.03, 0.2), rng.uniform(0.05, 0.5)
     belt, goods = exp(rng.uniform(log(0.05), log(4.0))), exp(rng.uniform(0.0, log(80.0)))
     idlers, whole = rng.random() < 0.3, rng.random() < 0.6
-    place = {} if whole else {"start": 0.05 * length, "end": 0.95 * length}
     support = {"kind": "idlers", "spacing": 1.0} if idlers else {"kind": "guide"}
     friction *= 0.1 if idlers else 1.0
     along = friction * (belt + goods) * cos(slope) + goods * sin(slope)
-    pull = along * G * length * (1.0 if whole else 0.9)
+    sense, gap = -1.0 if seed % 2 == 0 else 1.0, 0.0 if whole else 0.05 * length
+    pull = G * (along * (length - 2.0 * gap) + friction * belt * cos(slope) * gap)
     tension = max(pull * rng.uniform(1.2, 5.0), 3.0 * belt * G * length)
-    span = {"span": ["tail", "head"]} | place
+    span = {"span": ["tail", "head"]} | ({"start": gap, "end": length - gap} if gap else {})
+    # a stiff belt leaves a drum EI / (2 T R) outside the tangent, and presses on the end of a bed by EI / (2 R gap)
+    bending = min(1e-3, 1e-3 * pull * radius * gap / friction) if gap else 1e-3
     drive = bd.Drive(
         gravity=[0.0, -G],
         belt={
@@ -42,14 +44,14 @@ def drawn(seed: int) -> tuple[bd.Drive, float]:
             "width": 0.5,
             "thickness": 0.003,
             "axial_stiffness": tension / rng.uniform(0.002, 0.01),
-            "bending_stiffness": 1e-3,
+            "bending_stiffness": bending,
             "mass_per_length": belt,
             "friction": 0.5,
         },
         pulley=[
             {
                 "name": "head",
-                "center": [length * cos(slope), length * sin(slope)],
+                "center": [sense * length * cos(slope), length * sin(slope)],
                 "radius": radius,
                 "speed": rng.uniform(0.2, 2.0) / radius,
             },
@@ -68,14 +70,14 @@ def error_of(drive: bd.Drive, pull: float) -> float:
     return torque / drive.pulleys[0].radius / pull - 1.0
 
 
-@pytest.mark.parametrize("seed", [1, 2])
+@pytest.mark.parametrize("seed", [1, 2, 113, 126, 155])
 def test_the_pull_of_a_conveyor(seed: int) -> None:
     assert abs(error_of(*drawn(seed))) < TOLERANCE
 
 
 @pytest.mark.slow
-def test_the_pulls_of_forty_conveyors() -> None:
-    errors = [error_of(*drawn(seed)) for seed in range(100, 140)]
+def test_the_pulls_of_eighty_conveyors() -> None:
+    errors = [error_of(*drawn(seed)) for seed in range(100, 180)]
     assert np.max(np.abs(errors)) < TOLERANCE
     assert abs(np.mean(errors)) < 0.004
 
