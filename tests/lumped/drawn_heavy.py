@@ -71,14 +71,17 @@ def drawn_heavy(seed: int) -> Drive:
 def scaled(drive: Drive, factor: float) -> Drive:
     """The drive with a factor on all loads: torques, goods, and what supports resist; the belt keeps its weight.
 
-    Resistances grow with the weight that they carry, so that their coefficients grow by less than goods do.
+    Resistances grow with the weight across the slope, and that of rollers, so that their coefficients grow by less than
+    goods do.
     """
     other = with_load(drive, factor) if any(one.torque for one in drive.pulleys) else drive
     goods = [one.replace(mass_per_length=factor * one.mass_per_length) for one in drive.goods]
     if not drive.supports:
         return other.replace(goods=goods)
+    first, second = (np.array(pulley.center) for pulley in drive.pulleys)
+    cosine = abs(float(first[0] - second[0])) / float(np.linalg.norm(first - second))
     before, after = (
-        drive.belt.mass_per_length + sum(one.mass_per_length for one in some) + _rotating(drive)
+        (drive.belt.mass_per_length + sum(one.mass_per_length for one in some)) * cosine + _rotating(drive)
         for some in (drive.goods, goods)
     )
     supports = [

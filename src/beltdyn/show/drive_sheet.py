@@ -12,7 +12,7 @@ from beltdyn.parts.quantity import RPM
 from beltdyn.results import Result
 from beltdyn.results.schema import least_safeties, variable_of
 from beltdyn.show.line_sheet import line_sheet
-from beltdyn.show.sheet import TENSION_HEADINGS, Facts, Sheet, Table, safeties, tension_columns
+from beltdyn.show.sheet import TENSION_HEADINGS, Facts, Sheet, Table, safeties, safety_text, tension_columns
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -78,7 +78,7 @@ def _facts(dataset: "xr.Dataset") -> Iterable[tuple[str, str]]:
         at_speed = RPM * float(dataset["speed"].values[speed])
         yield (
             "least slip safety",
-            f"{float(np.nanmin(safety)):.3g} of {dataset['pulley'].values[pulley]} over the speeds, at "
+            f"{safety_text(float(np.nanmin(safety)))} of {dataset['pulley'].values[pulley]} over the speeds, at "
             f"{at_speed:.4g} rpm",
         )
 

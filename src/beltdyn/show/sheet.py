@@ -176,7 +176,8 @@ _COMPARED_UNITS = {**SHOWN_UNITS, "m": ("mm", 1e3), "1": ("%", 100.0)}
 """SI unit -> the one that is shown, and the factor."""
 _OF_PARTS = ("rad/s", "N", "N/m")
 
-_LARGEST_SAFETY = 100.0
+_LARGEST_SAFETY = 20.0
+"""Factor on loads up to which it is within 2 %, and is shown: beyond, guides resist more than in proportion."""
 _LEAST_SHARE = 0.01
 """Share of the power input from which a shaft is named."""
 _NOTHING = 1e-9
@@ -218,7 +219,7 @@ def _teeth(run: Run) -> tuple[Table, ...]:
     rows = []
     for one in found:
         allowed = "–" if math.isnan(one.allowed) else f"{one.allowed:.1f}"
-        rows.append((one.name, f"{one.in_mesh:.1f}", f"{one.largest:.1f}", allowed, _safety(one.jump_margin)))
+        rows.append((one.name, f"{one.in_mesh:.1f}", f"{one.largest:.1f}", allowed, safety_text(one.jump_margin)))
     headings = ("", "teeth\nin mesh", "largest\nload N", "allowed\nN", "margin\nto jump")
     return (Table("Teeth", headings, tuple(rows)),) if rows else ()
 
@@ -263,8 +264,8 @@ def _pulleys(title: str, summary: Summary, guides: BoolArray) -> Table:
         (f"{math.degrees(one.wrap_angle):.1f}°" for one in pulleys),
         (f"{math.degrees(one.sliding_arc):.1f}°" for one in pulleys),
         (_ratio(one) for one in pulleys),
-        (_safety(one.own_load_safety) for one in pulleys),
-        (_safety(one.slip_safety) for one in pulleys),
+        (safety_text(one.own_load_safety) for one in pulleys),
+        (safety_text(one.slip_safety) for one in pulleys),
         aligned([one.hub_load for one in pulleys]),
     )
     return Table(
@@ -281,10 +282,7 @@ def power_unit(powers: ArrayLike) -> tuple[str, float]:
 
 def safeties(values: FloatArray) -> list[str]:
     """Slip safeties; a dash without load."""
-    return [
-        "–" if np.isnan(one) else f"{one:.2f}" if one < _LARGEST_SAFETY else f"> {_LARGEST_SAFETY:.0f}"
-        for one in values
-    ]
+    return [f"{one:.2f}" if one < _LARGEST_SAFETY else safety_text(one) for one in values.tolist()]
 
 
 def _window(run: Run, summary: Summary) -> str:
@@ -319,7 +317,7 @@ def _ratio(pulley: PulleySummary) -> str:
     return "/".join(shown)
 
 
-def _safety(safety: float) -> str:
+def safety_text(safety: float) -> str:
     """The slip safety; a dash without load."""
     if math.isnan(safety):
         return "–"

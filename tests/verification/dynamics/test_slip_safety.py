@@ -33,7 +33,10 @@ STRIDE = 0.98
 """First load, over that by the slip safety."""
 ROUGH = 4.0
 """Friction of other pulleys over their own, which keeps them from sliding first."""
-HEAVY_QUICK, HEAVY = (3,), (4, 8, 10, 11, 12, 13, 14, 15, 17, 19, 21)
+HEAVY_QUICK, HEAVY = (3,), sorted({*range(28)} - {1, 3, 18, 22})
+"""Seeds of heavy belts: 1 and 22 sag too much for their installed tension, 18 has a factor of 115."""
+FACTORS_TO_35 = (0, 2), (0, 3), (5, 3), (7, 3), (12, 3), (22, 4), (26, 4), (33, 3), (50, 3)
+"""Seeds and pulleys that slide at 15 to 35 times their own load."""
 
 
 def random_drive(seed: int) -> Drive:
@@ -142,7 +145,13 @@ def test_the_slip_safety_is_the_load_at_which_the_belt_slides_through(seed: int)
 
 @pytest.mark.parametrize(
     ("seed", "pulley"),
-    [(3, 1), *(pytest.param(seed, pulley, marks=pytest.mark.slow) for seed in range(1, 15) for pulley in (1, 2))],
+    [
+        (3, 1),
+        *(
+            pytest.param(seed, pulley, marks=pytest.mark.slow)
+            for seed, pulley in (*((seed, pulley) for seed in range(1, 15) for pulley in (1, 2)), *FACTORS_TO_35)
+        ),
+    ],
 )
 def test_the_own_slip_safety_is_the_own_load_at_which_a_pulley_slides(seed: int, pulley: int) -> None:
     drawn = random_drive(seed)
