@@ -35,7 +35,7 @@ def least_strand_tensions(prepared: Prepared, path: Path) -> FloatArray:
         max(_mass(prepared, span, 0.0, 0.5 * length), _mass(prepared, span, 0.5 * length, length))
         for span, length in enumerate(path.span_lengths.tolist())
     ]
-    return np.maximum(np.array(hanging) * across, np.array(halves) * along)
+    return np.asarray(np.maximum(np.array(hanging) * across, np.array(halves) * along))
 
 
 def _mass(prepared: Prepared, span: int, start: float, end: float) -> float:

@@ -178,6 +178,8 @@ _OF_PARTS = ("rad/s", "N", "N/m")
 
 _LARGEST_SAFETY = 20.0
 """Factor on loads up to which it is within 2 %, and is shown: beyond, guides resist more than in proportion."""
+_LARGEST_MARGIN = 100.0
+"""Margin to a jump that is shown."""
 _LEAST_SHARE = 0.01
 """Share of the power input from which a shaft is named."""
 _NOTHING = 1e-9
@@ -219,7 +221,15 @@ def _teeth(run: Run) -> tuple[Table, ...]:
     rows = []
     for one in found:
         allowed = "–" if math.isnan(one.allowed) else f"{one.allowed:.1f}"
-        rows.append((one.name, f"{one.in_mesh:.1f}", f"{one.largest:.1f}", allowed, safety_text(one.jump_margin)))
+        rows.append(
+            (
+                one.name,
+                f"{one.in_mesh:.1f}",
+                f"{one.largest:.1f}",
+                allowed,
+                safety_text(one.jump_margin, _LARGEST_MARGIN),
+            )
+        )
     headings = ("", "teeth\nin mesh", "largest\nload N", "allowed\nN", "margin\nto jump")
     return (Table("Teeth", headings, tuple(rows)),) if rows else ()
 
@@ -317,11 +327,11 @@ def _ratio(pulley: PulleySummary) -> str:
     return "/".join(shown)
 
 
-def safety_text(safety: float) -> str:
+def safety_text(safety: float, largest: float = _LARGEST_SAFETY) -> str:
     """The slip safety; a dash without load."""
     if math.isnan(safety):
         return "–"
-    return f"{safety:.3g}" if safety < _LARGEST_SAFETY else f"> {_LARGEST_SAFETY:.0f}"
+    return f"{safety:.3g}" if safety < largest else f"> {largest:.0f}"
 
 
 TENSION_HEADINGS = ("tension\nmean N", "min\nN", "max\nN", "at start\nN", "at end\nN")
