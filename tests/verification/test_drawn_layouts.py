@@ -25,6 +25,7 @@ NEAR, FAR = 1.1e-6, 0.005
 """Miss of the tension, relative, at most; and beside a jump of a mesh of equal elements."""
 UNVERIFIED = 0.002
 """Share of layouts, at most, that are refused for a reason that neither statics nor its remedy confirms."""
+SLOW = pytest.mark.slow
 _MOST_REMEDIES = 3
 
 Bring = Callable[[Drive], Rest | Standing]
@@ -38,11 +39,11 @@ def bring_to_stand(drive: Drive) -> Standing:
     ("bring", "seeds"),
     [
         (bring_to_stand, range(3, 15)),
-        pytest.param(bring_to_rest, range(3, 15), marks=pytest.mark.slow),
-        pytest.param(bring_to_stand, range(15, 5003), marks=pytest.mark.slow),
-        pytest.param(bring_to_rest, range(15, 5003, 10), marks=pytest.mark.slow),
+        pytest.param(bring_to_rest, range(3, 15), marks=SLOW),
+        *(pytest.param(bring_to_stand, range(k, min(k + 500, 5003)), marks=SLOW) for k in range(15, 5003, 500)),
+        *(pytest.param(bring_to_rest, range(k, min(k + 1000, 5003), 10), marks=SLOW) for k in range(15, 5003, 1000)),
     ],
-    ids=lambda one: len(one) if isinstance(one, range) else None,
+    ids=lambda entry: f"{entry[0]}-{entry[-1]}" if isinstance(entry, range) else None,
 )
 def test_the_tension_is_reached_or_the_reason_is_true(
     bring: Bring, seeds: range, measured: Callable[..., None]

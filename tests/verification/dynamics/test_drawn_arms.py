@@ -15,17 +15,16 @@ from beltdyn.points.changed_drive import held_at, with_load
 from beltdyn.results import Run
 from tests.lumped.drawn_drives import SEED, drawn_arm_drive
 from tests.lumped.lumped_balance import LumpedBalance
+from tests.lumped.seeds import blocks
 from tests.verification.dynamics.test_drawn_drives import SURE
-
-SLOW = pytest.mark.slow
 
 
 def part_of(seed: int, low: float, high: float) -> float:
     return float(np.random.default_rng([SEED, 4, seed]).uniform(low, high))
 
 
-@pytest.mark.parametrize("seeds", [range(3), pytest.param(range(3, 1000), marks=SLOW)], ids=len)
-def test_every_drive_runs_with_the_tensions_of_the_balance(seeds: range, measured: Callable[..., None]) -> None:
+@blocks(range(3), 1000, 50)
+def test_every_drive_runs_with_the_tensions_of_the_balance(seeds: Sequence[int], measured: Callable[..., None]) -> None:
     """From 5 to 99 % of the load at which a pulley slips or the arm gives way; one of 1000 may be refused."""
     errors, refused = dict[int, float](), list[int]()
     for seed in seeds:
@@ -45,8 +44,10 @@ def test_every_drive_runs_with_the_tensions_of_the_balance(seeds: range, measure
     assert errors[worst] < 0.02, worst
 
 
-@pytest.mark.parametrize("seeds", [range(3), pytest.param(range(3, 250), marks=SLOW)], ids=len)
-def test_a_refusal_states_the_limit_of_the_balance_and_its_cause(seeds: range, measured: Callable[..., None]) -> None:
+@blocks(range(3), 250, 25)
+def test_a_refusal_states_the_limit_of_the_balance_and_its_cause(
+    seeds: Sequence[int], measured: Callable[..., None]
+) -> None:
     """A pulley that uses its grip within 5 % of the worst may be named for it; the torque is right within 3 %."""
     errors = dict[int, float]()
     for seed in seeds:
@@ -69,8 +70,8 @@ def test_a_refusal_states_the_limit_of_the_balance_and_its_cause(seeds: range, m
     assert max(errors.values()) < 0.03, errors
 
 
-@pytest.mark.parametrize("seeds", [range(2000, 2001), pytest.param(range(2001, 2200), marks=SLOW)], ids=len)
-def test_a_sweep_of_loads_has_no_hole(seeds: range, measured: Callable[..., None]) -> None:
+@blocks(range(2000, 2001), 2200, 5)
+def test_a_sweep_of_loads_has_no_hole(seeds: Sequence[int], measured: Callable[..., None]) -> None:
     loads, missing = (np.arange(1, 41) / 40).tolist(), dict[int, list[float]]()
     for seed in seeds:
         drawn, found = drawn_arm_drive(seed), list[float]()
@@ -85,7 +86,7 @@ def test_a_sweep_of_loads_has_no_hole(seeds: range, measured: Callable[..., None
     assert not any(missing.values()), missing
 
 
-@pytest.mark.parametrize("seeds", [(1, 3, 48), pytest.param(range(200), marks=SLOW)], ids=len)
+@blocks((0, 1, 3, 48), 200, 25)
 def test_the_band_of_dry_friction_ends_where_the_balance_does(
     seeds: Sequence[int], measured: Callable[..., None]
 ) -> None:

@@ -1,6 +1,6 @@
 """Steady running of drives whose friction clutches slip: the belt takes their capacity, and what lies behind stops."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import replace
 from importlib.resources import files
 
@@ -14,8 +14,7 @@ from beltdyn.model import Drive
 from beltdyn.points.changed_drive import held_at, with_load
 from tests.lumped.drawn_drives import SEED, Drawn, drawn_drive
 from tests.lumped.lumped_balance import LumpedBalance
-
-SLOW = pytest.mark.slow
+from tests.lumped.seeds import blocks
 
 
 def clutched(drawn: Drawn, rng: np.random.Generator) -> tuple[Drive, LumpedBalance]:
@@ -42,8 +41,10 @@ def clutched(drawn: Drawn, rng: np.random.Generator) -> tuple[Drive, LumpedBalan
     return drawn.drive.replace(pulley=pulleys), replace(drawn.balance, torques=torques)
 
 
-@pytest.mark.parametrize("seeds", [range(4), pytest.param(range(4, 300), marks=SLOW)], ids=len)
-def test_every_drive_runs_with_the_tensions_of_the_limited_torques(seeds: range, measured: Callable[..., None]) -> None:
+@blocks(range(4), 300, 50)
+def test_every_drive_runs_with_the_tensions_of_the_limited_torques(
+    seeds: Sequence[int], measured: Callable[..., None]
+) -> None:
     """Whether no clutch slips, some do, or all; one of 1000 may be refused."""
     errors, refused = dict[int, float](), dict[int, str]()
     for seed in seeds:

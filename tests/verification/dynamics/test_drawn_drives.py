@@ -1,7 +1,7 @@
 """Steady running of drives drawn at random, against an independent balance of lumped spans."""
 
 import re
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from math import radians
 from typing import Any
 
@@ -12,6 +12,7 @@ from beltdyn import steady_state
 from beltdyn.errors import ConvergenceError
 from beltdyn.model import Drive
 from tests.lumped.drawn_drives import SEED, drawn_drive, idler_between
+from tests.lumped.seeds import blocks
 
 LEAST, MOST = 0.05, 0.95
 """Loads, over those that a drive transmits by the lumped balance."""
@@ -23,8 +24,8 @@ def load_of(seed: int) -> float:
     return float(np.random.default_rng([SEED, 1, seed]).uniform(LEAST, MOST))
 
 
-@pytest.mark.parametrize("seeds", [range(6), pytest.param(range(6, 2000), marks=pytest.mark.slow)], ids=len)
-def test_every_drive_runs_with_the_tensions_of_the_balance(seeds: range, measured: Callable[..., None]) -> None:
+@blocks(range(6), 2000, 100)
+def test_every_drive_runs_with_the_tensions_of_the_balance(seeds: Sequence[int], measured: Callable[..., None]) -> None:
     """The balance leaves out hysteresis and the ends of short spans: 0.7 % of the largest tension."""
     errors = dict[int, float]()
     for seed in seeds:
@@ -37,8 +38,8 @@ def test_every_drive_runs_with_the_tensions_of_the_balance(seeds: range, measure
     assert errors[worst] < 0.02
 
 
-@pytest.mark.parametrize("seeds", [range(2000, 2001), pytest.param(range(2001, 2050), marks=pytest.mark.slow)], ids=len)
-def test_a_sweep_of_loads_has_no_hole(seeds: range, measured: Callable[..., None]) -> None:
+@blocks(range(2000, 2001), 2050, 10)
+def test_a_sweep_of_loads_has_no_hole(seeds: Sequence[int], measured: Callable[..., None]) -> None:
     """Each of 40 loads is found from rest, up to where the balance loses its grip, which it knows within 3 %."""
     loads, missing, last = (np.arange(1, 41) / 40).tolist(), dict[int, list[float]](), dict[int, float]()
     for seed in seeds:
@@ -58,8 +59,8 @@ def _runs(drive: Drive) -> bool:
     return True
 
 
-@pytest.mark.parametrize("seeds", [range(4), pytest.param(range(4, 60), marks=pytest.mark.slow)], ids=len)
-def test_a_refusal_names_the_pulley_that_limits_and_its_torque(seeds: range) -> None:
+@blocks(range(4), 60, 20)
+def test_a_refusal_names_the_pulley_that_limits_and_its_torque(seeds: Sequence[int]) -> None:
     """Of pulleys that use their grip alike, within 5 %, either may be named."""
     for seed in seeds:
         drawn, load = drawn_drive(seed), float(np.random.default_rng([SEED, 2, seed]).uniform(1.1, 2.0))

@@ -1,6 +1,6 @@
 """Web lines drawn at random, with driven, idle and held rollers, against a chain of capstans."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 
 import numpy as np
 import pytest
@@ -8,11 +8,12 @@ import pytest
 import beltdyn as bd
 from beltdyn.errors import ConvergenceError
 from beltdyn.model import Drive
+from tests.lumped.seeds import blocks
 from tests.lumped.web_chain import WEB, Roller, chain, controlled_line, drawn_line
 
 
-@pytest.mark.parametrize("seeds", [range(3), pytest.param(range(3, 1000), marks=pytest.mark.slow)], ids=len)
-def test_every_line_runs_with_the_tensions_of_the_chain(seeds: range, measured: Callable[..., None]) -> None:
+@blocks(range(3), 1000, 50)
+def test_every_line_runs_with_the_tensions_of_the_chain(seeds: Sequence[int], measured: Callable[..., None]) -> None:
     """The chain has no creep below full friction: by the creep ratio tensions differ by 2 N; one of 1000 is refused."""
     errors, refused = dict[int, float](), list[int]()
     for seed in seeds:
@@ -33,8 +34,8 @@ def test_every_line_runs_with_the_tensions_of_the_chain(seeds: range, measured: 
     assert errors[worst] < 0.02, worst
 
 
-@pytest.mark.parametrize("seeds", [range(1), pytest.param(range(1, 300), marks=pytest.mark.slow)], ids=len)
-def test_every_controlled_line_holds_its_set_value(seeds: range, measured: Callable[..., None]) -> None:
+@blocks(range(1), 300, 20)
+def test_every_controlled_line_holds_its_set_value(seeds: Sequence[int], measured: Callable[..., None]) -> None:
     """By a load cell or a dancer, from any first guess of the roller that it trims; one of 1000 is refused."""
     errors, refused = dict[int, float](), dict[int, str]()
     for seed in seeds:
