@@ -112,7 +112,7 @@ def _facts(seconds: float, folder: Path, runs: Runs) -> dict[str, str]:
     return {
         "Version": f"beltdyn {origin['beltdyn_version']}",
         "Made": datetime.now(UTC).strftime("%d %B %Y, %H:%M UTC"),
-        "Command": f"beltdyn paper --out {folder}",
+        "Command": f"python -m validation.paper --out {folder}",
         "Environment": f"Python {origin['python_version']}, {packages}; {platform.system()} {platform.machine()}, "
         f"{os.cpu_count()} cores",
         "Runs": f"{len(runs) + len(runs.failures)}; their drive files, and what this page needs of their results, are "

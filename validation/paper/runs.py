@@ -14,7 +14,7 @@ from beltdyn.solvers.run_progress import BatchProgress
 from beltdyn.transient.simulate import simulate
 from validation.paper.kept import keep, open_kept
 
-REPEATS = 5
+REPEATS = 3
 """How often a run is done again to see how its computing time varies."""
 
 
@@ -36,9 +36,18 @@ class Runs(Mapping[str, Run]):
         Name -> drive.
     failures : mapping
         Name -> why there is none.
+    progress : callable, optional
+        Told of runs that are timed again.
     """
 
-    def __init__(self, paths: Mapping[str, Path], drives: Mapping[str, Drive], failures: Mapping[str, str]) -> None:
+    def __init__(
+        self,
+        paths: Mapping[str, Path],
+        drives: Mapping[str, Drive],
+        failures: Mapping[str, str],
+        progress: Callable[[BatchProgress], None] | None = None,
+    ) -> None:
+        self._progress = progress
         self._runs = {name: Run(open_kept(path), drives[name]) for name, path in paths.items()}
         self.failures = dict(failures)
 
@@ -74,8 +83,12 @@ class Runs(Mapping[str, Run]):
             After Ctrl-C.
         """
         drives = [_without_outputs(self[name].drive) for name in names]
-        times = np.array([[_cpu_time(drive) for drive in drives] for _ in range(repeats)])
-        return dict(zip(names, times.T, strict=True))
+        times = np.zeros(repeats * len(drives))
+        for number in range(times.size):
+            if self._progress is not None:
+                self._progress(BatchProgress(number, times.size, {Path(names[number % len(drives)]): 0.0}))
+            times[number] = _cpu_time(drives[number % len(drives)])
+        return dict(zip(names, times.reshape(repeats, -1).T, strict=True))
 
 
 def _without_outputs(drive: Drive) -> Drive:
@@ -139,4 +152,4 @@ def run_all(
     if any(ending.status in ("interrupted", "not started") for ending in endings.values()):
         raise KeyboardInterrupt
     failures = {name: endings[path].error for name, path in paths.items() if endings[path].error}
-    return Runs({name: path for name, path in paths.items() if name not in failures}, drives, failures)
+    return Runs({name: path for name, path in paths.items() if name not in failures}, drives, failures, progress)

@@ -19,6 +19,9 @@ _EARLY = 5.0
 _LONG = 60.0
 """Remaining computing time of a long run, s."""
 
+_LINE_INTERVAL = 60.0
+"""Time between lines of progress where there is no terminal for a bar, s."""
+
 _SLOW_RUNS = "Fine meshes, steep friction and small tolerances make runs long; `beltdyn check` names the cause."
 
 _PHASES = {
@@ -41,7 +44,7 @@ def progress_bar() -> Iterator[Callable[["SolverProgress"], None]]:
     """Show simulated time, step size and remaining time on standard error; announce a long run early."""
     with _bar() as bar:
         task = bar.add_task("preparing", total=None, state="")
-        told = False
+        told, log = False, _lines(bar.console)
 
         def report(progress: "SolverProgress") -> None:
             nonlocal told
@@ -49,6 +52,7 @@ def progress_bar() -> Iterator[Callable[["SolverProgress"], None]]:
                 bar.console.print(_long("This run", progress.remaining, progress.bound), highlight=False)
                 told = True
             counted = progress.phase in _COUNTED
+            log(f"{_PHASES[progress.phase]}{f', {_state(progress)}' if counted else ''}", progress.remaining)
             bar.update(
                 task,
                 description=_PHASES[progress.phase],
@@ -61,11 +65,29 @@ def progress_bar() -> Iterator[Callable[["SolverProgress"], None]]:
 
 
 def _long(what: str, remaining: float, bound: str) -> str:
-    """The remaining computing time (s) in words, and its cause."""
+    """The remaining computing time (s), and its cause."""
+    return f"{what} will take {_in_minutes(remaining)} more at the present rate. {bound}"
+
+
+def _in_minutes(remaining: float) -> str:
+    """A remaining computing time (s) in words."""
     minutes = remaining / 60.0
     left = f"{minutes:.0f} minutes" if minutes < 120.0 else f"{minutes / 60.0:.0f} hours"
-    about = "a minute or two" if minutes < 1.5 else f"about {left}"
-    return f"{what} will take {about} more at the present rate. {bound}"
+    return "a minute or two" if minutes < 1.5 else f"about {left}"
+
+
+def _lines(console: Console) -> Callable[[str, float], None]:
+    """What prints the state of a work, and its remaining time (s), now and then where a bar would not be seen."""
+    last = perf_counter()
+
+    def log(state: str, remaining: float) -> None:
+        nonlocal last
+        if console.is_terminal or perf_counter() - last < _LINE_INTERVAL:
+            return
+        last = perf_counter()
+        console.print(f"{state}{f'; {_in_minutes(remaining)} more' if remaining > 0.0 else ''}", highlight=False)
+
+    return log
 
 
 def _state(progress: "SolverProgress") -> str:
@@ -83,7 +105,7 @@ def runs_bar(at_end: str = "done") -> Iterator[Callable[["BatchProgress"], None]
         whole = bar.add_task("", total=None, state="", visible=False)
         lines: dict[Path, TaskID] = {}
         begin: float | None = None
-        told = False
+        told, log = False, _lines(bar.console)
 
         def report(progress: "BatchProgress") -> None:
             nonlocal begin, told
@@ -95,6 +117,7 @@ def runs_bar(at_end: str = "done") -> Iterator[Callable[["BatchProgress"], None]
             if not told and elapsed > _EARLY and remaining > _LONG:
                 told = True
                 bar.console.print(_long("These runs", remaining, _SLOW_RUNS), highlight=False)
+            log(f"{progress.done} of {progress.total} runs", remaining)
             for file in lines.keys() - progress.running.keys():
                 bar.remove_task(lines.pop(file))
             for file, done in progress.running.items():

@@ -184,6 +184,25 @@ def test_runs_that_take_long_are_told_of_once(
     assert shown.count("These runs will take about 31 minutes more at") == 1
 
 
+def test_without_a_terminal_a_line_a_minute_tells_of_the_work(
+    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    now = [0.0]
+    monkeypatch.setattr("beltdyn.cli.progress.perf_counter", lambda: now[0])
+    with runs_bar() as report:
+        for done, now[0] in ((0, 0.0), (1, 30.0), (1, 70.0), (2, 100.0), (3, 140.0)):
+            report(BatchProgress(done, 4, {}))
+    shown = capsys.readouterr().err
+    assert "1 of 4 runs; about 2 minutes more\n" in shown
+    assert "3 of 4 runs; a minute or two more\n" in shown
+    assert "2 of 4 runs;" not in shown
+    now[0] = 0.0
+    with progress_bar() as report:
+        now[0] = 61.0
+        report(Progress(0.25, 1.0, 1e-4, 3, elapsed=61.0))
+    assert "simulating, 0.25 of 1 s, step 1.0e-04 s; about 3 minutes more\n" in capsys.readouterr().err
+
+
 def test_progress_of_many(capsys: pytest.CaptureFixture[str]) -> None:
     """A line for all, and one for each that is on its way."""
     with runs_bar(at_end="writing the page") as report:
