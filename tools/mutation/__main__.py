@@ -39,9 +39,11 @@ from tools.mutation.trial import (
     MAX_TESTS,
     ROOT,
     SOURCE,
+    Replacements,
     attempt,
     attempt_at_import,
     compiled,
+    fits,
     fork,
     functions_of,
     in_session,
@@ -119,7 +121,7 @@ def _try_group(mutants: list[Mutant], asked: argparse.Namespace, name: str) -> N
     tried = [Mutant(**each) for each in json.loads(answers.read_text(encoding="utf-8"))]
     answers.unlink()
     for mutant, result in zip(mutants, tried, strict=True):
-        mutant.outcome, mutant.killed_by = result.outcome, result.killed_by
+        mutant.outcome, mutant.killed_by, mutant.at_import = result.outcome, result.killed_by, result.at_import
     _try_at_import(mutants, asked, kept)
 
 
@@ -136,10 +138,13 @@ def _try_in_functions(items: list[pytest.Item], mutants: list[Mutant], asked: ar
     lines = _tests_of_lines(known)
 
     def work(mutant: Mutant, code: CodeType, tests: list[str]) -> Callable[[], int]:
+        return partial(attempt, altered_by(mutant, code), [by_id[test] for test in tests])
+
+    def altered_by(mutant: Mutant, code: CodeType) -> Replacements:
         altered = replacements(mutant.file, code, functions[mutant.file])
         if not altered:
             raise SystemExit(f"No function has this change: {mutant}")
-        return partial(attempt, altered, [by_id[test] for test in tests])
+        return altered
 
     trials = _Trials(known, asked, work)
     for file in sorted({each.file for each in mutants}):
@@ -151,7 +156,10 @@ def _try_in_functions(items: list[pytest.Item], mutants: list[Mutant], asked: ar
             if mutant.outcome != "killed":
                 raise SystemExit(f"No test notices the control: {mutant}")
     for mutant, code in compiled([each for each in mutants if not each.at_import]):
-        trials.start(mutant, code, lines[mutant.file, mutant.line])
+        if fits(altered_by(mutant, code)):
+            trials.start(mutant, code, lines[mutant.file, mutant.line])
+        else:
+            mutant.at_import = True
     trials.finish()
 
 

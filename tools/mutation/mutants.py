@@ -57,7 +57,8 @@ class Mutant:
     number : int
         Place among the changes of the file.
     at_import : bool
-        Whether the code runs when its module is imported, outside the body of a function.
+        Whether the code runs when its module is imported, outside the body of a function, or fits into no function
+        that is imported.
     outcome : str
         "killed", "survived", or "untested" where no test executes the line; empty before the trial.
     killed_by : str

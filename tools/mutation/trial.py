@@ -178,7 +178,11 @@ def functions_of(files: Iterable[str]) -> dict[str, list[FunctionType]]:
     return functions
 
 
-def replacements(file: str, code: CodeType, functions: list[FunctionType]) -> list[tuple[FunctionType, CodeType]]:
+Replacements = list[tuple[FunctionType, CodeType]]
+"""Functions, each with its new code."""
+
+
+def replacements(file: str, code: CodeType, functions: list[FunctionType]) -> Replacements:
     """The functions that a change of their file alters, each with its new code.
 
     Parameters
@@ -202,7 +206,12 @@ def replacements(file: str, code: CodeType, functions: list[FunctionType]) -> li
     return altered
 
 
-def attempt(altered: list[tuple[FunctionType, CodeType]], items: list[pytest.Item]) -> int:
+def fits(altered: Replacements) -> bool:
+    """Whether functions can take their new code: without `super`, say, it closes over other names."""
+    return all(function.__code__.co_freevars == code.co_freevars for function, code in altered)
+
+
+def attempt(altered: Replacements, items: list[pytest.Item]) -> int:
     """Put a change into functions and run tests: the number of the first that fails, or 0."""
     for function, code in altered:
         function.__code__ = code

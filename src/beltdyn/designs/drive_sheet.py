@@ -491,6 +491,7 @@ class _DriveSheet:
             change, tension = balance.held_at(0, lower)
             rows["load"] = (length + change, lower, tension)
         lengths, positions, tensions = np.array(list(rows.values())).T
+        tensions = np.maximum(tensions, 0.0)  # a slack belt does not push
         places = [carrier.place(position) for position in positions.tolist()]
         paths = [self._path_at(0, position) for position in positions.tolist()]
         hub = [tension * (after - before) for tension, (before, after) in zip(tensions.tolist(), paths, strict=True)]

@@ -242,8 +242,10 @@ class _Row:
 
     @property
     def _entry(self) -> int:
-        """The span where a web enters; of a closed belt that behind the driver."""
-        return -1 if self.drive.ends else int(self.drive.path.leaving[self.drive.reference])
+        """The span where a web enters; of a closed belt that into which the driver runs."""
+        path = self.drive.path
+        behind = path.leaving if self.sense > 0.0 else path.reaching
+        return -1 if self.drive.ends else int(behind[self.drive.reference])
 
     @cached_property
     def span_ends(self) -> tuple[FloatArray, FloatArray]:

@@ -13,7 +13,7 @@ from beltdyn.model.nip import refuse_nips
 from beltdyn.model.path import span_directions
 from beltdyn.points.changed_drive import driver_of
 from beltdyn.results.mechanics import SpanTension
-from beltdyn.results.sag import weight_of_meter
+from beltdyn.results.sag import sag_of, turned, weight_of_meter
 from beltdyn.results.slip_safety import SlipSafety, slip_safety_of_states
 from beltdyn.results.tension_balance import TensionBalance
 from beltdyn.theory.nip import bending_loss
@@ -107,8 +107,12 @@ class QuasiSteady:
             driven + self.inertia[self.driver] * running[:, 0] * acceleration / self._radii[self.driver]
         )
         ends = np.stack(found.tension[:2], axis=2)
-        lifted = self.prepared.belt.mass_per_length * speed[:, None, None] ** 2
-        pulls = (ends - lifted)[..., None] * span_directions(found.centers, self._radii)[:, :, None]
+        lifted = self.prepared.belt.mass_per_length * speed[:, None] ** 2
+        along = span_directions(found.centers, self._radii)
+        sag = sag_of(self.prepared, found.tension, lifted, along)
+        turn = np.zeros_like(ends) if sag is None else np.stack([sag.start, sag.end], axis=2)
+        directions = along[:, :, None] + turn[..., None] * turned(along)[:, :, None]
+        pulls = (ends - lifted[..., None])[..., None] * directions
         weight = weight_of_meter(self.prepared, found.tension)
         arcs = (found.wrap * np.abs(self._radii))[:, :, None] * weight[:, None]
         hub = pulls[:, :, 0] - np.roll(pulls[:, :, 1], 1, axis=1) + arcs

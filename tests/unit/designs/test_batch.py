@@ -8,15 +8,18 @@ import sys
 import threading
 import time
 from collections.abc import Callable, Iterator
+from concurrent.futures import Future
 from multiprocessing import active_children
 from pathlib import Path
+from typing import Any, ClassVar
 
 import numpy as np
 import pytest
 
 from beltdyn import simulate
+from beltdyn.designs import batch
 from beltdyn.designs.batch import simulate_all
-from beltdyn.designs.processes import Ending
+from beltdyn.designs.processes import Ending, Work
 from beltdyn.errors import ModelError
 from beltdyn.model import Drive
 from beltdyn.results import Run, open_run, summarize
@@ -72,6 +75,57 @@ def test_nothing_to_do() -> None:
 def test_an_ending_travels_between_processes(run: Run) -> None:
     ending = Ending("completed", summary=summarize(run))
     assert repr(pickle.loads(pickle.dumps(ending))) == repr(ending)  # in which NaN is as NaN
+
+
+class OnePool:
+    """In place of a pool of processes: what becomes of the drives that are submitted is laid out before."""
+
+    plans: ClassVar[list[dict[str, str]]] = []
+    """File -> "done", "begun" or "waiting" when a process is killed, or "interrupt" before; for each of the pools."""
+
+    def __init__(self, jobs: int, begin: Callable[..., None], shared: tuple[Any, ...]) -> None:
+        self.plan, (self.parts,), self.stops = self.plans.pop(0), shared, list[bool]()
+
+    def submit(self, function: Callable[..., Ending], place: int, file: Path, _: Drive, work: Work) -> Future[Ending]:
+        assert not work.overwrite
+        future, fate = Future[Ending](), self.plan[file.name]
+        if fate == "interrupt":
+            raise KeyboardInterrupt
+        if fate != "waiting":
+            self.parts[place] = 0.0  # it is told that it began, and no more
+        future.set_exception(BrokenPipeError()) if fate != "done" else future.set_result(Ending("completed"))
+        return future
+
+    def lost(self, error: BaseException | None) -> bool:
+        return isinstance(error, BrokenPipeError)
+
+    def close(self, *, stop: bool) -> None:
+        self.stops.append(stop)
+
+
+@pytest.mark.parametrize(
+    ("plans", "expected"),
+    [
+        ([{"a": "done", "b": "begun", "c": "waiting"}, {"c": "done"}], ["completed", "failed", "completed"]),
+        ([{"a": "waiting", "b": "done", "c": "waiting"}, {"a": "done", "c": "done"}], ["completed"] * 3),
+        ([{"a": "waiting", "b": "waiting", "c": "waiting"}], ["failed"] * 3),
+        ([{"a": "interrupt"}], ["not started"] * 3),
+        ([{"a": "begun", "b": "done", "c": "waiting"}, {"c": "interrupt"}], ["failed", "completed", "not started"]),
+    ],
+)
+def test_what_had_not_begun_when_a_process_was_killed_is_begun_again(
+    drive: Drive, monkeypatch: pytest.MonkeyPatch, plans: list[dict[str, str]], expected: list[str]
+) -> None:
+    """What had begun has failed, even before its first step; where nothing had, no other attempt is of use."""
+    monkeypatch.setattr(batch, "LocalProcesses", OnePool)
+    monkeypatch.setattr(batch, "compile_ahead", lambda drive: None)
+    monkeypatch.setattr(OnePool, "plans", list(plans))
+    told = list[BatchProgress]()
+    endings = simulate_all({Path(name): drive for name in "abc"}, told.append, jobs=2)
+    assert {file.name: ending.status for file, ending in endings.items()} == dict(zip("abc", expected, strict=True))
+    assert all("was killed" in ending.error for ending in endings.values() if ending.status == "failed")
+    assert not OnePool.plans
+    assert all(progress.total == 3 for progress in told)
 
 
 @pytest.mark.slow

@@ -6,6 +6,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+from scipy import stats
 
 from beltdyn.arrays import FloatArray
 from beltdyn.designs.calibrate import _warnings, calibrate, fit
@@ -93,6 +94,9 @@ def test_an_interrupted_calibration_keeps_what_it_has_come_to(drive: Drive, slip
     found = calibrate(drive, study=study_file(tmp_path), output=tmp_path / "out.nc", progress=interrupt)
     kept = open_result(tmp_path / "out.nc")
     assert found.status == kept.status == "interrupted"
+    ends = np.array([found.dataset.lower, found.dataset.upper]) - found.dataset.fitted.values
+    reach = stats.t.ppf(0.975, len(TORQUES) - 1)
+    np.testing.assert_allclose(ends / found.dataset.standard_error.values, [[-reach], [reach]], rtol=1e-6)
     assert before[0].dataset.fitted[0] == kept.dataset.fitted[0]
     assert any("the search was interrupted" in warning for warning in kept.warnings)
     assert abs(kept.dataset.fitted[0] / TRUE_MODULUS - 1.0) < abs(kept.dataset.start[0] / TRUE_MODULUS - 1.0)

@@ -4,6 +4,7 @@ from collections.abc import Callable
 
 import numpy as np
 import pytest
+from scipy import stats
 
 from beltdyn.arrays import FloatArray
 from beltdyn.designs.calibrate import fit
@@ -25,6 +26,11 @@ def slopes(x: FloatArray) -> FloatArray:
 def straight(rows: FloatArray, measured: FloatArray) -> Callable[[FloatArray], FloatArray]:
     """Residuals of a straight model."""
     return lambda x: np.asarray(rows @ x - measured)
+
+
+def constant(rows: FloatArray) -> Callable[[FloatArray], FloatArray]:
+    """Derivatives of a straight model."""
+    return lambda _: rows
 
 
 @pytest.mark.parametrize("known", [True, False])
@@ -60,6 +66,25 @@ def test_errors_are_those_of_the_normal_equations() -> None:
     np.testing.assert_allclose(found.errors, np.sqrt(np.diag(covariance)), rtol=1e-8)
     assert found.correlation[0, 1] == pytest.approx(covariance[0, 1] / np.sqrt(np.prod(np.diag(covariance))))
     assert found.reach == pytest.approx(1.959964, rel=1e-6)
+
+
+@pytest.mark.parametrize("known", [True, False])
+def test_numbers_in_other_units_have_errors_in_those(known: bool) -> None:
+    """Columns of any size, among them that of one, are told as well; with deviations known errors are their inverse."""
+    rng = np.random.default_rng(4)
+    alike = np.linalg.qr(rng.normal(size=(ROWS.size, 3)))[0]
+    alike /= np.linalg.norm(alike, axis=0)
+    noise = 0.1 * rng.normal(size=ROWS.size)
+    for scales in (np.ones(3), np.array([1e-9, 1.0, 1e6])):
+        jacobian = alike * scales
+        residuals, start = straight(jacobian, 0.5 * jacobian.sum(axis=1) + noise), np.full(3, 0.5)
+        found = fit(residuals, constant(jacobian), start, 0.95, known=known)
+        assert found.told
+        factor = 1.0 if known else found.spread
+        np.testing.assert_allclose(found.errors * scales, factor, rtol=1e-6)
+        np.testing.assert_allclose(found.correlation, np.eye(3), atol=1e-9)
+        reach = stats.norm.ppf(0.975) if known else stats.t.ppf(0.975, ROWS.size - 3)
+        assert found.reach == pytest.approx(reach)
 
 
 def test_numbers_that_cannot_be_told_apart() -> None:

@@ -9,9 +9,11 @@ import pytest
 
 import beltdyn as bd
 from beltdyn.errors import ModelError
-from beltdyn.model import example, install
+from beltdyn.model import example, install, loads
 from beltdyn.model.demand import required_tension
 from beltdyn.model.installation import tension_checks
+from beltdyn.solvers.run_progress import Progress
+from tests.unit.points.test_tensioner_sheet import PRELOAD, RATE, SLIDE
 
 ROWS = [
     {"name": "idle", "share": 0.7, "speed": "900 rpm", "power": {"alternator": "0.5 kW"}},
@@ -31,7 +33,7 @@ def test_rows_and_curves_meet(found: bd.Result) -> None:
     dataset = found.dataset
     assert dataset.row.values.tolist() == ["idle", "fast"]
     np.testing.assert_allclose(dataset.speed.values[[0, -1]] * 30.0 / np.pi, [900.0, 3000.0])
-    for name in ("span_tension", "hub_load", "slip_safety", "peak_tension"):
+    for name in ("span_tension", "hub_load", "slip_safety", "peak_tension", "tensioner_position"):
         np.testing.assert_allclose(dataset[f"{name}_over_speed"].values[[0, -1]], dataset[name].values, rtol=1e-6)
     np.testing.assert_allclose(dataset.power.sel(pulley="alternator"), [-500.0, -1000.0], rtol=1e-6)
     assert (dataset.least_slip_safety <= dataset.slip_safety + 1e-9).where(dataset.slip_safety.notnull(), True).all()
@@ -48,6 +50,10 @@ def test_positions_of_the_tensioner_are_those_of_the_tensioner_sheet(found: bd.R
         assert float(one.state_tension) == pytest.approx(float(there.tension), rel=0.01)
         assert float(one.state_position) == pytest.approx(float(there.position), abs=3e-3)
         assert float(one.state_take_up) == pytest.approx(float(there.leverage), rel=0.01)
+    free = dataset.sel(state="free")
+    assert float(free.state_position) == pytest.approx(float(other.position.sel(state="free arm")))
+    assert [float(free[f"state_{name}"]) for name in ("tension", "hub_load")] == [0.0, 0.0]
+    assert float(free.state_spring) == pytest.approx(0.0, abs=1e-9)
 
 
 def test_belts_of_standard_length_stand_around_the_nominal_one(found: bd.Result) -> None:
@@ -102,6 +108,23 @@ def test_spans_are_checked_as_in_the_workshop() -> None:
     np.testing.assert_allclose(dataset.deflection, 0.016 * dataset.span_length)
     held = bd.sheet(example("alternator_drive"), points=2).dataset
     assert held.belt_state.values.tolist() == ["at rest"]
+
+
+def test_a_tensioner_at_its_stops_is_told() -> None:
+    """A slide of two equal spans between stops: T = (F - k q) / 2, at the load stop too; beyond, the belt is slack."""
+    progress, slide = list[Progress](), loads(SLIDE)
+    result = bd.sheet(slide, points=2, tolerance="20 mm", wear="2 mm", progress=progress.append)
+    assert progress == [Progress(0.0, 1.0, 0.0, 0, "equilibrium")]
+    found = result.dataset
+    load = found.sel(state="load")
+    assert float(load.state_position) == pytest.approx(-0.008)
+    assert float(load.state_tension) == pytest.approx(0.5 * (PRELOAD + 0.008 * RATE), rel=1e-3)
+    said = {text.split()[5]: text for text in result.warnings if "moves the tensioner of tail to its stop" in text}
+    assert said.keys() == {"replace", "max"}
+    assert f"with {float(found.state_tension.sel(state='max')):.4g} N" in said["max"]
+    assert "where the belt is slack" in said["replace"]
+    slack = found.sel(state="replace")
+    assert (float(slack.state_tension), float(slack.state_hub_load)) == (0.0, 0.0)
 
 
 def test_it_is_kept_in_a_file(found: bd.Result, tmp_path: Path) -> None:

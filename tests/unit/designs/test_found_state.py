@@ -1,11 +1,13 @@
 """Results of drives in steady running and at rest by name."""
 
+from types import SimpleNamespace
+
 import numpy as np
 import pytest
 
-from beltdyn.designs.found_state import Resting, Running
+from beltdyn.designs.found_state import Mode, Resting, Running
 from beltdyn.model import Drive, prepare
-from beltdyn.results import summarize
+from beltdyn.results import Run, summarize
 from beltdyn.state.equilibrium import equilibrium
 from beltdyn.state.staying import bring_to_stand
 from beltdyn.state.steady import steady_state
@@ -33,6 +35,38 @@ def test_modes_are_found_up_to_a_frequency(running: Running) -> None:
     assert frequencies.max() > 300.0
     few = modes(running.run.drive, about=running.run, count=4).dataset.sortby("mode").frequency.values
     np.testing.assert_allclose(frequencies[: few.size], few, rtol=1e-6)
+
+
+class Swinging(Running):
+    """A drive of which one mode swings in a span, or none; notes how many modes were looked for."""
+
+    def __init__(self, run: Run, number: int, total: int = 1000) -> None:
+        super().__init__(run)
+        self.number, self.total, self.counts = number, total, list[int]()
+
+    def _first(self, count: int) -> list[Mode]:
+        self.counts.append(count)
+        found = [
+            SimpleNamespace(number=k, frequency=float(k), kind="belt", span_share=[float(k == self.number), 0.0])
+            for k in range(1, min(count, self.total) + 1)
+        ]
+        return found[::-1]  # type: ignore[return-value]
+
+
+@pytest.mark.parametrize(("number", "largest"), [(5, 12), (13, 24), (100, 192), (300, 384), (500, 384)])
+def test_modes_are_looked_for_in_ever_larger_numbers(running: Running, number: int, largest: int) -> None:
+    """Up to more than 200 of them, or all that there are."""
+    state = Swinging(running.run, number)
+    mode = state._mode_of_span("driver-driven")
+    assert (None if mode is None else mode.number) == (number if number <= largest else None)
+    assert state.counts == [count for count in (12, 24, 48, 96, 192, 384) if count <= largest]
+    state = Swinging(running.run, number)
+    frequencies, kinds = state.modes_up_to(number - 0.5)
+    assert len(frequencies) == len(kinds) == largest
+    few = Swinging(running.run, number=0, total=30)
+    assert few._mode_of_span("driver-driven") is None
+    assert len(few.modes_up_to(1e3)[0]) == 30
+    assert few.counts == [12, 24, 48, 12, 24, 48]
 
 
 def test_results_of_steady_running(running: Running) -> None:

@@ -7,11 +7,121 @@ import numpy as np
 import pytest
 
 import beltdyn as bd
+from beltdyn.designs.line_sheet import RESISTANCES
 from beltdyn.errors import ModelError
-from beltdyn.model import example
+from beltdyn.model import Drive, example
 from beltdyn.show.sheet import as_text, sheet
+from tests.unit.model.test_web import line
 
 TASKS = Path(__file__).parents[3] / "docs" / "tasks"
+
+
+GRAVITY, BELT, GOODS, FRICTION, FACTOR, RADIUS = 9.81, 3.0, 12.0, 0.03, 1.2, np.array([0.15, 0.12])
+HEAD: dict[str, Any] = {"name": "head", "center": [0.0, 1.0], "radius": RADIUS[0], "inertia": 0.5}
+MOTOR = {"kind": "motor", "breakdown_torque": 150.0, "breakdown_slip": 0.2}
+
+
+def conveyor(mirrored: bool, *, weight: float = 3000.0, head: dict[str, Any] | None = None) -> Drive:
+    """A conveyor of 8 m that lifts goods by 1 m; mirrored it runs against the order of its pulleys."""
+    sense, (upper, lower) = (-1.0 if mirrored else 1.0), (["tail", "head"], ["head", "tail"])[:: -1 if mirrored else 1]
+    idlers = {"kind": "idlers", "friction": FRICTION, "secondary_factor": FACTOR, "resistance": 2.0, "linear": 5.0}
+    stiffness = {"axial_stiffness": 4e5, "bending_stiffness": 0.1, "mass_per_length": BELT}
+    held = {"pulley": "tail", "direction": [sense, 0.0]}
+    return Drive(
+        gravity=[0.0, -GRAVITY],
+        belt={"width": 0.3, "thickness": 0.005, "installed_tension": None if weight else 1500.0} | stiffness,
+        pulley=[
+            HEAD | (head or {"speed": 4.0 * sense}),
+            {"name": "tail", "center": [8.0 * sense, 0.0], "radius": RADIUS[1], "inertia": 0.3, "mass": 20.0},
+        ],
+        tensioner=[held | ({"kind": "sliding", "mass": 200.0, "preload": weight} if weight else {"kind": "fixed"})],
+        support=[
+            idlers | {"span": upper, "spacing": 1.0, "idler_mass": 5.0},
+            idlers | {"span": lower, "spacing": 2.0, "idler_mass": 6.0},
+        ],
+        goods=[{"span": upper, "mass_per_length": GOODS}],
+        contact={"friction": 0.35},
+        simulation={"duration": 1.0},
+        steady={"force_tolerance": 0.5},
+    )
+
+
+@pytest.mark.parametrize("mirrored", [False, True])
+@pytest.mark.parametrize("weight", [3000.0, 0.0])
+def test_strands_and_starts_of_a_conveyor_balance(mirrored: bool, weight: float) -> None:
+    """Resistances by hand, those against the pull to 1 %, and the masses that a start moves."""
+    result = bd.sheet(conveyor(mirrored, weight=weight), acceleration="4 rad/s^2")
+    found, names = result.dataset.isel(row=0), ["head-tail", "tail-head"]
+    upper, lower = (found.sel(span=name) for name in (names if mirrored else names[::-1]))
+    length, speed = float(upper.span_length), 4.0 * RADIUS[0]
+    across, rising = GRAVITY * np.sqrt(1.0 - (1.0 / length) ** 2), GRAVITY * float(upper.goods_resistance)
+    for one, goods, rotating in ((upper, GOODS, 5.0), (lower, 0.0, 3.0)):
+        by_weight = FRICTION * length * (GRAVITY * rotating + across * (BELT + goods))
+        np.testing.assert_allclose(one.main_resistance, by_weight + length * (2.0 + 5.0 * speed), rtol=2e-3)
+        np.testing.assert_allclose(one.secondary_resistance, (FACTOR - 1.0) * by_weight, rtol=2e-3)
+    assert rising > 0.0
+    assert float(upper.slope_resistance / upper.goods_resistance) == pytest.approx(BELT / GOODS, rel=1e-9)
+    total = found[list(RESISTANCES)].to_dataarray().sum("variable")
+    pull = float((found.tension_before - found.tension_after).sel(pulley="head"))
+    assert float(found.running_pull) == pytest.approx(pull)
+    np.testing.assert_allclose(found.span_pull, total, atol=0.01 * pull)
+    around_tail = BELT * GRAVITY * 2.0 * RADIUS[1]  # which the belt rises there, too
+    assert pull == pytest.approx(float(total.sum()) + around_tail, rel=3e-3)
+    lift = float((found.slope_resistance + found.goods_resistance).sum())
+    assert float(found.holdback_torque) == pytest.approx(lift * RADIUS[0], rel=1e-3)
+
+    acceleration, tail = 4.0 * RADIUS[0], 0.3 / RADIUS[1] ** 2
+    moved = BELT * float(found.belt_length) + length * (GOODS + 5.0 + 3.0) + tail
+    assert float(found.moved_mass) == pytest.approx(moved, rel=1e-3)
+    assert float(found.acceleration) == pytest.approx(acceleration, rel=1e-3)
+    assert float(found.start_pull - found.running_pull) == pytest.approx(moved * acceleration, rel=2e-3)
+    ahead = found.start_slack_tension - found.tension_after
+    if weight:  # on the tail drum, where half of its own inertia counts to either strand
+        behind = BELT * 0.5 * float(found.belt_length) + 3.0 * length + 0.5 * tail
+        assert float(ahead.sel(pulley="head")) == pytest.approx(-behind * acceleration, rel=0.02)
+    assert (float(found.start_stretch) == pytest.approx(float(found.running_stretch), rel=1e-3)) is not bool(weight)
+    wrap, driven = float(found.wrap_angle.sel(pulley="head")), found.sel(pulley="head")
+    grip = np.expm1(np.array([0.7, 1.0, 1.3]) * 0.35 * wrap)
+    np.testing.assert_allclose(driven.least_slack_tension, pull / grip + BELT * speed**2, rtol=1e-4)
+    assert float(driven.least_start_slack_tension) == pytest.approx(float(found.start_pull) / grip[1], rel=1e-6)
+
+
+def test_a_mirrored_conveyor_has_the_same_sheet() -> None:
+    """It runs against the order of its pulleys; a motor starts it by what it has beyond the pull."""
+    head = {"load": [MOTOR | {"synchronous_speed": 5.0}]}, {"load": [MOTOR | {"synchronous_speed": -5.0}]}
+    one, other = (bd.sheet(conveyor(mirrored, head=head[mirrored])).dataset.isel(row=0) for mirrored in (False, True))
+    assert (float(one.running_sense), float(other.running_sense)) == (1.0, -1.0)
+    for name, values in one.data_vars.items():
+        if name in ("running_sense", "hub_direction", "pulley_speed", "shaft_torque", "center") or not values.size:
+            continue
+        same = other[name].values[::-1] if "span" in values.dims else other[name].values
+        np.testing.assert_allclose(values, same, rtol=3e-3, atol=1e-6, err_msg=str(name))
+    np.testing.assert_allclose(one.shaft_torque, -other.shaft_torque, rtol=1e-3, atol=1e-3)
+    radius = RADIUS[0]
+    gain = (150.0 / radius - float(one.running_pull)) / (float(one.moved_mass) + 0.5 / radius**2)
+    assert float(one.acceleration) == pytest.approx(gain, rel=2e-3)
+
+
+def test_conveyors_are_warned_of_slip_and_sag() -> None:
+    """Neither with twice the weight; a motor that has nothing beyond its pull starts nothing."""
+    loose, tight = (bd.sheet(conveyor(False, weight=weight), acceleration="40 rad/s^2") for weight in (800.0, 30000.0))
+    for words in ("head slips in starts at operating point 1", "of the idler spacing in the span tail-head"):
+        assert any(words in text for text in loose.warnings)
+        assert not any(words in text for text in tight.warnings)
+    needed, slack = (loose.dataset[name][0, 0] for name in ("least_start_slack_tension", "start_slack_tension"))
+    assert float(slack) < float(needed)
+    sag = loose.dataset.sag[0] * loose.dataset.least_span_tension[0]
+    np.testing.assert_allclose(sag, 0.01 * loose.dataset.least_tension_for_sag[0], rtol=1e-9)
+
+
+def test_strains_of_a_web_are_those_of_its_tensions() -> None:
+    """And speeds those of its strains: the same belt passes everywhere."""
+    web = line(steady={"force_tolerance": 0.5})
+    found = bd.sheet(web).dataset.isel(row=0)
+    np.testing.assert_allclose(found.span_strain, found.span_tension / web.belt.axial_stiffness, rtol=1e-6)
+    stretch = 1.0 + found.span_strain.values
+    np.testing.assert_allclose(found.draw, stretch / stretch[-1] - 1.0, atol=1e-6)
+    assert float(found.draw.values.max()) > 1e-4
 
 
 @pytest.mark.slow

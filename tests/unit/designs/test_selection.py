@@ -8,7 +8,9 @@ from typing import Any
 import numpy as np
 import pytest
 
-from beltdyn.designs.selection import DIAMETERS, Proposal, select
+from beltdyn.designs import selection
+from beltdyn.designs.proposal import Task
+from beltdyn.designs.selection import DIAMETERS, Proposal, _pairs, select
 from beltdyn.errors import ModelError
 from beltdyn.model import install, loads, prepare, read_catalogue
 from beltdyn.model.installation import RUN_IN
@@ -51,6 +53,57 @@ def test_one_belt_less_would_not_do(found: tuple[Proposal, ...]) -> None:
         belt = one.drive.rated_belt
         assert isinstance(belt, RatedBelt)
         assert one.belts == 1 or one.utilization * belt.factor(one.belts, 2) > belt.factor(one.belts - 1, 2)
+
+
+def test_diameters_are_preferred_numbers() -> None:
+    """Those of the series R40 of ISO 3."""
+    series = (
+        *(100, 106, 112, 118, 125, 132, 140, 150, 160, 170, 180, 190, 200, 212, 224, 236, 250, 265, 280, 300, 315),
+        *(335, 355, 375, 400, 425, 450, 475, 500, 530, 560, 600, 630, 670, 710, 750, 800, 850, 900, 950),
+    )
+    preferred = np.outer([1e-4, 1e-3, 1e-2], series)
+    assert all(np.isclose(preferred, diameter, rtol=1e-9).any() for diameter in DIAMETERS)
+    assert list(DIAMETERS) == sorted(set(DIAMETERS))
+
+
+def test_there_are_five_proposals_by_default() -> None:
+    assert len(select(**TASK)) == 5
+
+
+def test_a_profile_comes_twice_where_there_is_room() -> None:
+    assert len(select(**TASK, profiles="SPA", count=5)) == 2
+
+
+@pytest.mark.parametrize("offset", [0.0, 2e-3, 8e-3])
+def test_pulleys_have_the_nearest_ratio_of_their_tension_lines(offset: float) -> None:
+    """Which lie outside the diameters of ribbed pulleys by the pitch offset."""
+    entry = read_catalogue()["PK"].replace(pitch_offset=offset)
+    for speed in np.linspace(11.0, 60.0, 20):
+        task = Task(1e3, speed, 10.0, 1.0, None, (np.inf, np.inf), 0.5, 1)
+        pairs = list(_pairs(entry, task))
+        assert pairs
+        for pair in pairs:
+            small, large = (2.0 * radius for radius in pair.radii)
+            assert (small, large) == pytest.approx((pair.small + 2.0 * offset, pair.large + 2.0 * offset))
+            errors = np.abs((np.array(DIAMETERS) + 2.0 * offset) / small - 0.1 * speed)
+            assert abs(large / small - 0.1 * speed) == pytest.approx(errors.min())
+
+
+def test_the_inertia_of_a_pulley_is_less_than_that_of_a_solid_one() -> None:
+    for one in select(**TASK, count=3):
+        solid = 0.5 * pi * 7850.0 * max(one.face_width, 0.02) * (0.5 * one.driven_diameter) ** 4
+        assert 0.05 * solid < one.drive.pulleys[1].inertia < solid
+
+
+@pytest.mark.parametrize(("key", "missing"), [("lengths", "standard lengths"), ("rating", "rating")])
+def test_a_profile_that_lacks_its_lengths_or_its_rating_says_which(
+    monkeypatch: pytest.MonkeyPatch, key: str, missing: str
+) -> None:
+    known = read_catalogue()
+    changed = known | {"SPA": known["SPA"].replace(**{key: () if key == "lengths" else None})}
+    monkeypatch.setattr(selection, "read_catalogue", lambda _: changed)
+    with pytest.raises(ModelError, match=f'profile "SPA" has no {missing}'):
+        select(**TASK, profiles="SPA")
 
 
 @pytest.mark.parametrize("profiles", ["SPA", "SPB", "PK", "PL", "B"])

@@ -1,11 +1,16 @@
 """Monte Carlo on tolerances against the spread by derivatives."""
 
+from typing import Any
+
+import numpy as np
 import pytest
 
+from beltdyn.designs import sensitivity as module
 from beltdyn.designs.sensitivity import require_points, sensitivity
 from beltdyn.errors import ModelError
 from beltdyn.model import Drive, dumps, loads
 from beltdyn.results import Result
+from beltdyn.solvers.run_progress import Progress
 from validation.published.cases import better, loaded_two_pulley
 
 COUNT = 32
@@ -42,6 +47,30 @@ def test_a_hub_carries_the_tension_twice(found: Result) -> None:
     """Straight spans: dH = 2 dT; friction takes no part in it."""
     spread = float(found.dataset.spread.sel(result="hub_load[driven]"))
     assert spread == pytest.approx(2.0 * 12.0, rel=0.02)
+
+
+def test_points_at_rest_scatter_as_their_number_does(toleranced: Drive) -> None:
+    """The tension is that which is asked for, which scatters by half a tolerance, and hubs carry it twice."""
+    progress, count = list[Progress](), 4
+    options: dict[str, Any] = {"of": "tension, hub_load[driven]", "numbers": "belt.installed_tension", "about": "rest"}
+    result = sensitivity(toleranced, sobol=count, progress=progress.append, **options)
+    found = result.dataset
+    assert found.tolerance.sel(number="belt.installed_tension") == pytest.approx(12.0)
+    spreads = found.spread_of_points.values
+    assert spreads[1] / spreads[0] == pytest.approx(2.0, rel=1e-3)
+    assert spreads[0] == pytest.approx(12.0, rel=0.3)
+    assert found.mean_of_points.values[0] == pytest.approx(600.0, abs=0.3 * 12.0)
+    assert not result.warnings
+    expected = [Progress(done, float(count), 0.0, done, "operating points") for done in range(1, count + 1)]
+    assert [one for one in progress if one.duration == count] == expected
+
+
+def test_points_that_fail_are_counted(toleranced: Drive, monkeypatch: pytest.MonkeyPatch) -> None:
+    results = np.array([[590.0], [610.0]])
+    monkeypatch.setattr(module, "results_at_points", lambda *_, **__: (results, ["slip", "the belt slips"]))
+    found = sensitivity(toleranced, of="tension", numbers="belt.installed_tension", about="rest", sobol=4)
+    assert found.warnings == ["2 of 4 points failed. The last one: the belt slips"]
+    assert float(found.dataset.spread_of_points[0]) == pytest.approx(2.0 * np.sqrt(200.0))
 
 
 def test_points_need_tolerances_and_a_power_of_two(toleranced: Drive) -> None:

@@ -7,7 +7,9 @@ import subprocess
 import sys
 import time
 from collections.abc import Mapping
+from itertools import pairwise
 from pathlib import Path
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -16,6 +18,7 @@ from beltdyn.designs import point_work, study_table
 from beltdyn.designs.point_work import Outcome
 from beltdyn.designs.processes import ThisProcess
 from beltdyn.designs.study import study
+from beltdyn.designs.study_plan import plan_of
 from beltdyn.designs.study_table import StudyTable
 from beltdyn.errors import ModelError
 from beltdyn.model import Drive, ParameterStudy, dumps
@@ -393,3 +396,98 @@ def test_modes_and_steady_running_are_studied_alike(drive: Drive) -> None:
         2.0 * steady.dataset["hub_load[driven]"].values[0],
         rel=0.1,  # but for the centrifugal tension
     )
+
+
+def test_a_duty_table_gives_no_number_that_varies(drive: Drive, tmp_path: Path) -> None:
+    """Before anything is computed."""
+    table, varied = tmp_path / "duty.csv", {"path": "pulley[1].speed.value", "values": [10.0, 20.0]}
+    table.write_text("share [%], speed [rpm]\n50, 100\n50, 200\n", encoding="utf-8")
+    wanted = ParameterStudy(analysis="duty", options={"table": str(table)}, number=[varied])
+    with pytest.raises(ModelError, match=r'the column "speed" gives the number "pulley\[1\]\.speed\.value"'):
+        study(wanted, drive, jobs=1)
+
+
+def test_progress_tells_how_long_a_study_has_taken(study_file: Path) -> None:
+    """From its begin, in order; no longer than since then."""
+    text = study_file.read_text(encoding="utf-8")
+    study_file.write_text(text.replace("[0.081, 0.0815, 0.08]", "[0.081]"), encoding="utf-8")
+    progress, begun = list[tuple[Progress, float]](), time.perf_counter()
+    study(study_file, jobs=1, progress=lambda told: progress.append((told, time.perf_counter() - begun)))
+    points = [(told, since) for told, since in progress if told.phase == "points"]
+    done = [told.time for told, _ in points]
+    assert done == sorted(done)
+    assert (done[-1], points[-1][0].duration) == (3.0, 3.0)
+    assert all(0.0 <= told.elapsed <= since for told, since in points)
+    assert all(earlier[0].elapsed <= later[0].elapsed for earlier, later in pairwise(points))
+
+
+def test_rows_are_added_and_begin_anew_with_columns_that_come_later(
+    drive: Drive, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Where the last writing was long ago, the result file knows of all of them at once; its lock goes at the end."""
+    given = ParameterStudy(analysis="equilibrium", number=[{"path": "belt.width", "values": "10, 12, 14, 16 mm"}])
+    output, table = tmp_path / "s.nc", tmp_path / "s.csv"
+
+    def outcome(point: int, **values: float) -> Outcome:
+        return Outcome(point, values, "", "", 0.1)
+
+    with StudyTable(given, drive, plan_of(given, drive, tmp_path), output) as rows:
+        rows.take([outcome(0, tension=1.0)], {"tension": "N"})
+        first = table.stat().st_ino
+        rows.take([outcome(1, tension=2.0)], {"tension": "N"})
+        assert table.stat().st_ino == first
+        assert open_result(output).dataset.attrs["done"] == 1
+        monkeypatch.setattr(study_table, "_OFTEN", 0.0)
+        rows.take([outcome(2, tension=3.0, belt_length=1.2)], {"tension": "N", "belt_length": "m"})
+        rows._pause = 0.0
+        rows.take([outcome(3, tension=4.0, belt_length=1.3)], {"tension": "N", "belt_length": "m"})
+        assert open_result(output).dataset.attrs["done"] == 4
+        assert list(tmp_path.glob(".*lock"))
+    assert not list(tmp_path.glob(".*lock"))
+    found = rows_of(table)
+    assert [row["tension [N]"] for row in found] == ["1.0", "2.0", "3.0", "4.0"]
+    assert [row["belt_length [m]"] for row in found] == ["", "", "1.2", "1.3"]
+
+
+def test_any_file_is_overwritten_where_that_is_wished(drive: Drive, tmp_path: Path) -> None:
+    given = ParameterStudy(analysis="equilibrium", number=[{"path": "belt.width", "values": "10, 12 mm"}])
+    plan, output = plan_of(given, drive, tmp_path), tmp_path / "s.nc"
+    output.write_text("of others", encoding="utf-8")
+    with pytest.raises(ModelError, match="overwrite"):
+        StudyTable(given, drive, plan, output)
+    assert output.read_text(encoding="utf-8") == "of others"
+    with StudyTable(given, drive, plan, output, overwrite=True) as rows:
+        rows.take([Outcome(0, {"tension": 1.0}, "", "", 0.1)], {"tension": "N"})
+    assert open_result(output).kind == "study"
+
+
+@pytest.mark.parametrize(("seconds", "pause"), [(0.01, 2.0), (0.5, 10.0), (3.0, 60.0)])
+def test_writing_the_result_file_takes_a_twentieth_of_the_time(
+    drive: Drive, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, seconds: float, pause: float
+) -> None:
+    """And happens every two seconds at most."""
+    clock = iter(np.arange(0.0, 1000.0, seconds))
+    monkeypatch.setattr(study_table, "time", SimpleNamespace(perf_counter=lambda: next(clock)))
+    given = ParameterStudy(analysis="equilibrium", number=[{"path": "belt.width", "values": "10, 12 mm"}])
+    with StudyTable(given, drive, plan_of(given, drive, tmp_path), tmp_path / "s.nc") as rows:
+        rows.take([Outcome(0, {"tension": 1.0}, "", "", 0.1)], {"tension": "N"})
+        assert rows._pause == pytest.approx(pause)
+
+
+@pytest.mark.parametrize("failing", [0, 1, 2])
+def test_results_without_a_value_at_any_point_are_named(drive: Drive, tmp_path: Path, failing: int) -> None:
+    """Six of them, and how many more; none where all points failed."""
+    given = ParameterStudy(analysis="equilibrium", number=[{"path": "belt.width", "values": "10, 12 mm"}])
+    names = [f"result_{number}" for number in range(9)]
+    with StudyTable(given, drive, plan_of(given, drive, tmp_path), None) as rows:
+        for point in range(2):
+            values = dict.fromkeys(names, np.nan) | {"result_8": 1.0}
+            failed = point < failing
+            rows.take([Outcome(point, {} if failed else values, "slack" if failed else "", "", 0.1)],
+                      dict.fromkeys(names, "N"))  # fmt: skip
+    told = [text for text in rows.result().warnings if text.startswith("no value at any point: ")]
+    named = f"{', '.join(names[:6])} and 2 more."
+    assert told == ([] if failing == 2 else [f"no value at any point: {named}"])
+    assert (f"{failing} of 2 points failed." in rows.result().warnings) is (failing > 0)
+    where = ["", "point 1", "point 1 and 1 more"][failing]
+    assert (f"failed at {where}: slack" in rows.result().warnings) is (failing > 0)

@@ -73,6 +73,8 @@ def test_what_the_belt_has_no_data_for_says_which(result: str, needed: str, driv
 def test_reductions_that_are_none_are_told(text: str) -> None:
     with pytest.raises(ModelError, match="is not a result"):
         request_of(text)
+    with pytest.raises(ModelError, match='Did you mean "largest"'):
+        request_of("larges(span_tension)")
 
 
 def of_axis(drive: Drive, axis: str) -> Result:
@@ -119,6 +121,16 @@ def test_what_other_drives_have_is_absent(run: Run, wanted: str, said: str) -> N
     assert list(found.values) == ["efficiency"]
     assert said in found.absent[0]
     assert not found.unknown
+
+
+@pytest.mark.parametrize("has_points", [True, False])
+def test_other_drives_have_more_at_operating_points(drive: Drive, has_points: bool) -> None:
+    """Results of operating points, which note along which axes, may have loads of teeth; others never have them."""
+    result = of_axis(drive, "slip")
+    result.dataset.attrs |= {"axes": "slip"} if has_points else {}
+    found = columns_of(result, ["tooth_load"])
+    assert bool(found.absent) is has_points
+    assert bool(found.unknown) is not has_points
 
 
 @pytest.mark.parametrize(

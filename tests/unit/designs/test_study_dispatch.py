@@ -90,6 +90,45 @@ def test_a_chunk_that_cannot_be_passed_on_loses_one_point(tiny_work: Make) -> No
     assert widths[failed.point] == 0.013
 
 
+def test_what_came_back_before_an_interruption_is_kept(tiny_work: Make) -> None:
+    """Of chunks that are done, not of those that were cancelled or failed."""
+
+    class Interrupted:
+        slots, closed = 2, list[bool]()
+
+        def __init__(self) -> None:
+            self.inner, self.count = ThisProcess(), 0
+
+        def submit(self, function: Callable[..., Any], *arguments: Any) -> Future[Any]:
+            self.count += 1
+            future: Future[Any] = Future()
+            if self.count == 4:
+                raise KeyboardInterrupt
+            if self.count == 2:
+                future.cancel()
+            elif self.count == 3:
+                future.set_exception(SimulationError("lost"))
+            else:
+                future = self.inner.submit(function, *arguments)
+            return future
+
+        def close(self, *, abandon: bool = False) -> None:
+            self.closed.append(abandon)
+
+    workers, found = Interrupted(), list[Outcome]()
+    dispatch = Dispatch(
+        workers,  # type: ignore[arg-type]
+        tiny_work(),
+        lambda point: {"belt.width": 0.01 + 0.001 * point},
+        lambda outcomes, units: found.extend(outcomes),
+        lambda: None,
+    )
+    with pytest.raises(KeyboardInterrupt):
+        dispatch.run(range(8))
+    assert [one.point for one in found] == [0]
+    assert workers.closed == [True]
+
+
 @pytest.mark.slow
 def test_thousands_of_tiny_points_come_back_from_processes(tiny_work: Make) -> None:
     widths = np.linspace(0.0101, 0.02, 3000).tolist()

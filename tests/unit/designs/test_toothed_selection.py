@@ -6,9 +6,9 @@ from typing import Any
 import numpy as np
 import pytest
 
-from beltdyn.designs.proposal import Proposal
+from beltdyn.designs.proposal import Proposal, Task
 from beltdyn.designs.selection import select
-from beltdyn.designs.toothed_selection import TEETH
+from beltdyn.designs.toothed_selection import TEETH, _pairs
 from beltdyn.errors import ModelError
 from beltdyn.model import install, prepare, read_catalogue
 from beltdyn.model.advice import advise
@@ -23,6 +23,12 @@ TASK: dict[str, Any] = {"power": "3 kW", "speed": "1450 rpm", "driven_speed": "7
 @pytest.fixture(scope="module")
 def found() -> tuple[Proposal, ...]:
     return select(**TASK, toothed=True, largest_driven="250 mm", count=8)
+
+
+def test_numbers_of_teeth_ascend_and_large_ones_are_even() -> None:
+    """As makers stock them, but for 45."""
+    assert list(TEETH) == sorted(set(TEETH))
+    assert [teeth for teeth in TEETH if teeth > 30 and teeth % 2] == [45]
 
 
 def test_they_are_made_of_standard_parts_and_carry_the_power(found: tuple[Proposal, ...]) -> None:
@@ -43,6 +49,28 @@ def test_they_are_made_of_standard_parts_and_carry_the_power(found: tuple[Propos
         assert one.utilization <= 1.0
         radii = [0.5 * entry.toothing.pitch * z / pi for z in (driver, driven)]
         assert open_belt(one.distance, (radii[0], radii[1])).length == pytest.approx(belt * entry.toothing.pitch)
+        assert one.nominal_length == pytest.approx(belt * entry.toothing.pitch)
+        assert 0.7 <= one.distance / (2.0 * sum(radii)) <= 2.0
+
+
+def test_the_center_distance_lies_in_its_range() -> None:
+    for least, largest in ((0.3, 0.4), (0.5, 0.52)):
+        proposals = select(**TASK, toothed=True, distance=f"{least}..{largest} m", count=3)
+        assert all(least <= one.distance <= largest for one in proposals)
+
+
+def test_no_pulley_is_smaller_than_the_smallest_of_the_profile() -> None:
+    """All others with the ratio are tried."""
+    entry, task = read_catalogue()["HTD 8M"], Task(1e3, 20.0, 10.0, 1.0, None, (inf, inf), 0.03, 1)
+
+    def diameters(smallest: float | None) -> list[float]:
+        pairs = _pairs(entry.replace(smallest_diameter=smallest), task)
+        return [2.0 * pair.radii[0] - 2.0 * entry.pitch_offset for pair in pairs]
+
+    free = diameters(None)
+    assert min(free) < 0.03
+    for smallest in (0.06, 0.12):
+        assert diameters(smallest) == [one for one in free if one >= 0.999 * smallest]
 
 
 def test_the_next_narrower_belt_would_not_do(found: tuple[Proposal, ...]) -> None:

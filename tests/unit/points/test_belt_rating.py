@@ -8,7 +8,8 @@ import pytest
 from beltdyn.designs.named_results import names_of
 from beltdyn.errors import ModelError
 from beltdyn.model import Drive, example, loads
-from beltdyn.points.belt_rating import rating
+from beltdyn.model.rating import RatedBelt
+from beltdyn.points.belt_rating import _doubts, rating
 from beltdyn.results import Result, key_numbers
 from beltdyn.state.steady import steady_state
 
@@ -118,6 +119,35 @@ def test_a_pulley_below_the_smallest_is_outside_the_rating(fan: Drive) -> None:
     numbers = {one.key: one for one in key_numbers(steady_state(small))}
     assert numbers["largest_utilization"].value == np.inf
     assert numbers["largest_utilization"].passes is False
+
+
+@pytest.mark.parametrize("changes", [{}, {"belt.profile": "PK", "belt.ribs": 24}])
+def test_rated_power_is_the_product_of_its_factors(fan: Drive, changes: dict[str, object]) -> None:
+    """V-belts of a set share the load unequally, the ribs of a belt do not."""
+    dataset = rating(fan.with_(changes | {"pulley[fan].torque": -100.0})).dataset
+    factors = dataset.belts * dataset.belts_factor * dataset.pulleys_factor * dataset.length_factor
+    power = factors * dataset.wrap_factor * (dataset.basic_power + dataset.ratio_power)
+    np.testing.assert_allclose(dataset.rated_power, power, rtol=1e-12)
+    assert (float(dataset.belts_factor) == 1.0) is bool(changes)
+
+
+def test_what_takes_all_of_the_rated_pull_is_told(fan: Drive) -> None:
+    """Within the range of speeds: bending and centrifugal force, or of a toothed belt an arc without a tooth."""
+    for drive, wrap, heavier, cause in (
+        (fan, pi, 100.0, "since bending and centrifugal force take all of the rated pull"),
+        (loads(TOOTHED), 0.01, 1.0, "since no tooth is in mesh, or centrifugal force takes all of the rated pull"),
+    ):
+        belt, loaded = drive.rated_belt, np.ones(len(drive.pulleys), dtype=bool)
+        assert belt is not None
+        diameters, wraps = 2.0 * np.array(drive.radii), np.full(loaded.size, wrap)
+        carried = belt.on(diameters, np.full(loaded.size, pi), 30.0, loaded)
+        assert not [text for text in _doubts(drive, belt, carried, 30.0) if "rated power is zero" in text]
+        if isinstance(belt, RatedBelt):
+            belt = belt._replace(rating=belt.rating.replace(centrifugal=heavier * belt.rating.centrifugal))
+        spent = belt.on(diameters, wraps, 30.0, loaded)
+        (warning,) = (text for text in _doubts(drive, belt, spent, 30.0) if "rated power is zero" in text)
+        assert warning.startswith("motor")
+        assert cause in warning
 
 
 def test_cogged_belts_say_that_they_are_rated_as_wrapped_ones(fan: Drive) -> None:

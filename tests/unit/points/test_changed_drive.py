@@ -91,17 +91,20 @@ def test_its_sense_and_an_instant(drive: Drive) -> None:
 
 
 def test_a_web_line_keeps_its_draws_at_another_speed(drive: Drive) -> None:
-    first, second = ({"name": name, "center": [x, 0.0], "radius": 0.05} for name, x in (("a", 0.5), ("b", 1.0)))
+    centers = {"a": [0.4, 0.0], "b": [0.8, -0.1], "c": [1.2, 0.0]}
+    first, second, idler = ({"name": name, "center": center, "radius": 0.05} for name, center in centers.items())
     line = Drive(
         belt={"axial_stiffness": 2e4, "bending_stiffness": 1e-4, "mass_per_length": 0.05, "thickness": 1e-4}
         | {"width": 0.2},
         unwinder={"point": [0.0, 0.3], "tension": 100.0},
-        pulley=[first | {"speed": 40.0}, second | {"speed": 40.04}],
+        pulley=[first | {"speed": 40.0}, second | {"speed": 40.04}, idler | {"inertia": 1e-3}],
         winder={"point": [1.5, 0.3], "tension": 100.0},
         contact={"friction": 0.4},
         simulation={"duration": 1.0},
     )
-    assert [one.driven_speed() for one in at_speed(line, 1, 20.02).pulleys] == pytest.approx([20.0, 20.02], rel=1e-12)
+    for number, speed, expected in ((1, 20.02, [20.0, 20.02]), (2, 20.0, [40.0, 40.04, 20.0])):
+        turned = [one.driven_speed() for one in at_speed(line, number, speed).pulleys if one.speed is not None]
+        assert turned == pytest.approx(expected, rel=1e-12)
     assert at_speed(drive, 0, 20.0).pulleys[1] == drive.pulleys[1]
 
 

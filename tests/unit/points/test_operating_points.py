@@ -1,9 +1,10 @@
 """The order in which the points of a table are found, the way from one to the next, and what goes wrong at some."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from functools import partial
 from importlib import import_module
 from pathlib import Path
+from types import SimpleNamespace
 from typing import Any
 
 import numpy as np
@@ -14,9 +15,12 @@ from beltdyn.model import Drive, example
 from beltdyn.points import operating_points
 from beltdyn.points.changed_drive import at_speed, held_at
 from beltdyn.points.duty import duty
-from beltdyn.points.operating_points import OperatingPoints, load_factors, operating_map, serpentine
+from beltdyn.points.operating_points import OperatingPoints, load_factors, operating_map, serpentine, values_by_name
 from beltdyn.points.traction import traction
 from beltdyn.results import Result, Run, Variable
+from beltdyn.results.summary import means_of
+from beltdyn.results.tooth_loads import tooth_loads
+from beltdyn.solvers.run_progress import Progress
 from beltdyn.state.steady import steady_state
 from beltdyn.vibration.campbell import campbell
 from beltdyn.vibration.response import response
@@ -62,6 +66,24 @@ def test_a_point_that_is_far_is_found_by_parts_of_the_way(
     assert table.arrays["failure"].tolist() == ["", "" if is_found else "too far to 18"]
 
 
+@pytest.mark.parametrize(("share", "is_found"), [(0.3, True), (0.0626, True), (0.0624, False)])
+def test_parts_of_the_way_are_halved_down_to_a_sixteenth(share: float, is_found: bool) -> None:
+    """A search that reaches a share of the way from the point found last."""
+    table = OperatingPoints("operating_map", example("two_pulley"), {})
+    table._near, table._near_at = SimpleNamespace(), (FIRST,)  # type: ignore[assignment]
+
+    def search(there: Sequence[float]) -> Run:
+        if abs(there[0] - table._near_at[0]) > share * SPAN:
+            raise ConvergenceError("too far")
+        return SimpleNamespace(at=there[0])  # type: ignore[return-value]
+
+    if is_found:
+        assert table._reach(search, np.array([FIRST + SPAN]), np.inf).at == FIRST + SPAN  # type: ignore[attr-defined]
+        return
+    with pytest.raises(ConvergenceError, match="too far"):
+        table._reach(search, np.array([FIRST + SPAN]), np.inf)
+
+
 def test_strides_are_no_longer_than_asked_for(monkeypatch: pytest.MonkeyPatch) -> None:
     drive, asked = held_at(better(two_pulley()), None), list[float]()
 
@@ -82,6 +104,54 @@ def test_tensioners_have_the_unit_of_their_motion() -> None:
     about = Variable(("tensioner",), "m or rad", "Position")
     table = OperatingPoints("operating_map", example("alternator_drive"), axes)
     assert (table._labelled(about).units, table._labelled(about).dims) == ("rad", ("speed", "tensioner"))
+    assert table._labelled(Variable(("tensioner",), "N", "Force")).units == "N"
+
+
+def test_points_are_counted_and_the_file_is_written_about_once_a_second(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Points of 0.3 s each: every fourth one writes, and leaving the table."""
+    clock, saved, progress = iter(np.arange(0.0, 100.0, 0.3)), list[int](), list[Progress]()
+    monkeypatch.setattr(operating_points, "time", SimpleNamespace(perf_counter=lambda: next(clock)))
+
+    class Counted(OperatingPoints):
+        def _find(self, *_: object) -> None:
+            pass
+
+        def _save(self) -> None:
+            saved.append(self._done)
+            super()._save()
+
+    axes = {"speed": (Variable(("speed",), "rad/s", "Speed"), np.arange(1.0, 11.0))}
+    with Counted("operating_map", example("two_pulley"), axes, progress=progress.append) as table:
+        table.each(lambda speed: table._drive, None)
+    assert saved == [4, 8, 10]
+    assert progress == [Progress(done, 10.0, 0.0, done, "operating points") for done in range(11)]
+
+
+def test_a_warning_of_many_points_names_the_worst_and_where_it_applies() -> None:
+    axes = {"load": (Variable(("load",), "1", "Load"), [0.1, 0.2, 0.3, 0.4, 0.5])}
+    table = OperatingPoints("operating_map", example("two_pulley"), axes)
+    for place, weight in ((1, 0.5), (2, 2.0), (4, 1.0)):
+        table._warn((place,), "slip", f"slip {weight:g}.", weight)
+    for place in (0, 2, 3):
+        table._warn((place,), "rest", "rest.")
+    table._warn((4,), "alone", "alone.", 1.0)
+    assert list(table._warnings()) == [
+        "at load 0.3: slip 2. This is the worst of 3 points, from load 0.2 to load 0.5.",
+        "at load 0.1: rest. The same applies at 2 more points, up to load 0.4.",
+        "at load 0.5: alone.",
+    ]
+
+
+def test_loads_of_teeth_are_found_where_some_are_wanted(monkeypatch: pytest.MonkeyPatch) -> None:
+    """They take further work, and belong to pulleys with teeth alone."""
+    run = steady_state(example("timing_drive"), force_tolerance=0.5)
+    means, loads = means_of(run), tooth_loads(run)
+    found = values_by_name(run, means, ["tooth_load"])
+    names = [one.name for one in run.drive.pulleys]
+    expected = dict.fromkeys(names, np.nan) | {one.name: one.largest for one in loads}
+    np.testing.assert_array_equal(found["tooth_load"], [expected[name] for name in names])
+    monkeypatch.setattr(operating_points, "tooth_loads", None)
+    assert "tooth_load" not in values_by_name(run, means, ["hub_load"])
 
 
 Analysis = Callable[[Drive, Path], Result]

@@ -7,7 +7,8 @@ import beltdyn as bd
 from beltdyn.errors import ModelError
 from beltdyn.model import Drive, example, prepare
 from beltdyn.points.changed_drive import at_instant
-from beltdyn.points.quasi_steady import QuasiSteady, torque_of, torques_between, torques_of
+from beltdyn.points.quasi_steady import QuasiSteady, Torques, torque_of, torques_between, torques_of
+from beltdyn.results.sag import weight_of_meter
 from beltdyn.state.installation import looked_at
 from beltdyn.state.staying import bring_to_stand
 
@@ -66,6 +67,32 @@ def test_acceleration_adds_the_torque_of_all_inertias(alternator: QuasiSteady) -
     np.testing.assert_allclose(tension[1:], others, rtol=1e-6)
 
 
+@pytest.mark.parametrize("speed", [0.0, 3.0])
+def test_hub_loads_carry_the_weight_of_the_belt(speed: float) -> None:
+    """The arcs, and the spans between, whatever their direction."""
+    drive = example("two_pulley")
+    belt = drive.belt.replace(mass_per_length=2.0)
+    heavy = steady_of(drive.replace(gravity=[-3.0, -9.0], belt=belt, pulley=drive.pulleys))
+    torque, meter = np.zeros((1, 2)), weight_of_meter(heavy.prepared, heavy.balance.tension)[0]
+    found = heavy.at(np.array([speed]), torque, np.zeros(1))
+    assert np.all(found.tension > 2.0 * heavy.prepared.belt.mass_per_length * speed**2)
+    carried = meter * float(heavy.rest.path.length)
+    np.testing.assert_allclose(
+        found.hub_force[0].sum(axis=0), carried, rtol=1e-3, atol=1e-3 * float(np.linalg.norm(carried))
+    )
+    points = heavy.rest.path.span_points
+    np.testing.assert_allclose(found.ends[0, :, 0] - found.ends[0, :, 1], (points[:, 1] - points[:, 0]) @ meter)
+
+
+def test_inertias_are_those_of_rims_and_all_that_turns_with_them() -> None:
+    drive = example("accessory_drive")
+    prepared = prepare(at_instant(drive, None))
+    inertia = steady_of(drive).inertia
+    for one, found in zip(prepared.pulleys, inertia, strict=True):
+        assert found == pytest.approx(one.inertia + float(np.sum([link.inertia for link in one.hub])))
+    assert any(one.hub for one in prepared.pulleys)
+
+
 def test_a_motor_finds_its_speed() -> None:
     steady = steady_of(example("fan_direct_start"))
     torques = torques_of(steady.drive, steady.driver)
@@ -73,6 +100,26 @@ def test_a_motor_finds_its_speed() -> None:
     motor = torque_of(steady.drive, steady.driver, speed / float(steady.prepared.path.radii[steady.driver]))
     found = steady.at(np.array([speed]), torques(speed)[None], np.zeros(1))
     assert found.torque[0, steady.driver] == pytest.approx(motor, rel=1e-3)
+
+
+def test_a_motor_that_would_not_start_its_load_carries_it_at_speed() -> None:
+    """A torque between those at standstill and at a fifth of the motor's speed; none beyond its breakdown."""
+    drive, kloss = example("fan_direct_start"), {"breakdown_torque": 300.0, "breakdown_slip": 0.15}
+    load = {"kind": "motor", "synchronous_speed": 150.0} | kloss
+    steady = steady_of(drive.replace(pulley=[drive.pulleys[0].replace(load=[load]), *drive.pulleys[1:]]))
+    (motor,) = steady.drive.pulleys[0].load
+    radii = np.asarray(steady.prepared.path.radii)
+    at = [torque_of(steady.drive, 0, share * motor.driven_speed) for share in (1e-3, 0.2)]
+    assert 0.0 < at[0] < at[1]
+
+    def taking(torque: float) -> Torques:
+        return lambda belt: np.array([0.0, -torque * radii[1] / radii[0]])
+
+    speed = steady.belt_speed(steady.drive, taking(0.5 * sum(at))) / radii[0]
+    assert torque_of(steady.drive, 0, speed) == pytest.approx(0.5 * sum(at), rel=0.05)  # bending takes 2 %
+    assert 0.5 * motor.driven_speed < speed < motor.driven_speed
+    with pytest.raises(ModelError, match="does not carry the loads between a fifth of"):
+        steady.belt_speed(steady.drive, taking(10.0 * at[1]))
 
 
 def test_torques_between_rows_are_straight_and_the_largest_of_equal_speed() -> None:

@@ -12,6 +12,7 @@ from beltdyn.errors import ModelError
 from beltdyn.model import Drive, load, loads, prepare
 from beltdyn.model.carrier import moved
 from beltdyn.points.tensioner_sheet import tensioner_sheet
+from beltdyn.solvers.run_progress import Progress
 
 RADIUS, CENTERS, PRELOAD, RATE = 0.05, 0.3, 800.0, 2e4
 
@@ -81,7 +82,10 @@ def test_a_slide_of_two_equal_pulleys(slide: Drive) -> None:
 
 def test_dry_friction_leaves_a_band(slide: Drive) -> None:
     """The belt gives way too: by k_b L per tension against the spring's k / 4."""
-    row = tensioner_sheet(slide, tolerance="3 mm", wear="0 mm").dataset.sel(state="nominal belt")
+    sheet = tensioner_sheet(slide, tolerance="3 mm", wear="0 mm").dataset
+    row, stops = sheet.sel(state="nominal belt"), sheet.sel(state=["upper stop", "lower stop"])
+    np.testing.assert_allclose(stops.position, [0.01, -0.008], atol=1e-9)
+    np.testing.assert_allclose(stops.tension, 0.5 * (PRELOAD - RATE * stops.position), rtol=2e-4)
     axial = slide.belt.axial_stiffness / float(row.belt_length)
     held = axial / (axial + 0.25 * RATE)
     assert float(row.tension - row.tension_after_tensioning) == pytest.approx(0.5 * 20.0 * held, rel=0.02)
@@ -123,7 +127,9 @@ def test_a_toothed_belt_stretches_and_does_not_wear_long() -> None:
 
 
 def test_what_a_designer_is_warned_of(slide: Drive, tmp_path: Path) -> None:
-    result = tensioner_sheet(slide, tolerance="24 mm", wear="10 %")
+    progress = list[Progress]()
+    result = tensioner_sheet(slide, tolerance="24 mm", wear="10 %", progress=progress.append)
+    assert progress == [Progress(0.0, 0.1, 0.0, 0, "equilibrium")]
     text = "\n".join(result.warnings)
     assert "worn belt: belt.length" in text
     assert "the shortest belt moves the tensioner of tail to its stop at -0.0" in text
