@@ -111,10 +111,14 @@ def test_a_report_is_printed_whole(browser: Any, reports: dict[str, Path], name:
     page.context.close()
 
 
-def test_a_drive_sheet_is_printed_on_one_page(browser: Any, reports: dict[str, Path]) -> None:
-    """Of seven pulleys and twenty operating points."""
+def test_a_drive_sheet_is_printed_with_its_drive_file(browser: Any, reports: dict[str, Path]) -> None:
+    """Of seven pulleys and twenty operating points: tables within the paper, in letters of 5 pt and more."""
     page = opened(browser, reports["sheet"], PAPER_WIDTH)
     page.emulate_media(media="print")
     assert page.evaluate(WIDER) == []
-    assert len(re.findall(rb"/Type\s*/Page\b", page.pdf(format="A4"))) == 1
+    sizes = page.locator("#tables td").evaluate_all("found => found.map(one => getComputedStyle(one).fontSize)")
+    assert min(float(size.removesuffix("px")) for size in sizes) >= 5.0 * 96 / 72
+    assert page.locator("#file").is_visible()
+    assert page.locator("#signatures").is_visible()
+    assert len(re.findall(rb"/Type\s*/Page\b", page.pdf(format="A4", prefer_css_page_size=True))) <= 7
     page.context.close()

@@ -61,6 +61,7 @@ from beltdyn.model.pulley import Cover, Pulley
 from beltdyn.model.rating import CordFatigue, Rating, RibFatigue
 from beltdyn.model.resolution import ERROR_LIMITS, Running, elements_needed, layer_lengths, mesh_errors, unresolved
 from beltdyn.model.rest_estimate import estimate_at_rest
+from beltdyn.model.sheet_head import SheetHead
 from beltdyn.model.simulation import Limits, Simulation, Steady
 from beltdyn.model.static_estimate import TensionerBalance
 from beltdyn.model.toml import dumps, example, json_schema, load, loads
@@ -125,6 +126,7 @@ __all__ = [
     "Running",
     "SCurve",
     "ServoMotor",
+    "SheetHead",
     "Simulation",
     "SlidingTensioner",
     "SpeedTrim",

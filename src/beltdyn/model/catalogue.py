@@ -91,6 +91,12 @@ class Entry(Part):
         ge=0,
         description="the height of the groove above the datum line, half of outside less datum diameter, in m",
     )
+    groove_spacing: Length | None = Field(
+        None, gt=0, description="the distance between the middles of two grooves of a pulley, in m"
+    )
+    groove_edge: Length | None = Field(
+        None, gt=0, description="the distance from the middle of the last groove to the side of the pulley, in m"
+    )
     smallest_diameter: Length | None = Field(None, gt=0, description="the smallest recommended pulley diameter, in m")
     largest_fleeting_angle: Angle | None = Field(
         None, gt=0, lt=pi / 2, description="the largest fleeting angle of a span at a pulley, in rad"
@@ -119,6 +125,12 @@ class Entry(Part):
         """What a profile that is sold by ribs is counted in: "belt" or "rib"."""
         return "belt" if self.is_v_belt else "rib"
 
+    def face_width(self, grooves: int) -> float | None:
+        """Face width of a pulley with so many grooves, (z - 1) e + 2 f, m; None where the grooves are unknown."""
+        if self.groove_spacing is None or self.groove_edge is None:
+            return None
+        return (grooves - 1) * self.groove_spacing + 2.0 * self.groove_edge
+
     @property
     def measured_stretch(self) -> float:
         """Stretch of the belt while its nominal length is measured, with half of the force in each strand."""
@@ -134,6 +146,12 @@ class Entry(Part):
             object.__setattr__(self, "lengths", tuple(one * self.toothing.pitch for one in self.tooth_counts))
         if self.tooth_rating is not None and (self.toothing is None or not self.toothing.largest_tooth_load):
             raise ValueError("tooth_rating needs toothing.largest_tooth_load. Give it, or omit tooth_rating")
+        return self
+
+    @model_validator(mode="after")
+    def _has_both_sizes_of_grooves(self) -> Self:
+        if (self.groove_spacing is None) != (self.groove_edge is None):
+            raise ValueError("groove_spacing and groove_edge give the face width together. Give both, or none")
         return self
 
     @model_validator(mode="before")

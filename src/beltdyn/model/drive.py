@@ -30,6 +30,7 @@ from beltdyn.model.pulley import Pulley, friction_on, refuse_functions
 from beltdyn.model.rating import RatedBelt
 from beltdyn.model.resolution import AXIS_FINENESS, FINENESS
 from beltdyn.model.routing import radii, span_names
+from beltdyn.model.sheet_head import SheetHead
 from beltdyn.model.simulation import Frame, Limits, Simulation, Steady, choose_frame, element_of
 from beltdyn.model.toothing import DISCRETE, RatedTeeth
 from beltdyn.model.web import Unwinder, Winder, check_rollers
@@ -47,8 +48,8 @@ class Drive(Part):
     """A belt drive, validated, with all derived values.
 
     The constructor's arguments are `belt`, `pulley` (a list of pulleys, counter-clockwise), `contact`, `tensioner`,
-    `end`, `support`, `goods` and `duty` (lists), `simulation`, `steady` and `limits`, each a part or a mapping of its
-    arguments, `gravity`, `rotation`, and `name` and `description`.
+    `end`, `support`, `goods` and `duty` (lists), `simulation`, `steady`, `limits` and `sheet`, each a part or a mapping
+    of its arguments, `gravity`, `rotation`, and `name` and `description`.
 
     The parts hold only the given values, from which copies (`replace`) and files are made. Derived values are
     attributes of the drive: `belt_length`, also if the tension is given instead; `path` and `centers`, with pulleys of
@@ -99,6 +100,9 @@ class Drive(Part):
     steady: Steady = Field(default_factory=Steady, description="the group [steady], the mesh of steady running")
     limits: Limits = Field(
         default_factory=Limits, description="the group [limits], limits of results for reports; none by default"
+    )
+    sheet: SheetHead = Field(
+        default_factory=SheetHead, description="the group [sheet], customer, position and order for sheets and reports"
     )
     rotation: Rotation = Field(
         "counter-clockwise",

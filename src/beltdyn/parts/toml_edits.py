@@ -16,6 +16,8 @@ Location = tuple[int | str, ...]
 _GROUP_WITHOUT_ROOM = re.compile(r"^([^#\n].*)\n(\[\[?[a-z_.]+\]\]?)$", re.MULTILINE)
 _GROUPS = ("load", "hub")
 """Nested lists of groups written as `[[pulley.load]]`; others are written inline."""
+_SINGLE_GROUPS = ("belt", "contact", "simulation", "limits", "sheet", "stretch_curve")
+"""Groups written in brackets; others are written inline."""
 
 
 class Edit(NamedTuple):
@@ -109,7 +111,7 @@ def _written(value: Any, key: str, inline: bool) -> Any:
             for one in value:
                 written.append(_table(one))
             return written
-    elif not inline and isinstance(value, dict) and key in ("belt", "contact", "simulation", "limits", "stretch_curve"):
+    elif not inline and isinstance(value, dict) and key in _SINGLE_GROUPS:
         return _table(value)
     return _inline(value)
 

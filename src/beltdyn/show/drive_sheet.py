@@ -1,6 +1,6 @@
 """The tables of a drive sheet."""
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -12,6 +12,7 @@ from beltdyn.parts.quantity import RPM
 from beltdyn.results import Result
 from beltdyn.results.schema import least_safeties, variable_of
 from beltdyn.show.line_sheet import line_sheet
+from beltdyn.show.parts_list import parts_list
 from beltdyn.show.sheet import TENSION_HEADINGS, Facts, Sheet, Table, safeties, safety_text, tension_columns
 
 if TYPE_CHECKING:
@@ -33,12 +34,12 @@ def drive_sheet(result: Result) -> Sheet:
     dataset = result.dataset
     if "tension_before" in dataset:
         return line_sheet(result)
-    parts: list[Table | Facts] = [Facts(tuple(_facts(dataset))), _pulleys(dataset)]
+    parts: list[Table | Facts] = [*parts_list(result.prepared), Facts(tuple(_facts(dataset))), _pulleys(dataset)]
     if "state" in dataset.dims:
         parts.append(_states(dataset))
     if "standard" in dataset.dims:
         parts.append(_belts(dataset))
-    parts += [_points(dataset), _by_name(dataset, "span"), _by_name(dataset, "pulley"), _spans(dataset)]
+    parts += [_points(dataset), *_span_tensions(dataset), *_hub_loads(dataset), _spans(dataset)]
     if "mode" in dataset.dims:
         parts.append(_modes(dataset))
     return Sheet(str(dataset.attrs["title"]), tuple(parts))
@@ -66,6 +67,7 @@ def _facts(dataset: "xr.Dataset") -> Iterable[tuple[str, str]]:
     if "required_tension" in dataset:
         least = zip(dataset["tension_formula"].values, dataset["required_tension"].values, strict=True)
         yield "least tension", listing([f"{tension:.4g} N ({name})" for name, tension in least])
+    yield "peak", "with acceleration and vibration"
     yield "cases", ", ".join(map(str, dataset["case"].values))
     factors = ", ".join(f"{one:.3g}" for one in dataset["friction"].values)
     yield "friction", f"{factors} times the coefficients below; the least slip safety is over all cases and these"
@@ -182,28 +184,41 @@ def _points(dataset: "xr.Dataset") -> Table:
     return Table("Operating points", headings, tuple(zip(*columns, strict=True)))
 
 
-def _by_name(dataset: "xr.Dataset", dim: str) -> Table:
-    """Each pulley or span in each operating point: hub load with direction and slip safety, or tension and peak."""
-    rows = []
-    for number, point in enumerate(dataset["row"].values):
-        at = dataset.isel(row=number)
-        if dim == "pulley":
-            loads, peaks, angles = (at[one].values for one in ("hub_load", "peak_hub_load", "hub_direction"))
-            shown = safeties(least_safeties(at).values)
-            cells = [
-                f"{_whole(load)} ({_whole(peak)}) {_angle(angle)} {safety}"
-                for load, peak, angle, safety in zip(loads, peaks, angles, shown, strict=True)
-            ]
-        else:
-            tensions, peaks = variable_of(at, "largest_span_tension").values, at["peak_tension"].values
-            cells = [f"{_whole(tension)} ({_whole(peak)})" for tension, peak in zip(tensions, peaks, strict=True)]
-        rows.append((str(point), *cells))
-    title = (
-        "Hub load N (peak), direction, slip safety"
-        if dim == "pulley"
-        else "Largest tension N (peak, with acceleration and vibration)"
-    )
-    return Table(title, ("", *map(str, dataset[dim].values)), tuple(rows))
+def _span_tensions(dataset: "xr.Dataset") -> list[Table]:
+    """Largest tension of each span in each operating point, and its peak."""
+    quantities = {
+        "Largest span tension\nN": _whole_numbers(variable_of(dataset, "largest_span_tension").values),
+        "Peak span tension\nN": _whole_numbers(dataset["peak_tension"].values),
+    }
+    return _over_points(dataset, "span", "Tensions of spans", quantities)
+
+
+def _hub_loads(dataset: "xr.Dataset") -> list[Table]:
+    """Hub load of each pulley in each operating point, its peak and direction, and slip safety."""
+    safety = least_safeties(dataset).values
+    quantities = {
+        "Hub load\nN": _whole_numbers(dataset["hub_load"].values),
+        "Peak hub load\nN": _whole_numbers(dataset["peak_hub_load"].values),
+        "Direction\nof the hub load": [list(map(_angle, row)) for row in dataset["hub_direction"].values],
+        "Slip safety": [safeties(row) for row in safety],
+    }
+    return _over_points(dataset, "pulley", "Hub loads", quantities)
+
+
+def _over_points(dataset: "xr.Dataset", dim: str, title: str, quantities: Mapping[str, list[list[str]]]) -> list[Table]:
+    """Quantities of pulleys or spans: one table for one operating point, else one of each quantity over the points."""
+    points, names = ([str(one) for one in dataset[key].values] for key in ("row", dim))
+    if len(points) == 1:
+        rows = zip(names, *(cells[0] for cells in quantities.values()), strict=True)
+        return [Table(title, ("", *quantities), tuple(rows))]
+    return [
+        Table(
+            heading.replace("\nN", ", N").replace("\n", " "),
+            ("", *names),
+            tuple((point, *row) for point, row in zip(points, cells, strict=True)),
+        )
+        for heading, cells in quantities.items()
+    ]
 
 
 def _modes(dataset: "xr.Dataset") -> Table:
@@ -237,6 +252,10 @@ def _belts(dataset: "xr.Dataset") -> Table:
 
 def _whole(value: float) -> str:
     return "–" if np.isnan(value) else f"{value:.0f}"
+
+
+def _whole_numbers(values: FloatArray) -> list[list[str]]:
+    return [list(map(_whole, row)) for row in values]
 
 
 def _angle(radians: float) -> str:

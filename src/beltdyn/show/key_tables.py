@@ -34,6 +34,7 @@ from beltdyn.model import (
     PulledEnd,
     Pulley,
     Roll,
+    SheetHead,
     Simulation,
     Steady,
     Unwinder,
@@ -137,6 +138,7 @@ def key_groups() -> dict[str, Group]:
         "simulation": Group("[simulation]", _keys(Simulation)),
         "steady": Group("[steady]", _keys(Steady)),
         "limits": Group("[limits]", _keys(Limits)),
+        "sheet": Group("[sheet]", _keys(SheetHead)),
     }
     study = {
         "study": Group("study file", _keys(ParameterStudy)),

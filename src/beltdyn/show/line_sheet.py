@@ -11,6 +11,7 @@ from beltdyn.parts.messages import aligned
 from beltdyn.parts.quantity import RPM
 from beltdyn.results import Result
 from beltdyn.results.schema import least_safeties, variable_of
+from beltdyn.show.parts_list import parts_list
 from beltdyn.show.sheet import Facts, Sheet, Table, power_unit, safeties
 
 if TYPE_CHECKING:
@@ -26,7 +27,7 @@ _NOTHING = 1e-9
 def line_sheet(result: Result) -> Sheet:
     """Give the sheet of a line."""
     dataset, parts = result.dataset, list[Table | Facts]()
-    parts += [Facts(tuple(_facts(dataset))), _points(dataset)]
+    parts += [*parts_list(result.prepared), Facts(tuple(_facts(dataset))), _points(dataset)]
     if "moved_mass" in dataset:
         parts.append(_starts(dataset))
     for number, name in enumerate(dataset["row"].values):

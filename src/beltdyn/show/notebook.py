@@ -2,12 +2,13 @@
 
 import math
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cache
 
 import numpy as np
 from jinja2 import Environment, PackageLoader
 
+from beltdyn.arrays import FloatArray, IntArray
 from beltdyn.model.advice import advise
 from beltdyn.model.drive import Drive
 from beltdyn.model.path import Path
@@ -25,6 +26,10 @@ _MARGIN = 0.06
 """Room around the drive, over its longer side."""
 _LETTER, _GAP = 6.0, 5.0
 """Width of a letter of names, and their distance from a pulley, pixels."""
+_INSIDE = 2.0
+"""Least distance of a name from the arc around it, pixels."""
+_LONGEST_GAP = 15.0
+"""Longest gap between pulleys that is drawn in its length, in diameters of the largest pulley: 20 pixels for that."""
 _LEVEL = 0.7
 """Cosine above which a name stands beside its pulley, and not above or below."""
 
@@ -54,32 +59,88 @@ class Picture:
     """The pulleys."""
     belt: str
     """Path of the belt's line of tension, in the language of the attribute ``d``."""
+    is_shortened: bool = False
+    """Whether spans are drawn shorter than they are."""
 
 
 def picture(drive: Drive) -> Picture:
-    """Draw a drive, with spring-loaded tensioners where the file has them."""
-    path = drive.path
+    """Draw a drive, with spring-loaded tensioners where the file has them, and with long spans shortened."""
+    path = shortened(drive.path)
     reach = abs(path.radii)[:, None]
     points = np.concatenate([path.centers - reach, path.centers + reach, *([] if path.ends is None else [path.ends])])
-    low, high = points.min(axis=0), points.max(axis=0)
-    scale = _SIZE / max(high - low)
+    scale = _SIZE / float(max(np.ptp(points, axis=0)))
+
+    def on_page(x: float, y: float) -> tuple[float, float]:
+        return scale * x, -scale * y
+
+    circles = [_circle(path, number, pulley, scale, on_page) for number, pulley in enumerate(drive.pulleys)]
+    names = [box for one in circles for box in _name_box(one)]
+    corners = np.concatenate([scale * points * [1.0, -1.0], *names])
     room = _MARGIN * _SIZE
-    width, height = (float(side) for side in scale * (high - low) + 2 * room)
+    left, top = (float(one) for one in corners.min(axis=0) - room)
+    width, height = (float(one) for one in np.ptp(corners, axis=0) + 2.0 * room)
+    moved = tuple(
+        replace(one, x=one.x - left, y=one.y - top, label=(one.label[0] - left, one.label[1] - top)) for one in circles
+    )
 
     def place(x: float, y: float) -> tuple[float, float]:
-        return room + scale * (x - low[0]), room + scale * (high[1] - y)
+        across, down = on_page(x, y)
+        return across - left, down - top
 
-    def circle(number: int, pulley: Pulley) -> Circle:
-        (x, y), radius = place(*path.centers[number].tolist()), scale * pulley.radius
-        right, up = path.clear_way(number) or (0.0, -1.0)
-        half = _LETTER * len(pulley.name) / 2.0
-        outside = float(half > radius)
-        away = radius + _GAP + half * (abs(right) > _LEVEL)
-        label = x + outside * right * away, y - outside * up * (radius + 2.0 * _GAP)
-        return Circle(pulley.name, x, y, radius, pulley.prescribed, label)
+    return Picture(width, height, moved, outline(path, place, scale), path is not drive.path)
 
-    circles = tuple(circle(number, pulley) for number, pulley in enumerate(drive.pulleys))
-    return Picture(width, height, circles, outline(path, place, scale))
+
+def shortened(path: Path) -> Path:
+    """The path with its longest gap between pulleys cut to `_LONGEST_GAP`, as by break lines, and others across it."""
+    radii, ends = abs(path.radii), np.empty((0, 2)) if path.ends is None else path.ends
+    points, sizes = np.concatenate([path.centers, ends]), np.concatenate([radii, np.zeros(len(ends))])
+    largest, diameter = np.array([_gaps(one, sizes)[1].max(initial=0.0) for one in points.T]), 2.0 * float(radii.max())
+    ratio = _LONGEST_GAP * diameter / max(float(largest.max()), diameter)
+    if ratio >= 1.0:
+        return path
+    limits = np.maximum(ratio * largest, diameter)
+    cut = np.column_stack([_cut(one, sizes, limit) for one, limit in zip(points.T, limits.tolist(), strict=True)])
+    return Path(cut[: len(radii)], path.radii, None if path.ends is None else cut[len(radii) :], path.nips)
+
+
+def _gaps(middles: FloatArray, sizes: FloatArray) -> tuple[IntArray, FloatArray]:
+    """Circles in the order of their lower edges, and the gap in front of each but the first, along one axis."""
+    order = np.argsort(middles - sizes)
+    reach = np.maximum.accumulate((middles + sizes)[order])
+    return order, (middles - sizes)[order][1:] - reach[:-1]
+
+
+def _cut(middles: FloatArray, sizes: FloatArray, limit: float) -> FloatArray:
+    """Coordinates of circles, moved together where a gap between them is longer than a limit."""
+    order, gaps = _gaps(middles, sizes)
+    moved = middles.copy()
+    moved[order[1:]] -= np.cumsum(np.maximum(gaps - limit, 0.0))
+    return moved
+
+
+def _circle(
+    path: Path, number: int, pulley: Pulley, scale: float, on_page: Callable[[float, float], tuple[float, float]]
+) -> Circle:
+    """A pulley with its name, beyond its arc where the circle is too small."""
+    (x, y), radius = on_page(*path.centers[number].tolist()), scale * pulley.radius
+    right, up = path.clear_way(number) or (0.0, -1.0)
+    half = _LETTER * len(pulley.name) / 2.0
+    outside = float(half > radius - _INSIDE)
+    away = radius + _GAP + half * (abs(right) > _LEVEL)
+    return Circle(
+        pulley.name,
+        x,
+        y,
+        radius,
+        pulley.prescribed,
+        (x + outside * right * away, y - outside * up * (radius + 2.0 * _GAP)),
+    )
+
+
+def _name_box(circle: Circle) -> list[FloatArray]:
+    """Two corners of the name of a pulley that stands beyond its arc; none of one within."""
+    (x, y), half = circle.label, _LETTER * len(circle.name) / 2.0
+    return [] if (x, y) == (circle.x, circle.y) else [np.array([[x - half, y - _GAP], [x + half, y + _GAP]])]
 
 
 def outline(path: Path, place: Callable[[float, float], tuple[float, float]], scale: float) -> str:

@@ -29,6 +29,8 @@ if TYPE_CHECKING:
 
 # Parts of a sheet
 
+_GAP = 2
+"""Characters between two columns."""
 _NUMBER = re.compile(r"[<>]?\s*[-+−]?[\d.]|[–-]?$|nan|-?inf")
 
 
@@ -45,6 +47,26 @@ class Table(NamedTuple):
     def has_words(self, column: int) -> bool:
         """Whether a column holds words, and not numbers alone."""
         return any(_NUMBER.match(row[column]) is None for row in self.rows)
+
+    @property
+    def column_widths(self) -> list[int]:
+        """Characters of the widest cell or line of the heading of each column, with the gap to the next one."""
+        lines = (heading.splitlines() for heading in self.headings)
+        cells = zip(*self.rows, strict=True) if self.rows else ((),) * len(self.headings)
+        return [_GAP + max(map(len, (*one, *column)), default=0) for one, column in zip(lines, cells, strict=True)]
+
+    def blocks(self, characters: int) -> "Iterator[Table]":
+        """The table in blocks of columns that are at most so many characters wide, each with the names in front."""
+        widths, first = self.column_widths, 1
+        while first < len(widths):
+            room, last = characters - widths[0] - widths[first], first + 1
+            while last < len(widths) and widths[last] <= room:
+                room, last = room - widths[last], last + 1
+            whole = slice(first, last)
+            rows = tuple((row[0], *row[whole]) for row in self.rows)
+            title = self.title if first == 1 else f"{self.title}, continued".lstrip(", ")
+            yield Table(title, (self.headings[0], *self.headings[whole]), rows)
+            first = last
 
 
 class Facts(NamedTuple):
@@ -273,14 +295,15 @@ def _pulleys(title: str, summary: Summary, guides: BoolArray) -> Table:
         (_share(math.nan if stands else one.elastic_creep) for one, stands in zip(pulleys, guides, strict=True)),
         (f"{math.degrees(one.wrap_angle):.1f}°" for one in pulleys),
         (f"{math.degrees(one.sliding_arc):.1f}°" for one in pulleys),
-        (_ratio(one) for one in pulleys),
+        (_ratio(one.tension_ratio, one, "2f") for one in pulleys),
+        (_ratio(one.allowed_tension_ratio, one, "2g") for one in pulleys),
         (safety_text(one.own_load_safety) for one in pulleys),
         (safety_text(one.slip_safety) for one in pulleys),
         aligned([one.hub_load for one in pulleys]),
     )
     return Table(
         title,
-        (*headings, "T ratio\n/allowed", "safety\nown", "\nall", "hub load\nN"),
+        (*headings, "tension\nratio", "\nallowed", "safety\nown", "\nall", "hub load\nN"),
         tuple(zip(*columns, strict=True)),
     )
 
@@ -315,16 +338,11 @@ _LARGEST_RATIO = 99.0
 """Largest tension ratio that is shown: no drive comes near."""
 
 
-def _ratio(pulley: PulleySummary) -> str:
-    """The tension ratio over that which friction allows; a dash where that is not what holds the belt."""
-    ratio, allowed = pulley.tension_ratio, pulley.allowed_tension_ratio
-    if math.isnan(ratio) or not allowed > 1.0:
+def _ratio(ratio: float, pulley: PulleySummary, digits: str) -> str:
+    """The tension ratio, or that which friction allows; a dash where friction is not what holds the belt."""
+    if math.isnan(pulley.tension_ratio) or not pulley.allowed_tension_ratio > 1.0:
         return "–"
-    shown = (
-        f"{one:.{digits}}" if one < _LARGEST_RATIO else f">{_LARGEST_RATIO:.0f}"
-        for one, digits in ((ratio, "2f"), (allowed, "2g"))
-    )
-    return "/".join(shown)
+    return f"{ratio:.{digits}}" if ratio < _LARGEST_RATIO else f">{_LARGEST_RATIO:.0f}"
 
 
 def safety_text(safety: float, largest: float = _LARGEST_SAFETY) -> str:

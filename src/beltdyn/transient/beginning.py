@@ -40,7 +40,7 @@ from beltdyn.transient.checkpoint import is_checkpoint
 
 _SAME = 1e-6
 """Distance of instants that count as one, over the time between them."""
-_FREE = frozenset({"name", "description", "limits", "simulation", "steady"})
+_FREE = frozenset({"name", "description", "limits", "sheet", "simulation", "steady"})
 """Groups of a drive file that may differ between a run and the earlier run it starts from."""
 _FREE_OF_PULLEYS = frozenset({"speed", "harmonics", "torque", "load", "inertia", "mass", "friction"})
 

@@ -69,6 +69,7 @@ def test_schema_knows_every_group() -> None:
         "simulation",
         "steady",
         "limits",
+        "sheet",
         "gravity",
         "rotation",
         "name",

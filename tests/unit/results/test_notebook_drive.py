@@ -4,10 +4,11 @@ import math
 import re
 from importlib.resources import files
 
+import numpy as np
 import pytest
 
-from beltdyn.model import Drive, advise, install, loads
-from beltdyn.show.notebook import picture
+from beltdyn.model import Drive, Path, advise, install, loads
+from beltdyn.show.notebook import picture, shortened
 
 EXAMPLES = sorted(file.name for file in files("beltdyn").joinpath("examples").iterdir() if file.name.endswith(".toml"))
 
@@ -36,11 +37,30 @@ def test_the_belt_is_drawn_in_its_length_around_its_pulleys(name: str) -> None:
     drive = example(name)
     drawn = picture(drive)
     scale = drawn.circles[0].radius / drive.pulleys[0].radius
-    assert drawn_length(drawn.belt) == pytest.approx(scale * drive.path.length, rel=2e-3)  # two decimals of a pixel
+    centers = np.array([(circle.x, -circle.y) for circle in drawn.circles]) / scale
+    path = shortened(drive.path) if drive.ends else Path(centers, drive.path.radii)
+    assert drawn_length(drawn.belt) == pytest.approx(scale * path.length, rel=2e-3)  # two decimals of a pixel
+    assert drawn.is_shortened == (path.length < 0.999 * drive.path.length)
     assert [circle.name for circle in drawn.circles] == [pulley.name for pulley in drive.pulleys]
     for circle in drawn.circles:
         assert circle.radius < circle.x < drawn.width - circle.radius
         assert circle.radius < circle.y < drawn.height - circle.radius
+        (x, y), half = circle.label, 3.0 * len(circle.name)
+        assert half <= x <= drawn.width - half
+        assert 5.0 <= y <= drawn.height - 5.0
+
+
+def test_a_conveyor_of_a_kilometer_shows_its_pulleys() -> None:
+    """Its gap of 1 km is cut to 15 diameters, and its height in proportion, to a diameter at least."""
+    drive = example("conveyor_1km.toml")
+    drawn = picture(drive)
+    head, tail = drawn.circles
+    assert drawn.is_shortened
+    assert head.radius > 9.0  # pixels
+    assert tail.radius / head.radius == pytest.approx(0.8)
+    assert tail.x - head.x == pytest.approx(15.0 * 2.0 * head.radius + head.radius + tail.radius, rel=1e-3)
+    assert tail.y - head.y == pytest.approx(2.0 * head.radius + head.radius + tail.radius, rel=1e-3)
+    assert "shortened" in drive._repr_html_()
 
 
 def test_a_notebook_shows_pulleys_tension_and_warnings(drive: Drive) -> None:

@@ -1,18 +1,23 @@
 """The tables of a drive sheet."""
 
+import re
+
+import numpy as np
+import pytest
+
 import beltdyn as bd
-from beltdyn.model import example
+from beltdyn.model import Drive, example
 from beltdyn.show.sheet import Table, as_text, sheet
+
+_NUMBER = re.compile(r"(?<![\w.])[-+−]?\d+(?:\.\d+)?(?:e[-+]?\d+)?")
 
 
 def test_tables_say_what_suppliers_say() -> None:
     result = bd.sheet(example("alternator_drive"), points=3)
     titles = [part.title for part in sheet(result).parts if isinstance(part, Table)]
     assert titles == [
-        *("Pulleys", "Tensioner of tensioner", "Belts of standard length", "Operating points"),
-        "Largest tension N (peak, with acceleration and vibration)",
-        "Hub load N (peak), direction, slip safety",
-        "Spans at rest",
+        *("Pulleys as supplied", "Pulleys", "Tensioner of tensioner", "Belts of standard length", "Operating points"),
+        *("Tensions of spans", "Hub loads", "Spans at rest"),
         "First modes, at the largest power, with sliding tensioners",
     ]
     text = as_text(sheet(result))
@@ -33,3 +38,29 @@ def test_spans_have_what_alignment_allows_and_angles_if_pulleys_are_out_of_line(
     assert [len(row) for row in aligned.rows] == [11] * 3
     less = [float(row[-1]) < float(other[-1]) for row, other in zip(skewed.rows, aligned.rows, strict=True)]
     assert less == [False, True, True]
+
+
+def tables_of(drive: Drive) -> list[Table]:
+    return [part for part in sheet(bd.sheet(drive)).parts if isinstance(part, Table)]
+
+
+@pytest.mark.parametrize("name", ["alternator_drive", "conveyor_1km"])
+def test_a_cell_has_one_number(name: str) -> None:
+    """Such as "881 (1058) 26° 2.70", which is four; names may have any."""
+    for table in tables_of(example(name)):
+        for row in table.rows:
+            assert [cell for cell in row[1:] if len(_NUMBER.findall(cell)) > 1] == [], table.title
+
+
+def test_several_operating_points_have_a_table_of_each_quantity() -> None:
+    """With a column for each pulley, and the numbers of the dataset."""
+    powers = {"city": 300.0, "hill": 900.0}
+    duty = [{"name": name, "share": 0.5, "power": {"alternator": power}} for name, power in powers.items()]
+    result = bd.sheet(example("alternator_drive").replace(duty=duty), points=2)
+    tables = {part.title: part for part in sheet(result).parts if isinstance(part, Table)}
+    loads = tables["Hub load, N"]
+    assert loads.headings[1:] == tuple(result.dataset["pulley"].values)
+    assert [row[0] for row in loads.rows] == ["city", "hill"]
+    shown = np.array([[float(cell) for cell in row[1:]] for row in loads.rows])
+    np.testing.assert_allclose(shown, result.dataset["hub_load"].values, atol=0.5)
+    assert {"Peak hub load, N", "Direction of the hub load", "Slip safety", "Largest span tension, N"} < tables.keys()

@@ -111,6 +111,8 @@ def _hash(content: bytes) -> str:
     return hashlib.sha256(content).hexdigest()
 
 
+_WIDEST_TABLE = 180
+"""Characters of a line of a table that is printed across a page of A4 in letters of 5 pt; wider ones are divided."""
 _SHADES = 48
 _SAYS_WHO_MADE_IT = f'<meta name="generator" content="{MARK} report">'
 
@@ -214,6 +216,7 @@ def _page(results: Sequence[Result], parts: Parts) -> str:
             verdict=done(partial(verdict, results), ("open", "No verdict")),
             lead=done(lambda: "" if len(results) > 1 else headlines(results).removeprefix(f"{names[0]}: "), ""),
             parts=pages,
+            widest=_WIDEST_TABLE,
             numbers=done(partial(compared, results), []),
             unjudged=done(partial(unjudged_in_words, results), []),
             differences=done(partial(differing_keys, results), []),
@@ -248,7 +251,8 @@ def _part(name: str, number: int, result: Result, moving: Mapping[str, Any], par
     tables = [part for part in shown.parts if isinstance(part, Table)]
     if isinstance(result, Run | StaticResult) and not result.drive.ends and is_given(result.drive):
         tables += done(lambda: [alignment_table(result.drive, result.drive.path)], [])
-    facts = [fact for part in shown.parts if not isinstance(part, Table) for fact in part.facts]
+    head = {label.lower() for label, _ in _about(result)}
+    facts = [fact for part in shown.parts if not isinstance(part, Table) for fact in part.facts if fact[0] not in head]
     target = f"motion-{number}"
     return {
         "name": name,
@@ -278,10 +282,10 @@ def _tensioning(result: Result) -> Tensioning | None:
 
 
 def _about(result: Result) -> list[tuple[str, str]]:
-    """Project, author and date of a result."""
+    """Customer, position, order, project, author and date of a result."""
     created = str(result.dataset.attrs.get("created", "")).partition("T")[0]
-    known = (("Project", result.drive.project), ("Author", result.drive.author), ("Date", created))
-    return [(name, words) for name, words in known if words]
+    about = (("Project", result.drive.project), ("Author", result.drive.author), ("Date", created))
+    return [*result.drive.sheet.entries, *((name, words) for name, words in about if words)]
 
 
 def script() -> str:
