@@ -4,13 +4,17 @@ import math
 import os
 import subprocess
 import sys
+from argparse import Namespace
+from functools import partial
 from pathlib import Path
 from types import FunctionType
 
 import pytest
 
+from tools.mutation.__main__ import _Trials
 from tools.mutation.mutants import control, mutants_of
-from tools.mutation.trial import ROOT, compiled, fits, fork, functions_of, replacements
+from tools.mutation.traces import Trace
+from tools.mutation.trial import ROOT, attempt_at_import, compiled, fits, fork, functions_of, replacements
 
 LAW = "src/beltdyn/theory/creep.py"
 
@@ -85,6 +89,21 @@ def test_what_changes_a_closure_fits_into_no_function() -> None:
 
     _, status = os.waitpid(fork(work, math.inf), 0)
     assert os.waitstatus_to_exitcode(status) == 0
+
+
+def test_a_change_of_a_module_that_no_test_imports_is_untested(tmp_path: Path) -> None:
+    """The package is imported already, so that no test of this process does."""
+    (tmp_path / "test_rating.py").write_text("def test_nothing():\n    pass\n", encoding="utf-8")
+    test = f"{tmp_path}/test_rating.py::test_nothing"
+    mutant, tree = next(change for change in mutants_of(ROOT / LAW, ROOT) if change[0].at_import)
+    trials = _Trials(
+        {test: Trace(0.1, {})},
+        Namespace(jobs=1, budget=9.0),
+        lambda mutant, code, tests: partial(attempt_at_import, mutant, code, tests),
+    )
+    trials.start(mutant, compile(tree, str(ROOT / LAW), "exec"), [test])
+    trials.finish()
+    assert mutant.outcome == "untested"
 
 
 def test_a_control_raises_in_a_function_that_tests_execute(tmp_path: Path) -> None:

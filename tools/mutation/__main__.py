@@ -37,6 +37,7 @@ from tools.mutation.traces import Trace, left_out, read_traces, traces
 from tools.mutation.trial import (
     FAULT,
     MAX_TESTS,
+    NOT_IMPORTED,
     ROOT,
     SOURCE,
     Replacements,
@@ -211,7 +212,10 @@ class _Trials:
         if number == FAULT:
             raise SystemExit(f"This tool failed in the trial of {mutant}")
         mutant.outcome = "killed" if number else "survived"
-        if number > 0:
+        if number == NOT_IMPORTED:
+            mutant.outcome = "untested"
+            print(mutant, flush=True)
+        elif number > 0:
             mutant.killed_by = tests[number - 1]
             self.kills[mutant.file][mutant.killed_by] += 1
         elif number < 0:

@@ -60,7 +60,7 @@ class Mutant:
         Whether the code runs when its module is imported, outside the body of a function, or fits into no function
         that is imported.
     outcome : str
-        "killed", "survived", or "untested" where no test executes the line; empty before the trial.
+        "killed", "survived", or "untested" where no test executes the line, or imports its file.
     killed_by : str
         Id of the test that failed, or "time" where the tests did not end.
     """
