@@ -41,9 +41,6 @@ ELSEWHERE = {
     "designs/study_table.py": "unit/designs/test_study.py",
     "designs/proposal.py": "unit/designs/test_selection.py",
     "designs/named_results.py": "unit/designs/test_sensitivity.py",
-    "state/linearized.py": "unit/vibration/test_small_motions.py",
-    "state/newton.py": "unit/state/test_steady.py",
-    "state/refinement.py": "unit/state/test_steady.py",
     # Seen by a user through something else, and tested there.
     "__init__.py": "unit/test_public_names.py",
     "analyses.py": "unit/cli/test_analysis.py",

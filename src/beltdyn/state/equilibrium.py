@@ -13,7 +13,6 @@ from beltdyn.solvers.trajectory import Chunk
 from beltdyn.state.installation import bring_to_rest, holding_force, on_equal_elements, rest_of
 from beltdyn.state.refinement import refine_at_rest
 from beltdyn.state.static import standing
-from beltdyn.state.steady import require_tolerance
 from beltdyn.system.arrays import System
 from beltdyn.system.state import State
 
@@ -68,7 +67,6 @@ def equilibrium(
 
 def _refined(drive: Drive, tolerance: float, progress: Report | None) -> StaticResult:
     """The equilibrium on a graded mesh, as fine as contact forces need it."""
-    require_tolerance(tolerance)
     if drive.ends and not drive.is_web:
         raise ModelError(
             "force_tolerance does not apply to an open belt, whose elements are equally long. Omit it, and "

@@ -422,11 +422,6 @@ class SteadySearch:
         fit_phases(self.system, state)
         return self._try(setting)
 
-    def _follow(self, target: Setting) -> None:
-        """Go on to another setting, or say why that is not possible."""
-        if not self._reach(target):
-            raise self._refusal()
-
     def _reach(self, target: Setting) -> bool:
         """Go on to another setting, around limit points; False if the way ends before.
 

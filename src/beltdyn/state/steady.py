@@ -182,7 +182,6 @@ def steady_state(
     if force_tolerance is None and elements is None:
         elements = _equal_elements(prepared)
     tolerance = _tolerance(drive, force_tolerance)
-    _require_sense(tolerance, elements)
     instant = instant_given(drive, at)
     if progress is not None:
         progress(Progress(0.0, drive.simulation.duration, 0.0, 0, "equilibrium"))
@@ -418,17 +417,6 @@ def require_steady_start(drive: Drive) -> None:
         raise ModelError(
             f'simulation.start = "steady" needs steady running, and {error} Or set simulation.start = "equilibrium".'
         ) from error
-
-
-def require_tolerance(force_tolerance: float) -> None:
-    """Check the tolerance of contact forces."""
-    if not 0.0 < force_tolerance < 1.0:
-        raise ModelError(f"force_tolerance = {force_tolerance:g} must be between 0 and 1, such as 0.01 for 1 %.")
-
-
-def _require_sense(force_tolerance: float, elements: int | None) -> None:
-    """Make sure that the options make sense."""
-    require_tolerance(force_tolerance)
 
 
 def _running(system: System, state: State, duration: float) -> Chunk:

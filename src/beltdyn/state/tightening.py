@@ -186,7 +186,7 @@ class Tightening(Generic[At]):
         first, wanted, turned = self._first, self._wanted, self._turned(rest)
         if turned:
             raise self._out_of_reach(turned)
-        if abs(rest.tension - first.tension) < abs(wanted - rest.tension):
+        if self._given.carriers and abs(rest.tension - first.tension) < abs(wanted - rest.tension):
             if abs(wanted - rest.tension) < _JUMP * wanted:  # a spring holds the tension that bending leaves of it
                 return rest
             raise ConvergenceError(

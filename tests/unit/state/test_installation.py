@@ -4,6 +4,7 @@ import math
 import pickle
 from collections.abc import Callable
 from importlib.resources import files
+from types import SimpleNamespace
 from typing import Any
 
 import numpy as np
@@ -13,6 +14,7 @@ from beltdyn.errors import ConvergenceError, ModelError
 from beltdyn.model import Drive, install, load, loads, prepare, tensioner_balances
 from beltdyn.results import open_run
 from beltdyn.solvers.run_progress import Progress
+from beltdyn.state import installation
 from beltdyn.state.equilibrium import equilibrium
 from beltdyn.state.installation import bring_to_rest, follow
 from beltdyn.state.static import tensioner_compliance
@@ -308,7 +310,7 @@ def test_the_stable_balance_is_found_on_either_side() -> None:
         assert abs(here.position) == min(abs(balance.position) for balance in found if balance.stable)
 
 
-@pytest.mark.parametrize("start", [1.0, 64.0, 1 / 64])
+@pytest.mark.parametrize("start", [1.0, 4.0, 64.0, 1 / 64])
 @pytest.mark.parametrize("reach", [5.0, 2.5, 1.3])
 def test_equilibria_are_followed_in_steps_that_succeed(start: float, reach: float) -> None:
     """A solver that gets no further than a ratio of stiffnesses; each is found from the one before."""
@@ -321,6 +323,64 @@ def test_equilibria_are_followed_in_steps_that_succeed(start: float, reach: floa
 
     assert follow(start, balance)
     assert found[-1] == 1.0
+
+
+@pytest.mark.parametrize("start", [64.0, 1 / 64, 10.0])
+def test_stiffness_changes_by_a_factor_of_four_where_that_succeeds(start: float) -> None:
+    """And never passes that of the drive."""
+    tried = list[float]()
+
+    def balance(factor: float) -> bool:
+        tried.append(factor)
+        return True
+
+    assert follow(start, balance)
+    assert tried == {64.0: [64.0, 16.0, 4.0, 1.0], 1 / 64: [1 / 64, 1 / 16, 1 / 4, 1.0], 10.0: [10.0, 2.5, 1.0]}[start]
+
+
+@pytest.mark.parametrize(
+    ("compliance", "reaches", "unstable"),
+    [
+        ([[2.0, 1.0], [1.0, 2.0]], [1.0, 1.0], ()),
+        ([[-2.0, 1.0], [1.0, 2.0]], [1.0, 1.0], ("left",)),
+        ([[2.0, 1.0], [1.0, -2.0]], [1.0, 1.0], ("slide",)),
+        ([[-2.0, 0.5], [0.5, -3.0]], [1.0, 1.0], ("left", "slide")),
+        ([[1.0, 3.0], [3.0, 1.0]], [1.0, 0.1], ("slide",)),
+        ([[1.0, 3.0], [3.0, 1.0]], [0.1, 1.0], ("left",)),
+        ([[np.nan, 1.0], [1.0, -2.0]], [1.0, 1.0], ()),
+        ([[0.0, 0.0], [0.0, 2.0]], [1.0, 1.0], ()),
+    ],
+    ids=["both", "first", "second", "none", "together", "together, other arm", "unknown", "without force"],
+)
+def test_tensioners_that_move_against_a_force_are_unstable(
+    compliance: Any, reaches: list[float], unstable: tuple[str, ...], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Ways are compared in meters: of two that lose their balance together the one that moves farther is named."""
+    monkeypatch.setattr(installation, "tensioner_compliance", lambda system, state: np.array(compliance))
+    pulleys = [SimpleNamespace(name=name) for name in ("right", "left", "slide")]
+    system = SimpleNamespace(
+        bodies=np.rec.fromarrays([np.array([7.0, 7.0, 7.0, *reaches])], names="reach"),
+        tensioners=SimpleNamespace(pulley=np.array([1, 2])),
+    )
+    rest: Any = SimpleNamespace(system=system, state=None, prepared=SimpleNamespace(pulleys=pulleys))
+    assert installation._unstable(rest) == unstable
+
+
+@pytest.mark.parametrize("depth", [0.0, 0.02])
+def test_depths_are_those_below_the_rim(depth: float) -> None:
+    """Of pulleys anywhere; of one that is touched between points alone none is known."""
+    angles = np.linspace(0.0, 3.0, 5)
+    circle = np.column_stack([np.cos(angles), np.sin(angles)])
+    centers = np.array([[0.3, -0.4], [5.0, 1.0]])
+    prepared: Any = SimpleNamespace(radii=np.array([0.1, 0.2]))
+    seen: Any = SimpleNamespace(
+        contact_position=(centers[0] + (0.1 - depth) * circle)[None],
+        contact_pulley=np.zeros((1, 5), int),
+        pulley_center=centers[None],
+    )
+    touched, between = installation._depths(prepared, seen)
+    np.testing.assert_allclose(touched, depth, atol=1e-15)
+    np.testing.assert_array_equal(between, [0.0])
 
 
 @pytest.mark.parametrize("lost", [64.0, 4.0, 1.0])

@@ -1,23 +1,41 @@
 """A belt at rest on a mesh that stays, and on its way to another one."""
 
 from importlib.resources import files
+from types import SimpleNamespace
 from typing import Any
 
 import numpy as np
 import pytest
 
 import beltdyn as bd
+from beltdyn.arrays import FloatArray
 from beltdyn.errors import ConvergenceError
-from beltdyn.model import Drive, prepare
+from beltdyn.model import Drive, Prepared, prepare
 from beltdyn.model.resolution import Laid
 from beltdyn.state import staying
 from beltdyn.state.newton import find_steady
-from beltdyn.state.staying import Sampled, bring_to_stand, carried, found_arcs, sampled, stand, stand_like, transfer
+from beltdyn.state.staying import (
+    FINER,
+    Sampled,
+    Standing,
+    bring_to_stand,
+    carried,
+    found_arcs,
+    sampled,
+    stand,
+    stand_like,
+    transfer,
+)
+from beltdyn.system.arc_mesh import ByArcs, base_lengths, fitted, shifts_of
 from beltdyn.system.arrays import System
 from beltdyn.system.build import staying_system
 from beltdyn.system.frame import centreline_points
+from beltdyn.system.meshing import phases
 from beltdyn.system.moving_center import pulley_centers
 from beltdyn.system.state import State
+from beltdyn.system.steady_assembly import anchor_at
+from tests.unit.model.test_carrying import conveyor
+from tests.unit.state.test_search import toothed
 
 
 def lying(system: System, state: State) -> Sampled:
@@ -153,3 +171,72 @@ def test_a_belt_that_touches_two_pulleys_at_once_is_refused(drive: Drive) -> Non
     beside = rest.system._replace(pulleys=pulleys)
     with pytest.raises(ConvergenceError, match='touches "driver" and "driven" at the same place'):
         staying.require_one_pulley_at_a_time(prepared, beside, lying(beside, rest.state))
+
+
+@pytest.mark.parametrize(("elements", "fineness"), [(None, 0.5 * FINER ** np.arange(4.0)), (30, np.array([0.5]))])
+def test_graded_meshes_are_made_finer_where_there_is_no_equilibrium(
+    drive: Drive, elements: int | None, fineness: FloatArray, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Four times; of equal elements there is but one number. The reason is that of the last mesh."""
+    tried = list[float]()
+
+    def fails(prepared: Prepared, number: int | None, *, fineness: float) -> Standing:
+        assert number == elements
+        tried.append(fineness)
+        raise ConvergenceError(f"mesh {len(tried)}")
+
+    monkeypatch.setattr(staying, "stand", fails)
+    with pytest.raises(ConvergenceError, match=f"mesh {fineness.size}"):
+        staying._on_some_mesh(prepare(drive), elements, 0.5)
+    np.testing.assert_allclose(tried, fineness)
+
+
+def tent(along: FloatArray, middle: float, half: float) -> FloatArray:
+    """Depth in a pulley whose rim crosses the belt at `half` to both sides of a point."""
+    return half - np.abs(along - middle)
+
+
+@pytest.mark.parametrize("half", [0.23, 0.2, 0.275])
+def test_arcs_end_where_the_rim_crosses_the_belt(half: float) -> None:
+    """Between samples by their depths; the roller of a nip presses within an arc, and one elsewhere has none."""
+    along = np.linspace(0.0, 2.0, 21)
+    places = Sampled(along, np.stack([tent(along, 1.3, half), tent(along, 0.5, half), tent(along, 1.3, 0.08)]))
+    system: Any = SimpleNamespace(
+        rims=SimpleNamespace(radius=np.array([0.1, 0.2, 0.3])), pulleys=SimpleNamespace(beside=np.array([0, 0, 1]))
+    )
+    first, second = found_arcs(system, places)
+    assert (first.start, first.end, first.radius) == pytest.approx((0.5 - half, 0.5 + half, 0.2))
+    assert (second.start, second.end, second.radius) == pytest.approx((1.3 - half, 1.3 + half, 0.1))
+    assert first.nips == ()
+    assert np.ravel(second.nips) == pytest.approx([1.22, 1.38])
+
+
+def test_grooves_meet_the_teeth_before_equilibrium_is_sought(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Wherever they stand: half a pitch off, a belt would climb onto the teeth of its pulley."""
+    prepared = prepare(toothed())
+    system = staying_system(prepared, prepared.equal_lengths(40))
+    state, seen = staying._lying(prepared, system, 1.0), list[FloatArray]()
+
+    def result(_: Prepared, still: System, *__: Any) -> bool:
+        seen.append(phases(still).copy())
+        return len(seen) != 2
+
+    monkeypatch.setattr(staying, "_found", result)
+    for turned in (0.0, 0.5):
+        phases(system)[:] = turned * 2.0 * np.pi / np.array([24.0, 36.0])
+        assert staying._balance(prepared, system, state, anchor_at(state, True), 1.0)
+    assert len(seen) == 1 + 1 + 4  # the second time with softer teeth, too
+    for phase in seen[1:]:
+        np.testing.assert_allclose(phase, seen[0])
+
+
+def test_a_mesh_that_stays_at_every_arc_fits_the_belt_at_rest() -> None:
+    """Elements have the lengths of where the state at rest puts their arcs; without it they keep those of the path."""
+    prepared = prepare(conveyor())
+    rest = stand(prepared, 40)
+    assert isinstance(rest.system.frame, ByArcs)
+    assert np.any(shifts_of(rest.system.frame) != 0.0)
+    lengths = rest.system.length.copy()
+    fitted(rest.system, rest.state.position)
+    np.testing.assert_array_equal(rest.system.length, lengths)
+    assert np.abs(lengths - base_lengths(rest.system)).max() > 1e-9

@@ -1,0 +1,119 @@
+"""Steady running from that of a neighbor: places of tensioners and controllers are taken along, and what changes."""
+
+import time
+from typing import Any
+
+import numpy as np
+import pytest
+
+import beltdyn as bd
+from beltdyn.errors import ConvergenceError
+from beltdyn.model import Drive
+from beltdyn.results import Run
+from beltdyn.solvers.run_progress import Progress
+from beltdyn.state.newton import SteadyWork
+from beltdyn.state.steady import _require_trims, search_from, steady_beside, steady_state, tangent_of
+from tests.unit.vibration.test_small_motions import loose
+
+SET_FORCE, TORQUE, GAIN, RATE, PRELOAD = 360.5, -4.0, 1e-2, 2e4, 400.0
+"""N, N m, 1/N, N/m, N: at rest the slide is pressed by 360.3 N."""
+
+
+def controlled(**trim: Any) -> Drive:
+    """A torque that is trimmed by the force of a tensioner."""
+    left, right, slide = loose().pulleys
+    load = {"kind": "torque_trim", "torque": TORQUE, "sensor": "slide", "set_force": SET_FORCE, "force_gain": GAIN}
+    return loose().replace(pulley=[left.replace(speed=50.0), right.replace(load=[load | trim]), slide])
+
+
+@pytest.fixture(scope="module")
+def proportional() -> Run:
+    return steady_state(controlled(), elements=40)
+
+
+@pytest.fixture(scope="module")
+def integrating() -> Run:
+    return steady_state(controlled(integral_time=0.5), elements=40)
+
+
+def force_of(run: Run) -> float:
+    """Of the spring of the slide, N."""
+    return PRELOAD - RATE * float(run.dataset.tensioner_position[-1, 0])
+
+
+def test_an_integrating_controller_holds_its_set_value(integrating: Run) -> None:
+    assert force_of(integrating) == pytest.approx(SET_FORCE, rel=1e-9)
+    assert abs(float(integrating.dataset.hub_force[-1, 2, 1])) == pytest.approx(SET_FORCE, rel=1e-6)
+
+
+def test_a_proportional_controller_trims_by_its_error(proportional: Run) -> None:
+    error = SET_FORCE - force_of(proportional)
+    assert abs(error) > 1.0
+    torque = float(proportional.dataset.shaft_torque[-1, 1])
+    assert torque == pytest.approx(TORQUE * (1.0 + GAIN * error), rel=1e-6)
+
+
+@pytest.mark.parametrize(("part", "refused"), [(0.99, True), (1.01, False)])
+def test_a_trim_beyond_its_limit_is_refused(proportional: Run, part: float, refused: bool) -> None:
+    """By as much as the error requires."""
+    trim = abs(GAIN * (SET_FORCE - force_of(proportional)))
+    drive = proportional.drive.with_({"pulley[right].load[1].largest_trim": part * trim})
+    search = search_from(bd.model.prepare(drive), proportional, 1.0)
+    if refused:
+        with pytest.raises(ConvergenceError, match=f'"right" holds its set value with a trim of -?{trim:.3g}, but has'):
+            _require_trims(search)
+    else:
+        _require_trims(search)
+
+
+@pytest.mark.parametrize("kind", ["proportional", "integrating"])
+def test_a_search_begins_with_the_state_of_its_neighbor(kind: str, request: pytest.FixtureRequest) -> None:
+    """Places of the belt, the tensioner and the controller, and all speeds."""
+    run = request.getfixturevalue(kind)
+    result, search = run.dataset, search_from(run.prepared, run, 1.0)
+    system, state = search.constant, search.state
+    np.testing.assert_allclose(state.nodes(system), result.nodal_coordinates[-1], rtol=1e-12, atol=1e-12)
+    assert state.position[-1] == pytest.approx(float(result.tensioner_position[-1, 0]), rel=1e-12)
+    if kind == "integrating":
+        assert state.position[-2] == pytest.approx(float(result.body_position[-1, 3]), rel=1e-12)
+        assert abs(state.position[-2]) > 0.1
+    np.testing.assert_allclose(state.velocity[system.first_body :][:3], result.pulley_speed[-1], rtol=1e-12)
+    assert search.belt_parameter == pytest.approx(result.attrs["belt_parameter"], rel=1e-12)
+
+
+def test_a_neighbor_at_another_speed_begins_in_proportion(proportional: Run) -> None:
+    """All rims, and the belt; places stay."""
+    faster = proportional.drive.with_({"pulley[left].speed": 60.0})
+    begun, before = (search_from(bd.model.prepare(drive), proportional, 1.0) for drive in (faster, proportional.drive))
+    np.testing.assert_allclose(begun.state.velocity, 1.2 * before.state.velocity, rtol=1e-12)
+    assert begun.belt_parameter == pytest.approx(1.2 * before.belt_parameter, rel=1e-12)
+    np.testing.assert_array_equal(begun.state.position, before.state.position)
+
+
+def test_the_same_drive_changes_nothing(proportional: Run) -> None:
+    result = steady_beside(proportional.drive, proportional)
+    assert result is not None
+    assert np.abs(result.change).max() < 1e-6
+    assert np.abs(result.search.unknowns()).max() > 1.0
+
+
+@pytest.mark.parametrize("with_tangent", [False, True])
+def test_a_change_is_the_guess_of_another_search(proportional: Run, with_tangent: bool) -> None:
+    """What is carried over and the change make the solution, which a search with that guess confirms at once."""
+    heavier = proportional.drive.with_({"pulley[right].load[1].torque": 1.1 * TORQUE})
+    tangent: SteadyWork | None = tangent_of(proportional) if with_tangent else None
+    result = steady_beside(heavier, proportional, tangent=tangent)
+    assert result is not None
+    again = steady_beside(heavier, proportional, guess=result.change)
+    assert again is not None
+    assert again.search.iterations == 1
+    np.testing.assert_allclose(again.change, result.change, rtol=1e-6, atol=1e-8)
+
+
+def test_progress_and_the_time_of_the_search_are_told(proportional: Run) -> None:
+    """Also of a search from a neighbor."""
+    drive, reports, begun = proportional.drive, list[Progress](), time.perf_counter()
+    run = steady_state(drive, start=proportional, progress=reports.append)
+    assert 0.0 < run.dataset.attrs["wall_time"] <= time.perf_counter() - begun
+    assert (reports[0].time, reports[0].outputs_written, reports[0].phase) == (0.0, 0, "equilibrium")
+    assert reports[0].duration == drive.simulation.duration
