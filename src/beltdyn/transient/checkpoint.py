@@ -139,7 +139,7 @@ class Keeper:
                 f"is interrupted or killed now, it will resume from {since}. Another checkpoint is attempted every "
                 f"{self._every:g} s.",
                 CheckpointWarning,
-                stacklevel=4,
+                stacklevel=7,  # where an analysis was called
             )
 
     def remove(self) -> None:

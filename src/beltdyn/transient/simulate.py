@@ -179,7 +179,7 @@ def _resume(
     else:
         begun = ""
     if begun:
-        warnings.warn(f"{path} has nothing to resume: {begun}. It begins anew.", CheckpointWarning, stacklevel=3)
+        warnings.warn(f"{path} has nothing to resume: {begun}. It begins anew.", CheckpointWarning, stacklevel=4)
         return None
     point = read_checkpoint(checkpoint_file(path))
     if drive not in (point.drive, point.recording["_prepared"].drive):

@@ -359,7 +359,7 @@ def test_tensioners_that_move_against_a_force_are_unstable(
     monkeypatch.setattr(installation, "tensioner_compliance", lambda system, state: np.array(compliance))
     pulleys = [SimpleNamespace(name=name) for name in ("right", "left", "slide")]
     system = SimpleNamespace(
-        bodies=np.rec.fromarrays([np.array([7.0, 7.0, 7.0, *reaches])], names="reach"),
+        bodies=np.array([(reach,) for reach in (7.0, 7.0, 7.0, *reaches)], [("reach", "f8")]).view(np.recarray),
         tensioners=SimpleNamespace(pulley=np.array([1, 2])),
     )
     rest: Any = SimpleNamespace(system=system, state=None, prepared=SimpleNamespace(pulleys=pulleys))

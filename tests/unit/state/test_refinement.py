@@ -292,7 +292,7 @@ def begun(monkeypatch: pytest.MonkeyPatch) -> Callable[..., Any]:
             refinement, "stand", lambda prepared, fineness: SimpleNamespace(**vars(rest) | {"fineness": fineness})
         )
         rule = MeshRule(0.01, elements=elements)
-        result = steady_from_rest(rest, 0.0, lambda at: rule._replace(fineness=at.fineness), 0.01, bands=True)  # type: ignore[arg-type,return-value]
+        result = steady_from_rest(rest, 0.0, lambda at: rule._replace(fineness=at.fineness), 0.01, bands=True)  # type: ignore[arg-type]
         return starts, result
 
     return run

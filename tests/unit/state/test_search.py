@@ -183,7 +183,12 @@ def test_a_belt_begins_to_run_in_other_ways_where_one_fails(first: int, monkeypa
 
     monkeypatch.setattr(search, "_start", start)
     reached = list[Setting]()
-    monkeypatch.setattr(search, "_reach", lambda target: reached.append(target) is None)
+
+    def reach(target: Setting) -> bool:
+        reached.append(target)
+        return True
+
+    monkeypatch.setattr(search, "_reach", reach)
     assert search._run_up(search.state.position, 5.0, 7.0)
     expected = [
         setting

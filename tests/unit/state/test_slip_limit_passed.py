@@ -19,7 +19,7 @@ SPRING = {"kind": "sliding", "pulley": "idler", "direction": [0.0, 1.0], "mass":
 
 def drive(*tensioners: Any, **driven: Any) -> Drive:
     """A motor, a load and an idler."""
-    pulleys = [
+    pulleys: list[dict[str, Any]] = [
         {"name": "motor", "center": (0.0, 0.0), "speed": {"kind": "constant", "value": SPEED}},
         {"name": "fan", "center": (0.4, 0.0), "inertia": 0.01, "torque": -20.0} | driven,
         {"name": "idler", "center": (0.2, 0.25), "inertia": 0.001},

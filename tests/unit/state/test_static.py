@@ -116,9 +116,9 @@ def test_the_norm_of_a_step_is_the_work_of_forces_out_of_balance() -> None:
     nodes, tensioner = search._here.matrix.node_side.ravel().copy(), search._here.matrix.border_side.copy()
     search.step(1.0)
     moved = before - search.position
-    work = nodes @ moved[: nodes.size], float(tensioner[0] * moved[-1])
-    assert min(abs(each) for each in work) > 1e-3 * abs(sum(work))
-    assert norm**2 * system.element.section.axial * system.length.sum() == pytest.approx(abs(sum(work)), rel=1e-9)
+    work = np.array([nodes @ moved[: nodes.size], tensioner[0] * moved[-1]])
+    assert np.abs(work).min() > 1e-3 * abs(work.sum())
+    assert norm**2 * system.element.section.axial * system.length.sum() == pytest.approx(abs(work.sum()), rel=1e-9)
     search.step(-1.0)
     np.testing.assert_allclose(search.position, before, rtol=1e-12, atol=1e-15)
 

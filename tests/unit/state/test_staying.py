@@ -26,10 +26,10 @@ from beltdyn.state.staying import (
     stand_like,
     transfer,
 )
-from beltdyn.system.arc_mesh import ByArcs, base_lengths, fitted, shifts_of
+from beltdyn.system.arc_mesh import base_lengths, fitted, shifts_of
 from beltdyn.system.arrays import System
 from beltdyn.system.build import staying_system
-from beltdyn.system.frame import centreline_points
+from beltdyn.system.frame import StayingByArcs, centreline_points
 from beltdyn.system.meshing import phases
 from beltdyn.system.moving_center import pulley_centers
 from beltdyn.system.state import State
@@ -234,7 +234,7 @@ def test_a_mesh_that_stays_at_every_arc_fits_the_belt_at_rest() -> None:
     """Elements have the lengths of where the state at rest puts their arcs; without it they keep those of the path."""
     prepared = prepare(conveyor())
     rest = stand(prepared, 40)
-    assert isinstance(rest.system.frame, ByArcs)
+    assert isinstance(rest.system.frame, StayingByArcs)
     assert np.any(shifts_of(rest.system.frame) != 0.0)
     lengths = rest.system.length.copy()
     fitted(rest.system, rest.state.position)

@@ -1,5 +1,6 @@
 """The search for the installed tension on laws of tension over length, in place of equilibria."""
 
+import math
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass, field, replace
 from types import SimpleNamespace
@@ -286,7 +287,7 @@ def test_a_tension_far_from_the_first_length_is_found_where_springs_turn_it(spru
     step = 0.005 * sprung.belt_length
 
     def law(tighter: float) -> float:
-        return WANTED * (1.3 + 0.1 * np.cos(tighter / step) - (tighter / (9.0 * step)) ** 2)
+        return WANTED * (1.3 + 0.1 * math.cos(tighter / step) - (tighter / (9.0 * step)) ** 2)
 
     assert Searched(sprung, law).run().tension == pytest.approx(WANTED, rel=ACCURACY)
 

@@ -175,8 +175,9 @@ def test_what_is_in_the_place_of_a_checkpoint_stays(travelling: Drive, tmp_path:
     """A file of others, where the checkpoint would be, is left alone, and the run is complete."""
     path = tmp_path / "run.nc"
     checkpoint_file(path).write_text("mine")
-    with pytest.warns(CheckpointWarning, match=r"already exists and was not written by beltdyn"):
+    with pytest.warns(CheckpointWarning, match=r"already exists and was not written by beltdyn") as raised:
         assert simulate(travelling, path, checkpoint=OFTEN).status == "completed"
+    assert raised[0].filename == __file__
     assert checkpoint_file(path).read_text() == "mine"
 
 

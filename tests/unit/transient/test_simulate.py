@@ -1,19 +1,28 @@
 """Whole runs: status, outputs, interruption, failure, memory against file, static equilibrium."""
 
+import importlib
+import warnings
 from collections.abc import Callable
 from pathlib import Path
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
 import xarray as xr
 
-from beltdyn import equilibrium, simulate
+from beltdyn import equilibrium, example, simulate
 from beltdyn.errors import ConvergenceError, ModelError
+from beltdyn.machines import FunctionLoad
 from beltdyn.model import Drive
 from beltdyn.results import open_run
+from beltdyn.results.checks.mesh import COARSE_SETTINGS
+from beltdyn.results.summary import FAILURE, VALUES
 from beltdyn.solvers.run_progress import Progress
+from beltdyn.transient.checkpoint import CheckpointWarning
+from beltdyn.transient.simulate import _without_checkpoints, choose_integrator
 
 Change = Callable[..., Drive]
+simulate_module = importlib.import_module("beltdyn.transient.simulate")  # its name is that of the function, too
 SLOW = [pytest.param(one, marks=pytest.mark.slow) for one in ("cvode", "ida", "bdf", "radau")]
 INTEGRATORS = ["generalized_alpha", *SLOW]
 
@@ -125,3 +134,86 @@ def test_settings_reach_the_integrator(change: Change, integrator: str) -> None:
 
     assert steps(2e-4, start="laid", rtol=1e-4) > 2 * steps(2e-4, start="laid", rtol=1e-2)
     assert steps(5e-3, max_step=1e-4) >= 50 > steps(5e-3)
+
+
+def with_function(change: Change, **settings: object) -> Drive:
+    drive = change(simulation={"duration": 4e-4, "output_interval": 1e-4} | settings)
+    load = FunctionLoad(function=lambda time, angle, speed: -1.0 - 0.1 * speed)
+    return drive.replace(pulley=[drive.pulleys[0], drive.pulleys[1].replace(torque=None, load=[load])])
+
+
+def test_a_run_with_a_function_is_complete_but_keeps_no_checkpoints(change: Change, tmp_path: Path) -> None:
+    """A function cannot be stored in a file; all else is as in other runs."""
+    with warnings.catch_warnings():
+        warnings.simplefilter("error", CheckpointWarning)
+        run = simulate(with_function(change), tmp_path / "run.nc", checkpoint=1e-9)
+    np.testing.assert_array_equal(run.dataset.time, 1e-4 * np.arange(5))
+    assert run.dataset.shaft_torque.values[0, 1] == pytest.approx(-1.0)
+    assert run.status == "completed"
+
+
+def test_why_a_run_cannot_be_resumed(change: Change) -> None:
+    """Of the integrator that computes it, which may be another one than that of the drive."""
+    drive, method = change(), choose_integrator(change(simulation={"integrator": "bdf"}))
+    assert _without_checkpoints(drive, None) == ""
+    assert _without_checkpoints(drive, choose_integrator(drive)) == ""
+    assert _without_checkpoints(drive, method) == 'has integrator = "bdf", whose state is not stored'
+    assert "bdf" in _without_checkpoints(change(simulation={"integrator": "bdf"}), None)
+    assert 'a load of kind "function"' in _without_checkpoints(with_function(change), None)
+
+
+def test_where_nothing_was_kept_a_warning_points_to_the_call(change: Change, tmp_path: Path) -> None:
+    with pytest.warns(CheckpointWarning, match="nothing to resume: no run of this drive has begun there") as raised:
+        simulate(change(), tmp_path / "run.nc", resume=True)
+    assert raised[0].filename == __file__
+
+
+@pytest.mark.parametrize("compared", [False, True])
+def test_a_run_is_compared_with_steady_running_where_that_is_wanted(
+    change: Change, compared: bool, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """At the speeds and loads of its end; or it says why there is none."""
+    asked = list[Drive]()
+
+    def steadily(drive: Drive) -> None:
+        asked.append(drive)
+        raise ConvergenceError("it slips")
+
+    monkeypatch.setattr(simulate_module, "steady_state", steadily)
+    attributes = simulate(change(), compare_steady=compared).dataset.attrs
+    assert attributes.get(FAILURE) == ("it slips" if compared else None)
+    assert len(asked) == compared
+    assert VALUES not in attributes
+
+
+@pytest.mark.parametrize(
+    ("ends", "steadily", "noted"), [(False, True, True), (False, False, False), (True, True, False)]
+)
+def test_settings_of_a_coarse_run_are_noted_where_it_ends_steadily(
+    change: Change, ends: bool, steadily: bool, noted: bool, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Its losses are compared with those of steady running, which open belts do not have."""
+    notes, checked = dict[str, object](), list[bool]()
+    recording = SimpleNamespace(
+        check=lambda: checked.append(True), run=lambda: None, note=lambda **attributes: notes.update(attributes)
+    )
+    monkeypatch.setattr(simulate_module, "ends_steadily", lambda run: steadily)
+    monkeypatch.setattr(simulate_module, "_steady_losses", lambda drive: {"losses": 1.0})
+    drive = example("band_brake") if ends else change(belt={"elements": 20})
+    simulate_module._end(recording, drive, False)
+    assert checked == [True]
+    assert (notes.get("losses"), COARSE_SETTINGS in notes) == (1.0 if noted else None, noted)
+
+
+def test_an_open_belt_is_not_compared_with_steady_running(tmp_path: Path) -> None:
+    """It says so before anything is computed."""
+    reports = list[Progress]()
+    with pytest.raises(ModelError, match="an open belt has no steady running"):
+        simulate(example("band_brake"), tmp_path / "run.nc", reports.append, compare_steady=True)
+    assert reports == []
+    assert not list(tmp_path.iterdir())
+
+
+def test_a_run_needs_a_duration(change: Change) -> None:
+    with pytest.raises(ModelError, match=r"simulation\.duration is missing, the time to be simulated"):
+        simulate(change(simulation={"duration": None, "output_interval": None}))

@@ -1,12 +1,18 @@
 """A drive step by step: the same motion as in one run, inputs between, and states to go back to."""
 
+import pickle
+from collections.abc import Iterator
+from copy import deepcopy
+
 import numpy as np
 import pytest
 
 from beltdyn.errors import ModelError
 from beltdyn.model import Drive
+from beltdyn.solvers.trajectory import Chunk
 from beltdyn.transient.simulate import simulate
-from beltdyn.transient.simulator import Simulator
+from beltdyn.transient.simulator import Simulator, SimulatorState, _same_sizes, output_names
+from tests.unit.vibration.test_small_motions import loose
 
 
 @pytest.fixture(scope="module")
@@ -189,3 +195,162 @@ def test_on_the_mesh_that_stays(short: Drive) -> None:
     simulator.step(0.03)
     assert simulator.outputs()["pulley_speed[driver]"] == pytest.approx(2.0)
     assert np.isfinite([tight, slack]).all()
+
+
+@pytest.fixture(scope="module")
+def sprung() -> Drive:
+    """Three pulleys of their own speeds, one of them on a slide; the belt as laid."""
+    settings = {"duration": 1e-3, "frame": "travelling", "start": "laid"}
+    left, right, slide = loose().pulleys
+    belt = loose().belt.replace(installed_tension=None, length=1.416, elements=20)
+    pulleys = [left.replace(speed=5.0), right.replace(torque=-0.5), slide]
+    return loose().replace(pulley=pulleys, belt=belt, simulation=settings)
+
+
+def test_outputs_are_those_of_the_state(sprung: Drive) -> None:
+    """Each in its place: speeds and angles of pulleys and shafts, torques, and the place of the tensioner."""
+    simulator = Simulator(sprung)
+    for number in (1, 2):
+        simulator.step(number * 1e-4)
+    outputs, state = simulator.outputs(), simulator._integration.state
+    first = simulator._integration.system.first_body
+    for number, pulley in enumerate(sprung.pulleys):
+        for kind in ("pulley", "shaft"):
+            assert outputs[f"{kind}_speed[{pulley.name}]"] == state.velocity[first + number]
+            assert outputs[f"{kind}_angle[{pulley.name}]"] == state.position[first + number]
+    assert outputs["pulley_speed[left]"] == pytest.approx(5.0)
+    assert outputs["pulley_angle[left]"] == pytest.approx(5.0 * 2e-4)
+    assert outputs["shaft_torque[right]"] == pytest.approx(-0.5)
+    assert outputs["tensioner_position[slide]"] == state.position[-1] != 0.0
+    assert list(outputs) == output_names(sprung)
+    tensions = [value for name, value in outputs.items() if name.startswith("span_tension")]
+    assert len(set(tensions)) == 3
+    assert all(0.0 < outputs[f"wrap_angle[{pulley.name}]"] < np.pi for pulley in sprung.pulleys)
+
+
+def test_a_state_travels_with_inputs_that_are_under_way(sprung: Drive) -> None:
+    """To a simulator of the same drive elsewhere, which goes on to the bit."""
+    simulator, elsewhere = Simulator(sprung), Simulator(sprung)
+    simulator.set_torque("right", 0.3)
+    simulator.set_center("right", (0.4001, 0.0))
+    simulator.step(1e-4)
+    saved = pickle.loads(pickle.dumps(simulator.save()))
+    elsewhere.set_torque("right", 9.0)  # forgotten
+    elsewhere.restore(saved)
+    assert elsewhere.time == 1e-4
+    assert elsewhere.center("right") == pytest.approx((0.4001, 0.0))
+    assert elsewhere._pulleys == simulator._pulleys
+    for each in (simulator, elsewhere):
+        each.step(2e-4)
+    assert elsewhere.outputs() == simulator.outputs()
+    assert elsewhere.outputs()["shaft_torque[right]"] == pytest.approx(0.3)
+
+
+@pytest.mark.parametrize(
+    "changes",
+    [
+        {"belt.elements": 22},
+        {"pulley[right].load": [{"kind": "resistance", "constant": 1.0}], "pulley[right].harmonics": ()},
+        {"pulley[left].speed": {"kind": "ramp", "start": 0.0, "end": 1.0, "value": 5.0}},
+        {"simulation.frame": "staying", "simulation.start": "equilibrium"},
+    ],
+    ids=["elements", "loads", "speed", "mesh"],
+)
+def test_states_of_other_drives(sprung: Drive, changes: dict[str, object]) -> None:
+    """A state with other arrays is refused; one that differs in values alone fits."""
+    saved = Simulator(sprung.with_(changes)).save()
+    simulator = Simulator(sprung)
+    if "pulley[right].load" in changes or "pulley[left].speed" in changes:
+        simulator.restore(saved)
+        simulator.step(1e-4)
+        return
+    before = simulator.outputs()
+    with pytest.raises(ModelError, match="the state belongs to another drive"):
+        simulator.restore(saved)
+    assert simulator.outputs() == before
+
+
+def damaged(saved: SimulatorState, name: str) -> SimulatorState:
+    """A state whose profiles refer to rows that are not there, or which has other arrays."""
+    changed = deepcopy(saved.changed)
+    profiles = changed["profiles"]
+    table = profiles.table.copy()
+    if name == "falls":
+        table["segment"][1] = table["segment"][-1] + 1
+    elif name == "begins below":
+        table["segment"][0] = -1
+    elif name == "ends behind":
+        table["segment"][-1] += 1
+    elif name == "harmonics":
+        table["harmonic"][-1] += 1
+    elif name == "fewer profiles":
+        table = table[1:]
+    elif name == "pulleys":
+        changed["pulleys"] = changed["pulleys"][:-1]
+    elif name == "bodies":
+        changed["bodies"] = changed["bodies"][:-1]
+    elif name == "tensioners":
+        changed["tensioners"] = np.resize(changed["tensioners"], 4).view(np.recarray)
+        changed["bodies"] = np.resize(changed["bodies"], 7).view(np.recarray)
+    changed["profiles"] = profiles._replace(table=table)
+    return SimulatorState(saved.integrator, changed, saved.pulleys, saved.anew, saved.moves)
+
+
+def test_a_state_refers_to_rows_that_are_there(sprung: Drive) -> None:
+    """What a kernel would read beyond its arrays is refused."""
+    simulator = Simulator(sprung)
+    saved = simulator.save()
+    for name in (
+        *("falls", "begins below", "ends behind", "harmonics", "fewer profiles", "pulleys", "bodies", "tensioners"),
+    ):
+        with pytest.raises(ModelError, match="the state belongs to another drive"):
+            simulator.restore(damaged(saved, name))
+        assert not _same_sizes(damaged(saved, name).changed, saved.changed), name
+    simulator.restore(damaged(saved, "not at all"))
+    vectors = saved.integrator._replace(position=saved.integrator.position[:-1])
+    with pytest.raises(ModelError, match="the state belongs to another drive"):
+        simulator.restore(SimulatorState(vectors, saved.changed, saved.pulleys, saved.anew, saved.moves))
+
+
+def test_kinks_of_what_is_prescribed_are_instants_of_steps(sprung: Drive, monkeypatch: pytest.MonkeyPatch) -> None:
+    """The integration begins anew at each of them, and where inputs were set."""
+    ramp = {"kind": "ramp", "start": 1e-4, "end": 2e-4, "value": 6.0}
+    simulator = Simulator(sprung.with_({"pulley[left].speed": ramp}))
+    integration, begun = simulator._integration, list[float]()
+    restart, until, stops = integration.restart, integration.until, list[float]()
+
+    def restarted() -> None:
+        begun.append(simulator.time)
+        restart()
+
+    def integrated(stop: float) -> Iterator[Chunk]:
+        stops.append(stop)
+        return until(stop)
+
+    monkeypatch.setattr(integration, "restart", restarted)
+    monkeypatch.setattr(integration, "until", integrated)
+    simulator.step(2.5e-4)
+    assert stops == [1e-4, 2e-4, 2.5e-4]
+    assert begun == [0.0, 1e-4, 2e-4]
+    simulator.step(3e-4)
+    simulator.set_torque("right", 1.0)
+    simulator.step(3.5e-4)
+    assert begun == [0.0, 1e-4, 2e-4, 3e-4]
+    assert simulator.outputs()["pulley_speed[left]"] == pytest.approx(6.0)
+
+
+def test_a_center_moves_evenly_and_stops(sprung: Drive) -> None:
+    """Also of a pulley that was moved before, and beside another one."""
+    simulator = Simulator(sprung)
+    simulator.set_center("right", (0.4002, 0.0))
+    simulator.step(1e-4)
+    simulator.step(2e-4)
+    assert simulator.center("right") == pytest.approx((0.4002, 0.0), abs=1e-12)
+    simulator.set_center("right", (0.4, 0.0001))
+    simulator.set_center("left", (0.0, 0.0002))
+    simulator.step(3e-4)
+    assert simulator.center("right") == pytest.approx((0.4, 0.0001), abs=1e-12)
+    assert simulator.center("left") == pytest.approx((0.0, 0.0002), abs=1e-12)
+    simulator.step(4e-4)
+    assert simulator.center("left") == pytest.approx((0.0, 0.0002), abs=1e-12)
+    assert list(simulator.outputs()) == output_names(sprung)

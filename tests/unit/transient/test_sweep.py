@@ -10,6 +10,7 @@ from beltdyn.errors import ModelError, SlipError
 from beltdyn.machines import FunctionLoad
 from beltdyn.model import Drive
 from beltdyn.results import open_run
+from beltdyn.results.summary import FAILURE, VALUES
 from beltdyn.transient.sweep import run_up, sweep, without_schedules
 
 
@@ -89,6 +90,7 @@ def test_a_sweep_is_a_run_that_names_its_pulley(drive: Drive) -> None:
     assert run.drive_as_given == drive.text
     assert float(run.dataset.pulley_speed.sel(pulley="driver")[-1]) == pytest.approx(40.0 * np.pi)
     assert float(run.dataset.time[-1]) == pytest.approx(0.01)
+    assert not {VALUES, FAILURE} & run.dataset.attrs.keys()  # it is not compared with steady running
 
 
 @pytest.mark.parametrize(("rotation", "sense"), [("counter-clockwise", 1.0), ("clockwise", -1.0)])
@@ -144,3 +146,60 @@ def test_the_swept_speed_is_not_called_constant(drive: Drive) -> None:
     run = sweep(drive, pulley="driver", from_=20.0, to=30.0, duration="5 ms", settling="10 ms")
     assert "driver.speed" not in run.dataset.attrs["held"]
     assert "Set a settling time of 3.1 s or more" in " ".join(run.warnings)
+
+
+@pytest.mark.parametrize(
+    ("start", "end", "refused"),
+    [(1.0, 2.0, False), (0.5, 1.0, False), (2.0, 0.0, False), (0.0, -2.0, False), (-1.0, 2.0, True), (2.0, 2.0, True)],
+)
+def test_speeds_of_a_run_up_differ_and_have_one_sense(drive: Drive, start: float, end: float, refused: bool) -> None:
+    if refused:
+        with pytest.raises(ModelError, match=rf"from {start:g} to {end:g} rad/s is not a run-up"):
+            run_up(drive, "driver", start, end, 1.0)
+    else:
+        profile = run_up(drive, "driver", start, end, 1.0).pulleys[0].speed
+        assert profile is not None
+        np.testing.assert_allclose(profile.at([0.0, 1.0]), [start, end])
+
+
+@pytest.mark.parametrize("driven", ["laid", "equilibrium", "steady"])
+def test_a_run_up_begins_at_rest_or_laid(drive: Drive, driven: str) -> None:
+    """It settles from there, whatever the drive says of its own runs."""
+    begun = drive.with_({"simulation.start": driven, "simulation.frame": "travelling"})
+    expected = "laid" if driven == "laid" else "equilibrium"
+    assert run_up(begun, "driver", 1.0, 2.0, 1.0).simulation.start == expected
+
+
+def test_times_of_a_run_up_are_above_zero(drive: Drive) -> None:
+    with pytest.raises(ModelError, match=r"duration = 0 s must be above zero"):
+        sweep(drive, pulley="driver", from_=1.0, to=2.0, duration=0.0)
+    with pytest.raises(ModelError, match=r"settling = 0 s must be above zero"):
+        sweep(drive, pulley="driver", from_=1.0, to=2.0, settling="0 s")
+    with pytest.raises(ModelError, match=r"'driven' turns freely, .* Choose one of driver"):
+        sweep(drive, pulley="driven", from_=1.0, to=2.0)
+
+
+@pytest.mark.parametrize(("settling", "longest"), [(None, 4.0), ("0.5 s", 0.5)])
+def test_a_drive_settles_behind_a_tenth_of_the_run_up(
+    drive: Drive, settling: str | None, longest: float, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """In which it reaches its speed, for as long as the run-up takes, unless it is told."""
+    begun: dict[str, Any] = {}
+    monkeypatch.setattr("beltdyn.transient.sweep.record_run", lambda *_, **options: begun.update(options))
+    sweep(drive, pulley="driver", from_=3.0, to=9.0, duration="4 s", settling=settling)
+    begin = begun["begin"]
+    assert (begin.pulley, begin.speed, begin.lead, begin.longest) == (0, 3.0, pytest.approx(0.4), longest)
+    assert begun["watch"] is not None
+    assert begun["drive_as_given"] == drive.text
+
+
+def test_quantities_that_are_held_are_named(drive: Drive, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Those of other pulleys, hubs and goods too, but not the speed that is swept; constants need no word."""
+    begun: dict[str, Any] = {}
+    monkeypatch.setattr("beltdyn.transient.sweep.record_run", lambda *_, **options: begun.update(options))
+    ramp = {"kind": "ramp", "start": 0.0, "end": 1.0, "value": -0.25}
+    driven = drive.with_({"pulley[driven].torque": ramp})
+    sweep(driven, pulley="driver", from_=3.0, to=9.0)
+    assert begun["held"] == "driven.torque = -0.25"
+    sweep(drive.with_({"pulley[driven].torque": -0.25}), pulley="driver", from_=3.0, to=9.0)
+    assert begun["held"] == ""
