@@ -17,6 +17,7 @@ from beltdyn.system.arrays import NO_TANGENT, Equations, Motion, System, Tangent
 from beltdyn.system.build import flowing_system, staying_system
 from beltdyn.system.constant_drive import constant_drive, with_speeds_unknown
 from beltdyn.system.frame import FlowingByArcs, StayingByArcs, centreline_places, node_shift
+from beltdyn.system.missed_action import numerical_loss
 from beltdyn.system.moving_center import pulley_center
 from beltdyn.system.ring_matrix import entries, places
 from beltdyn.system.state import State
@@ -253,6 +254,59 @@ def test_tangent_of_what_holds_an_arc_on_an_arm(moving: bool) -> None:
             vector[[6 * node, 6 * node + 1, place]] += sense * factor * way
         sides.append(holding(system, moved, moving=moving).border_side[row])
     assert found == pytest.approx(0.5 * (sides[0] - sides[1]), rel=1e-5)
+
+
+def test_an_arc_on_an_arm_that_is_the_first_unknown_is_held_too() -> None:
+    system, state, arc, place = on_an_arm()
+    row = arc - system.frame.arcs.node.size - 1
+    unknowns = np.asarray(system.bodies.unknown)
+    own = int(unknowns[place - system.first_body])
+    before = holding(system, state, FACTORS).corner[row, own]
+    unknowns[place - system.first_body] = 0
+    after = holding(system, state, FACTORS).corner[row, 0]
+    unknowns[place - system.first_body] = own
+    assert before == after != 0.0
+
+
+@pytest.mark.parametrize(("shifting", "order"), [([0.0, 0.0], 3.0), ([20.0, -30.0], 2.0)])
+def test_inertia_does_the_change_of_the_kinetic_energy(shifting: list[float], order: float) -> None:
+    """What is left falls with the third power of the step; with the second where the lengths of elements change."""
+    system, state = over_time(*laid(**BARE), spread=0.0)
+    losses, random = [], np.random.default_rng(11)
+    for vector in (state.velocity, state.acceleration):
+        vector[: system.first_body] = random.normal(size=system.first_body)
+    state.acceleration[system.frame.place - system.frame.arcs.node.size : system.frame.place] = shifting
+    for step in (1e-4, 5e-5):
+        later = State(
+            state.position + step * state.velocity + 0.5 * step**2 * state.acceleration,
+            state.velocity + step * state.acceleration,
+            state.acceleration,
+        )
+        interpreted(fit_mesh)(system.frame, system, later.position)
+        impulse, work = np.zeros((2, state.position.size)), new_equations(system).work
+        losses.append(interpreted(numerical_loss)(system, state.at(0.0), later.at(step), impulse, work))
+    assert np.log2(losses[0] / losses[1]) == pytest.approx(order, abs=0.1)
+
+
+def test_zones_end_within_a_fifth_of_short_spans() -> None:
+    """Of rollers side by side, where layers at the ends of arcs would meet."""
+    rollers = [
+        {"name": name, "center": center, "radius": 0.02, "inertia": 0.1}
+        for name, center in (("snub", [2.0, -0.1]), ("tail", [2.034, -0.075]))
+    ]
+    prepared = prepare(conveyor(pulley=[PULLEYS[0], *rollers], support=[], goods=BARE["goods"]))
+    path, stretch = prepared.installation.path, prepared.laid.stretch
+    zones = zones_of(prepared)
+    assert len(zones) == path.on.size
+    reached = 0
+    for zone in zones:
+        p = int(path.on[zone.arc])
+        arc = abs(path.radii[p]) * path.wrap_angles[p] / stretch
+        shortest = min(path.span_lengths[path.reaching[p]], path.span_lengths[path.leaving[p]]) / stretch
+        beyond = 0.5 * (zone.end - zone.start - arc)
+        assert 0.0 < beyond <= 0.2 * shortest * (1.0 + 1e-9)
+        reached += beyond == pytest.approx(0.2 * shortest)
+    assert reached
 
 
 def test_without_flows_that_differ_it_is_the_mesh_without_arcs() -> None:

@@ -4,16 +4,17 @@ import numpy as np
 import pytest
 
 from beltdyn.arrays import FloatArray
+from beltdyn.kernel import interpreted
 from beltdyn.model import Drive, prepare
-from beltdyn.solvers.engine import linearise
 from beltdyn.solvers.flutter import Vibrations
 from beltdyn.system.arrays import SPRING_ENERGY, TORQUE_WORK, Equations, Motion, System, TangentFactors
 from beltdyn.system.body_forces import body_forces_at
-from beltdyn.system.build import drive_system
-from beltdyn.system.guide import Guided
+from beltdyn.system.build import drive_system, flowing_system, staying_system
+from beltdyn.system.frame import FlowingByArcs
+from beltdyn.system.guide import Guided, carry_ends
 from beltdyn.system.ring_matrix import entries
 from beltdyn.system.state import laid
-from beltdyn.system.steady_assembly import new_equations, no_multipliers
+from beltdyn.system.steady_assembly import assemble, new_equations, no_multipliers
 
 DRIVE = Drive(
     belt={
@@ -79,11 +80,10 @@ def moved(system: System, motion: Motion, step: FloatArray, factors: TangentFact
 
 def residual(system: System, motion: Motion, factors: TangentFactors) -> tuple[FloatArray, FloatArray, Equations]:
     equations = new_equations(system)
-    linearise(system, motion, no_multipliers(system), factors, equations)
+    interpreted(assemble)(system, motion, no_multipliers(system), factors, equations)
     return equations.matrix.node_side.copy(), equations.matrix.border_side.copy(), equations
 
 
-@pytest.mark.slow
 @pytest.mark.parametrize("way", [0.005, 0.0203, -0.0104])
 def test_the_tangent_is_the_derivative_of_the_residual(system: System, way: float) -> None:
     """On the free way and in both stops; the step moves the ends as the carriage does."""
@@ -108,6 +108,18 @@ def test_the_tangent_is_the_derivative_of_the_residual(system: System, way: floa
     assert np.all(system.bodies.unknown >= 0)
     assert found == pytest.approx(difference, rel=1e-4, abs=1e-5 * np.abs(difference).max())
     assert free == dof * system.nodes
+
+
+def test_no_belt_flows_past_ends_that_a_carriage_holds() -> None:
+    """On a mesh that stays at the arcs the flow at the first node is held in place of the belt."""
+    prepared = prepare(DRIVE)
+    system = flowing_system(staying_system(prepared, prepared.equal_lengths(12)), np.array([1.0, 0.0]))
+    assert isinstance(system.frame, FlowingByArcs)
+    rng, zero = np.random.default_rng(4), np.zeros(system.first_body + system.bodies.size)
+    motion, matrix = Motion(0.5, zero, zero, rng.standard_normal(zero.size)), new_equations(system).matrix
+    interpreted(carry_ends)(system.carriage, system, motion, TangentFactors(1.0, 3.0, 0.5), True, matrix)
+    assert matrix.border_side[-1] == motion.acceleration[system.frame.place]
+    assert matrix.corner[-1, -1] == 0.5
 
 
 def test_only_a_carriage_frees_the_ends(system: System) -> None:

@@ -128,6 +128,13 @@ def test_strains_are_means_over_the_element(system: System) -> None:
     assert difference == pytest.approx(own.shortening * curvature**2, rel=1e-9)
 
 
+def test_without_pulleys_strains_pass_from_element_to_element(drive: Drive) -> None:
+    belt = drive.belt.replace(elements=8, stretch_loss_factor=0.08, bending_loss_factor=0.15)
+    own = belt_system(belt).hysteresis
+    np.testing.assert_allclose(own.stretch_length, belt.given_length / 8)
+    assert not own.strain.any()
+
+
 def test_a_belt_without_loss_factors_has_no_rows(drive: Drive) -> None:
     assert drive_system(prepare(drive)).hysteresis.size == 0
     assert blank(drive_system(prepare(drive)).hysteresis.dtype).axial == 0.0

@@ -1,5 +1,7 @@
 """Unknowns of belts with teeth in steady running, and phases of grooves from one mesh or state to another."""
 
+from typing import Any
+
 import numpy as np
 import pytest
 
@@ -22,6 +24,7 @@ from beltdyn.system.meshing import (
     phases,
     stopped,
     tooth_phases,
+    tooth_rows,
     toothed_pulleys,
     turned_as,
     turning,
@@ -69,6 +72,14 @@ def test_phases_are_unknown_in_place_of_speeds(laid: tuple[System, State]) -> No
     assert velocity[system.first_body :].tolist() == pytest.approx([100.0, 100.0 * 24 / 36, 0.0], rel=1e-12)
     pitch = float(np.sum(system.length)) / 100
     assert system.frame.speed[0] == pytest.approx(100.0 * 24 / (2 * np.pi) * pitch, rel=1e-12)
+
+
+def test_teeth_have_the_play_of_their_grooves(prepared: Prepared) -> None:
+    """From flank to flank the backlash; pulleys without teeth have no stiffness of teeth."""
+    toothing: Any = {"toothing": {"law": "discrete", "backlash": 4e-4}}
+    rows = tooth_rows(prepare(prepared.drive.replace(belt=bd.Belt(**BELT | toothing))))
+    np.testing.assert_allclose(2.0 * rows.half_gap, 4e-4)
+    assert (rows.stiffness > 0.0).tolist() == [True, True, False]
 
 
 def test_grooves_are_turned_under_the_teeth(laid: tuple[System, State]) -> None:

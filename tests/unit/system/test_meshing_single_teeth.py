@@ -5,11 +5,13 @@ import pytest
 
 from beltdyn.arrays import Records
 from beltdyn.contact.surface import ToothedRims
+from beltdyn.kernel import interpreted
 from beltdyn.model import Prepared, prepare
 from beltdyn.system.arrays import System
 from beltdyn.system.body_forces import body_forces_at
 from beltdyn.system.build import drive_system
-from beltdyn.system.meshing import JumpWatch, fit_phases, tooth_coordinates, tooth_forces
+from beltdyn.system.element_state import element_workspace
+from beltdyn.system.meshing import JumpWatch, fill_tooth_forces, fit_phases, tooth_coordinates, tooth_forces
 from beltdyn.system.state import State, laid
 from beltdyn.transient.checkpoint import packing
 from tests.unit.model.test_toothing import drive
@@ -58,6 +60,19 @@ def test_forces_of_teeth_make_the_moment_on_the_pulley(system: System, state: St
     # the belt lies on the pitch line; beside the arc it is up to a tooth's height farther from the shaft
     change = float((after - before).sum()) * table_of(system)[1].pitch_radius
     assert moment[0] - moment[1] == pytest.approx(change, rel=1e-2)
+
+
+def test_teeth_pull_back_where_their_pulley_is_ahead(system: System, state: State) -> None:
+    """By as much as the spread force of teeth holds the pulley; and forward where it is behind."""
+    position = np.tile(state.position, (3, 1))
+    position[:, system.first_body + 1] += [0.0, 1e-3, -1e-3]
+    still, work = np.zeros_like(position), element_workspace(system)
+    found = np.zeros((3, tooth_coordinates(system).size))
+    interpreted(fill_tooth_forces)(system, position, still, work, found)
+    moment = interpreted(body_forces_at)(system, np.zeros(3), position, still).moment[:, 1]
+    change, pull = np.diff(found[[0, 1, 2, 0]], axis=0).sum(axis=1), np.diff(moment[[0, 1, 2, 0]])
+    np.testing.assert_allclose(-pull, change * table_of(system)[1].pitch_radius, rtol=1e-2)
+    assert change[0] > 0.0 > change[1]
 
 
 def turned(system: System, state: State, angle: float, states: int) -> tuple[np.ndarray, np.ndarray, np.ndarray]:

@@ -7,6 +7,7 @@ import pytest
 from scipy.interpolate import CubicHermiteSpline
 
 from beltdyn.arrays import FloatArray
+from beltdyn.kernel import interpreted
 from beltdyn.model import Drive, Path, install, prepare
 from beltdyn.quadrature import gauss_points
 from beltdyn.state.static import find_equilibrium
@@ -38,6 +39,29 @@ def seen(request: pytest.FixtureRequest, fine: Drive) -> tuple[float, Observatio
     velocity = np.zeros_like(state.velocity)
     velocity[: system.first_body : len(system.scale)] = request.param
     return request.param, see(system, state.position, velocity)
+
+
+@pytest.mark.parametrize("tensioner", ["sliding", "rotary"])
+def test_potential_energy_falls_by_the_weight_of_what_moves(
+    with_machines: Callable[..., Drive], tensioner: str
+) -> None:
+    """Of the belt, and of the pulley of a tensioner with what moves with it, along an oblique gravity."""
+    drive = with_machines(tensioner).replace(gravity=(-3.0, -9.0))
+    system = drive_system(prepare(drive))
+    state, size = laid(system, drive.path), len(system.scale)
+    positions = np.tile(state.position, (3, 1))
+    positions[1, -1] += 0.02
+    positions[2, : system.first_body] += np.tile([0.03, -0.05, *np.zeros(size - 2)], system.nodes)
+    found = interpreted(observe)(system, np.zeros(3), positions, np.zeros_like(positions))
+    energy, centers = found.potential_energy, found.pulley_center
+    (carried,) = np.flatnonzero(np.linalg.norm(centers[1] - centers[0], axis=1) > 1e-3)
+    weight = system.tensioners[0].weight
+    mass = {"sliding": 1.5, "rotary": 0.4}[tensioner] + 0.3
+    if tensioner == "sliding":
+        np.testing.assert_allclose(weight, mass * np.array([-3.0, -9.0]))
+    assert energy[1] - energy[0] == pytest.approx(-weight @ (centers[1] - centers[0])[carried], rel=1e-9)
+    belt = drive.belt.mass_per_length * float(system.length.sum())
+    assert energy[2] - energy[0] == pytest.approx(-belt * np.dot([-3.0, -9.0], [0.03, -0.05]), rel=1e-9)
 
 
 def test_tension(fine: Drive, seen: tuple[float, Observations]) -> None:
