@@ -17,8 +17,11 @@ from beltdyn.solvers.run_progress import Progress
 from beltdyn.state import installation
 from beltdyn.state.equilibrium import equilibrium
 from beltdyn.state.installation import bring_to_rest, follow
-from beltdyn.state.static import tensioner_compliance
+from beltdyn.state.static import Equilibrium, find_equilibrium, tensioner_compliance
+from beltdyn.system.arrays import System
+from beltdyn.system.state import State
 from beltdyn.transient.simulate import simulate
+from tests.unit.state.test_search import toothed
 
 Circle = tuple[str, float, float, float, str]
 FINE = 200
@@ -413,3 +416,35 @@ def test_settings_of_a_run_on_a_mesh_that_stays_do_not_matter_at_rest(settings: 
     rest = bring_to_rest(given)
     assert rest.drive.simulation == given.simulation
     assert rest.tension == pytest.approx(prepare(drive).tension_at_rest, rel=0.05)
+
+
+@pytest.mark.parametrize(("chosen", "elements"), [(False, 30), (True, None)])
+def test_equal_elements_are_as_many_as_those_of_the_drive_or_chosen(chosen: bool, elements: int | None) -> None:
+    """On a mesh that travels; a drive whose mesh travels already stays as it is."""
+    drive = load(str(files("beltdyn").joinpath("examples", "crossed_belt.toml"))).with_({"belt.elements": 30})
+    equal = installation.on_equal_elements(drive, chosen=chosen)
+    assert not equal.frame.stays
+    assert equal.belt.elements == elements
+    assert installation.on_equal_elements(equal, chosen=True) is equal
+
+
+@pytest.mark.parametrize(("teeth", "lost"), [(False, 0), (False, 1), (True, 0)])
+def test_rest_is_found_beside_that_of_another_drive(teeth: bool, lost: int, monkeypatch: pytest.MonkeyPatch) -> None:
+    """As from the laid belt; a belt with teeth is laid anew, and another one where the neighbor leads nowhere."""
+    drive = toothed() if teeth else BENDING["EI 0.03"](24)
+    rest = installation.rest_of(prepare(installation.on_equal_elements(drive)))
+    change = {"pulley[driven].center": [0.28005, 0.0]} if teeth else {"belt.length": 0.9999 * rest.drive.belt_length}
+    tighter, nodes, search = rest.drive.with_(change), list[int](), find_equilibrium
+    expected = bring_to_rest(tighter).tension
+
+    def counted(system: System, start: State) -> Equilibrium:
+        nodes.append(system.nodes)
+        if len(nodes) == lost:
+            raise ConvergenceError("lost")
+        return search(system, start)
+
+    monkeypatch.setattr(installation, "find_equilibrium", counted)
+    tension = installation.rest_like(tighter, rest).tension
+    assert tension == pytest.approx(expected, rel=1e-4 if teeth else 1e-7)
+    assert tension > 1.001 * rest.tension
+    assert set(nodes) == {rest.system.nodes}

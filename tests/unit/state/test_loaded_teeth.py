@@ -7,6 +7,9 @@ import numpy as np
 import pytest
 
 import beltdyn as bd
+from beltdyn.model import prepare
+from beltdyn.state.loaded_teeth import _balanced_torques, _pull_of_carriage
+from beltdyn.system.build import axis_system, drive_system
 
 RADIUS = 36 * 8e-3 / (2 * pi)
 
@@ -56,3 +59,38 @@ def test_a_force_on_a_carriage_is_no_shock(frame: str) -> None:
     tension = run.span_tension.values
     assert abs(tension[0, -1] - tension[0, 0]) == pytest.approx(8.0, rel=0.01)
     assert np.ptp(tension, axis=0).max() < 0.01 * 8.0
+
+
+@pytest.mark.parametrize(
+    ("load", "torque"),
+    [
+        ({"kind": "resistance", "constant": 3.0}, 0.0),
+        ({"kind": "resistance", "linear": 2.0}, 0.0),
+        ({"kind": "angle_table", "angles": [0.0, 2.0, 4.0], "torques": [-3.0, -3.0, -3.0]}, -3.0),
+        ({"kind": "motor", "breakdown_torque": 20.0, "breakdown_slip": 0.5, "synchronous_speed": 20.0}, 16.0),
+    ],
+    ids=["dry", "viscous", "of the angle", "motor at standstill"],
+)
+def test_loads_on_teeth_are_those_at_rest(load: dict[str, Any], torque: float) -> None:
+    """What resists motion alone is none; the driver balances the others in proportion to its teeth."""
+    prepared = prepare(drive("staying", load=[load]))
+    torques = _balanced_torques(prepared, drive_system(prepared))
+    assert torques[1] == pytest.approx(torque - 5.0)
+    assert torques[0] == pytest.approx(-torques[1] * 24.0 / 36.0)
+
+
+def test_without_a_driver_with_teeth_nothing_holds_loads() -> None:
+    driver, driven = drive("staying").pulleys
+    free = prepare(drive("staying").replace(pulley=[driver.replace(speed=None, inertia=1e-3, torque=2.0), driven]))
+    assert not _balanced_torques(free, drive_system(free)).any()
+
+
+@pytest.mark.parametrize("force", [-8.0, 3.0])
+def test_a_carriage_pulls_with_its_force_where_its_belt_runs(force: float) -> None:
+    """In the direction in which it moves, to which its strand runs; a closed belt has none."""
+    axis = bd.example("printer_axis")
+    prepared = prepare(axis.replace(carriage=axis.data["carriage"] | {"force": force, "friction": 0.0}))
+    system = axis_system(prepared, prepared.equal_lengths(prepared.elements))
+    assert abs(_pull_of_carriage(prepared, system)) == pytest.approx(abs(force))
+    closed = prepare(drive("staying"))
+    assert _pull_of_carriage(closed, drive_system(closed)) == 0.0

@@ -1,10 +1,12 @@
 """The search for steady running."""
 
+from types import SimpleNamespace
 from typing import Any
 
 import numpy as np
 import pytest
 
+from beltdyn.arrays import FloatArray
 from beltdyn.errors import ConvergenceError, ModelError
 from beltdyn.model import Drive, prepare
 from beltdyn.solvers.continuation import Solution
@@ -14,7 +16,7 @@ from beltdyn.state.slip_limit import Setting
 from beltdyn.state.staying import _lying, stand
 from beltdyn.state.steady import steady_beside, steady_state
 from beltdyn.state.way import Way
-from beltdyn.system.build import staying_system
+from beltdyn.system.build import loses_in_bending, staying_system
 from beltdyn.system.web import content, set_content
 
 
@@ -208,6 +210,7 @@ def test_the_curve_is_followed_from_the_last_solution_without_gross_slip(
     way.solutions = [Solution(place, (1.0 - 1e-3 * place) * begin) for place in (0.0, 0.2, 0.4, 0.6)]
 
     def followed(way: Way, place: float, allowed: float, is_lost: Any) -> list[Solution]:
+        assert allowed == pytest.approx(1e-6 * float(loaded.prepared.radii.min()))
         placed.append((place, way.unknowns(), is_lost()))
         return [Solution(place, way.unknowns())]
 
@@ -221,6 +224,63 @@ def test_the_curve_is_followed_from_the_last_solution_without_gross_slip(
     assert [lost for *_, lost in placed] == [True, False]
     np.testing.assert_allclose(loaded.unknowns(), begin)
     assert len(loaded._passed) == 2
+
+
+@pytest.mark.parametrize(
+    ("torque", "change", "tangent"), [(-8.0, "load", True), (-8.0, "smoothing", False), (-5.0, "load", False)]
+)
+def test_tangents_serve_where_loads_grow(
+    torque: float, change: str, tangent: bool, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Not where friction is smoothed, by factors, nor on teeth, which meet their flanks."""
+    search, served = unsolved(toothed() if torque == -5.0 else two()), list[bool]()
+
+    def follow(solve: Any, *solutions: Solution, tangent: Any) -> list[Solution]:
+        served.append(tangent is not None)
+        return list(solutions)
+
+    monkeypatch.setattr(search_module, "follow", follow)
+    search.setting = Setting(load=0.5)
+    assert search._reach(search.setting._replace(**{change: 0.7}))
+    assert served == [tangent]
+
+
+@pytest.mark.parametrize(
+    ("rims", "used", "slip", "stalls"),
+    [
+        ([100.0, 10.0], [0.2, 0.95], 0.9, True),
+        ([100.0, -10.0], [0.2, 0.95], 0.9, True),
+        ([100.0, 10.0], [0.95, 0.5], 0.9, False),
+        ([100.0, 60.0], [0.2, 0.95], 0.9, False),
+        ([100.0, 10.0], [0.2, 0.95], 0.4, False),
+    ],
+    ids=["stalled", "turns back", "friction left", "turns", "had slipped before"],
+)
+def test_a_pulley_stalls_with_all_of_its_friction(
+    rims: list[float], used: list[float], slip: float, stalls: bool, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    search = unsolved(two())
+    search.state.velocity[search.system.first_body :][:2] = rims
+    search._uniform = np.array([100.0, 100.0])
+    monkeypatch.setattr(search, "_here", lambda: SimpleNamespace(used=np.array(used)))
+    monkeypatch.setattr(search, "_largest_slip", lambda: slip)
+    assert not search._stalls()  # nothing was loaded
+    search._loading = Way(search, Setting(load=0.0), Setting())
+    search._passed = [SimpleNamespace()]  # type: ignore[list-item]
+    assert search._stalls() is stalls
+
+
+@pytest.mark.parametrize(("part", "slips"), [(0.99, False), (0.8, True), (-1.0, True)])
+def test_a_clutch_slips_where_its_hub_turns_slower(part: float, slips: bool, monkeypatch: pytest.MonkeyPatch) -> None:
+    search = unsolved(two())
+    speeds = search.state.velocity[search.system.first_body :][:2]
+    speeds[:] = 100.0, 50.0
+
+    def guess(system: object, velocity: FloatArray) -> None:
+        velocity[search.system.first_body + 1] *= part
+
+    monkeypatch.setattr(search_module, "guess_hubs", guess)
+    assert search._lets_slip(search.system) is slips
 
 
 def test_friction_is_smoothed_to_a_third_of_the_speed() -> None:
@@ -253,6 +313,18 @@ def test_loads_and_speeds_are_a_part_of_those_required() -> None:
     np.testing.assert_allclose(offsets(search, Setting(support=0.5)), [100.0, -6.5])
     search._held, search._held_speed = 1, 70.0
     np.testing.assert_allclose(offsets(search, Setting(speed=0.1)), [10.0, 7.0])
+
+
+@pytest.mark.parametrize("part", [1.0, 0.5, 0.0])
+def test_bending_loses_a_part_of_what_it_does(part: float) -> None:
+    """Of the belt's own; nothing is changed at its full loss."""
+    search = unsolved(two().with_({"belt.bending_loss_factor": 0.1}))
+    system = search.at(Setting(bending_loss=part))
+    assert loses_in_bending(search.system)
+    assert loses_in_bending(system) is (part > 0.0)
+    whole = search.system.element.section.bending_hysteresis
+    assert system.element.section.bending_hysteresis == pytest.approx(part * whole)
+    assert (system.element is search.system.element) is (part == 1.0)
 
 
 @pytest.mark.parametrize(("faster", "shares"), [(1.02, (1.01, 1.0)), (1.2, (1.2, 0.5))])
@@ -326,6 +398,23 @@ def test_under_another_load_the_motor_turns_slower(torque: float, result: bool) 
     if beside is not None:
         requires_what_the_motor_gives(beside.search, -torque)
         assert beside.search._speed_of(0) < float(run.dataset.shaft_speed[-1, 0])
+
+
+def test_a_toothed_belt_of_a_given_speed_has_a_neighbor_too() -> None:
+    """Whose search leaves the speed as it is."""
+    driver, driven = toothed().pulleys
+    drive = toothed().replace(pulley=[driver.replace(load=(), speed=20.0), driven])
+    beside = steady_beside(drive.with_({"pulley[driven].torque": -7.0}), steady_state(drive, elements=40))
+    assert beside is not None
+    assert beside.search._speed_of(0) == pytest.approx(20.0)
+    assert abs(torque_of(beside.search, 0)) == pytest.approx(7.0 * 24.0 / 36.0, rel=0.01)
+
+
+def test_a_motor_has_no_speed_where_the_belt_does_not_run(
+    geared: SteadySearch, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(geared, "_try", lambda _: False)
+    assert not geared._balance(0)
 
 
 def test_a_motor_whose_torque_does_not_converge_is_told(geared: SteadySearch, monkeypatch: pytest.MonkeyPatch) -> None:
@@ -408,7 +497,8 @@ def test_an_integrating_controller_begins_with_what_it_sees_at_rest(line: Steady
     assert abs(errors.item()) == pytest.approx(RATE * 4e-5, rel=1e-9)
     line._errors = errors
     try:
-        for load in (0.0, 0.25, 1.0):
+        assert line._with_set_values(loads, 1.0) is loads
+        for load in (0.0, 0.25):
             shifted = line._with_set_values(loads, load).table[0]
             assert shifted.sensor_rate * 4e-5 + shifted.sensor_zero == pytest.approx(load * errors.item(), abs=1e-12)
     finally:

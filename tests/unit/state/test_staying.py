@@ -13,6 +13,7 @@ from beltdyn.errors import ConvergenceError
 from beltdyn.model import Drive, Prepared, prepare
 from beltdyn.model.resolution import Laid
 from beltdyn.state import staying
+from beltdyn.state.installation import looked_at
 from beltdyn.state.newton import find_steady
 from beltdyn.state.staying import (
     FINER,
@@ -240,3 +241,37 @@ def test_a_mesh_that_stays_at_every_arc_fits_the_belt_at_rest() -> None:
     fitted(rest.system, rest.state.position)
     np.testing.assert_array_equal(rest.system.length, lengths)
     assert np.abs(lengths - base_lengths(rest.system)).max() > 1e-9
+
+
+def test_a_finer_mesh_begins_with_the_coarser_one(drive: Drive, monkeypatch: pytest.MonkeyPatch) -> None:
+    """With 1.4 times the elements, and the tension to the error of the coarser one; or it begins with the laid belt."""
+    rest = stand(prepare(drive), fineness=0.6)
+    finer = staying._on_finer_mesh(rest)
+    assert finer.fineness == pytest.approx(0.84)
+    assert finer.system.nodes > 1.2 * rest.system.nodes
+    assert finer.tension == pytest.approx(rest.tension, rel=1e-3)
+    balanced, tried = staying._balanced, list[int]()
+
+    def lost(*arguments: Any) -> tuple[State, float]:
+        tried.append(len(tried))
+        if len(tried) == 1:
+            raise ConvergenceError("lost")
+        return balanced(*arguments)
+
+    monkeypatch.setattr(staying, "_balanced", lost)
+    assert staying._on_finer_mesh(rest).tension == pytest.approx(finer.tension, rel=1e-8)
+
+
+@pytest.mark.parametrize(("torque", "held"), [(2.0, True), (3000.0, False)])
+def test_teeth_hold_torques_up_to_a_limit(torque: float, held: bool) -> None:
+    """Spans differ by the torque over the radius; what is not held leaves the belt and its grooves as they were."""
+    rest = stand(prepare(toothed()), 60)
+    before, phase = rest.state.position.copy(), phases(rest.system).copy()
+    torques = np.array([-torque * 24.0 / 36.0, torque])
+    assert staying.under_torques(rest.prepared, rest.system, rest.state, torques) is held
+    if held:
+        tensions = looked_at(rest.prepared, rest.system, rest.state).seen.span_tension[0]
+        assert abs(np.diff(tensions).item()) == pytest.approx(torque / (36 * 8e-3 / (2.0 * np.pi)), rel=0.02)
+    else:
+        np.testing.assert_array_equal(rest.state.position, before)
+        np.testing.assert_array_equal(phases(rest.system), phase)

@@ -7,12 +7,15 @@ import numpy as np
 import pytest
 
 import beltdyn as bd
+from beltdyn.arrays import FloatArray
 from beltdyn.errors import ConvergenceError
 from beltdyn.model import Drive
 from beltdyn.results import Run
 from beltdyn.solvers.run_progress import Progress
+from beltdyn.state import steady
 from beltdyn.state.newton import SteadyWork
-from beltdyn.state.steady import _require_trims, search_from, steady_beside, steady_state, tangent_of
+from beltdyn.state.search import SteadySearch
+from beltdyn.state.steady import _require_trims, search_from, steady_beside, steady_from, steady_state, tangent_of
 from tests.unit.vibration.test_small_motions import loose
 
 SET_FORCE, TORQUE, GAIN, RATE, PRELOAD = 360.5, -4.0, 1e-2, 2e4, 400.0
@@ -117,3 +120,28 @@ def test_progress_and_the_time_of_the_search_are_told(proportional: Run) -> None
     assert 0.0 < run.dataset.attrs["wall_time"] <= time.perf_counter() - begun
     assert (reports[0].time, reports[0].outputs_written, reports[0].phase) == (0.0, 0, "equilibrium")
     assert reports[0].duration == drive.simulation.duration
+
+
+def test_a_guess_is_added_to_what_is_carried_over(proportional: Run, monkeypatch: pytest.MonkeyPatch) -> None:
+    begun = list[FloatArray]()
+
+    def resume(search: SteadySearch, tangent: SteadyWork | None = None) -> bool:
+        begun.append(search.unknowns())
+        return False
+
+    monkeypatch.setattr(SteadySearch, "resume", resume)
+    guess = np.linspace(1e-6, 1e-5, search_from(proportional.prepared, proportional, 1.0).unknowns().size)
+    assert steady_beside(proportional.drive, proportional) is None
+    assert steady_beside(proportional.drive, proportional, guess=guess) is None
+    np.testing.assert_allclose(begun[1] - begun[0], guess, atol=1e-12)
+
+
+@pytest.mark.parametrize("converges", [True, False])
+def test_steady_running_of_analyses_begins_with_a_neighbor_or_at_rest(
+    proportional: Run, converges: bool, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(steady, "_continued", lambda *_, bands: "near" if converges else None)
+    monkeypatch.setattr(steady, "_from_rest", lambda *_, bands: "rest")
+    monkeypatch.setattr(steady, "_as_run", lambda prepared, instant, result: result)
+    begun: list[Any] = [steady_from(proportional.drive, start, None, bands=True) for start in (None, proportional)]
+    assert begun == ["rest", "near" if converges else "rest"]

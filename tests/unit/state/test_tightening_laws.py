@@ -64,7 +64,7 @@ class Trial:
     def seen(self) -> Any:
         pull = 2.0 * self.tension * np.sin(0.5 * self.turn)
         hub = np.array([[[2.0 * self.tension, 0.0], [pull, 0.0]]])
-        centers = np.array([[[0.0, 0.0], [self.center, 0.0]]])
+        centers = np.array([[[3.0, 4.0], [5.0 + self.center, 6.0]]])
         return SimpleNamespace(hub_force=hub, wrap_angle=np.array([[np.pi, self.wrap]]), pulley_center=centers)
 
 

@@ -69,7 +69,10 @@ def test_ways_of_unknowns_are_lengths(drive: Callable[[], Drive]) -> None:
     """Of nodes alike in their root mean square; of a rim that of the belt, whose speed itself weighs nothing."""
     search = unsolved(drive())
     search.constant.frame.speed[0] = -5.0
-    weights = Way(search, Setting(load=0.0), Setting()).weights
+    way = Way(search, Setting(load=0.0), Setting())
+    ((place, unknowns), weights) = (way.solutions[0], way.weights)
+    assert place == 0.0
+    np.testing.assert_array_equal(unknowns, search.unknowns())
     system, border = search.system, search.work.ahead_border.size
     nodes, others = weights[:-border].reshape(system.nodes, -1), weights[-border:]
     np.testing.assert_allclose(nodes[:, :2], system.nodes**-0.5)
