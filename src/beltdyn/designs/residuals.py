@@ -103,7 +103,7 @@ def _take(table: MeasuredTable, column: HeadedColumn, drive: Drive, known: list[
     if number is None:
         raise ModelError(
             f'{path}: the heading "{given.what}" is not a result, "load", "NAME speed [rpm]", "NAME torque [N '
-            f'm]" or the path of a parameter. {suggest(given.what, known)}'
+            f'm]" or the path of a parameter. {suggest(whole.removesuffix("[]"), known)}'
         )
     own = given._replace(unit="") if number == whole else given
     table.conditions.append(Condition(number, own.values(unit_at(drive, number))))

@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 
 import beltdyn as bd
+from beltdyn.designs import drive_sheet
 from beltdyn.errors import ModelError
 from beltdyn.model import example, install, loads
 from beltdyn.model.demand import required_tension
@@ -110,19 +111,21 @@ def test_spans_are_checked_as_in_the_workshop() -> None:
     assert held.belt_state.values.tolist() == ["at rest"]
 
 
-def test_a_tensioner_at_its_stops_is_told() -> None:
+def test_a_tensioner_at_its_stops_is_told(monkeypatch: pytest.MonkeyPatch) -> None:
     """A slide of two equal spans between stops: T = (F - k q) / 2, at the load stop too; beyond, the belt is slack."""
     progress, slide = list[Progress](), loads(SLIDE)
-    result = bd.sheet(slide, points=2, tolerance="20 mm", wear="2 mm", progress=progress.append)
+    monkeypatch.setattr(drive_sheet, "_SLACK", 0.05)
+    result = bd.sheet(slide, points=2, tolerance="21.3 mm", wear="0.7 mm", progress=progress.append)
     assert progress == [Progress(0.0, 1.0, 0.0, 0, "equilibrium")]
     found = result.dataset
     load = found.sel(state="load")
     assert float(load.state_position) == pytest.approx(-0.008)
     assert float(load.state_tension) == pytest.approx(0.5 * (PRELOAD + 0.008 * RATE), rel=1e-3)
     said = {text.split()[5]: text for text in result.warnings if "moves the tensioner of tail to its stop" in text}
-    assert said.keys() == {"replace", "max"}
-    assert f"with {float(found.state_tension.sel(state='max')):.4g} N" in said["max"]
-    assert "where the belt is slack" in said["replace"]
+    assert said.keys() == {"replace", "max", "min"}
+    assert f"with {float(found.state_tension.sel(state='min')):.4g} N" in said["min"]
+    assert 0.0 < float(found.state_tension.sel(state="max")) < 0.05 * float(found.tension_at_rest)
+    assert all("where the belt is slack" in said[state] for state in ("replace", "max"))
     slack = found.sel(state="replace")
     assert (float(slack.state_tension), float(slack.state_hub_load)) == (0.0, 0.0)
 
