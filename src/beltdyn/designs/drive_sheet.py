@@ -5,6 +5,7 @@ All states are those of the balance of tensions about the equilibrium at rest, w
 """
 
 from collections.abc import Iterator, Mapping
+from functools import reduce
 from inspect import signature
 from pathlib import Path
 from typing import Annotated, Any, NamedTuple
@@ -19,7 +20,7 @@ from beltdyn.errors import ModelError
 from beltdyn.model import Drive, FixedTensioner, Prepared, alignment, prepare
 from beltdyn.model.alignment import judge_alignment
 from beltdyn.model.demand import required_tension
-from beltdyn.model.installation import DEFLECTION, Installation, tension_checks
+from beltdyn.model.installation import DEFLECTION, FITTING, TENSIONING, Installation, tension_checks
 from beltdyn.model.parameter_study import PASS
 from beltdyn.parts.options import RangeCount, takes_options
 from beltdyn.parts.quantity import Flag, Number, Numbers, Ratio, number_in, numbers_in
@@ -28,11 +29,13 @@ from beltdyn.points.duty import Column, at_row, durations_of, duty, duty_of
 from beltdyn.points.quasi_steady import QuasiSteady, Running, Torques, torques_between, torques_of
 from beltdyn.points.tensioner_sheet import lengths_of
 from beltdyn.results import Result, Variable, build_result
+from beltdyn.results.damage import Damage, Lives, damage_of_tensions, known_variables
 from beltdyn.results.means import rate, utilization
 from beltdyn.results.schema import AXIS_NAMES, COORDINATES, RECORDED, SLIP_SAFETIES, SPAN_TENSIONS
 from beltdyn.solvers.run_progress import Progress, Report
 from beltdyn.state.installation import looked_at
 from beltdyn.state.staying import bring_to_stand
+from beltdyn.theory.span import center_distance
 from beltdyn.vibration.excitation import averaged
 from beltdyn.vibration.peaks import amplitudes, excitations_of, lumped_at
 
@@ -264,6 +267,7 @@ class _DriveSheet:
         self.variables["duration"] = (Variable((_ROW,), "s", "Duration"), durations)
         full = self._add_states(_ROW, speeds, loads)
         self._add_utilization(full)
+        self._add_lives(full, durations)
         self._heaviest = full, int(np.argmax(np.abs(full.torque[:, self._driver] * speeds)))
         self._add_modes()
 
@@ -387,6 +391,25 @@ class _DriveSheet:
         meaning = "Utilization: design power over rated power"
         self.variables["utilization"] = (Variable((_ROW, _PULLEY), "1", meaning), np.array(found))
 
+    def _add_lives(self, full: Running, durations: FloatArray) -> None:
+        """Lives of the belt under the duty, of those for which it has data."""
+        known = [name for name in known_variables(self._drive) if name.endswith("_life")]
+        held = np.isfinite(full.ends).all(axis=(1, 2))
+        if not known or not held.any() or not durations[held].sum() > 0.0:
+            return
+        shares = durations[held] / durations[held].sum()
+        found = [
+            damage_of_tensions(self._prepared, ends, speed).times(share)
+            for ends, speed, share in zip(full.ends[held], full.speed[held].tolist(), shares.tolist(), strict=True)
+        ]
+        lives = Lives(self._drive, reduce(Damage.plus, found))
+        belt = self._drive.belt
+        for name, life, data in (("cord", lives.cord, belt.cord_fatigue), ("rib", lives.rib, belt.rib_fatigue)):
+            if f"{name}_life" in known and data is not None:
+                bound = ", at least" * (name == "cord" and lives.is_bound)
+                label = f"{data.life_name[0].upper()}{data.life_name[1:]} of the {name}s{bound}"
+                self.variables[f"{name}_life"] = Variable((), "h", label), life
+
     def _add_modes(self) -> None:
         """First modes of the lumped drive in the row of the largest power."""
         states, row = self._heaviest
@@ -425,8 +448,20 @@ class _DriveSheet:
             ),
             "friction_coefficient": (Variable((_PULLEY,), "1", "Friction with the wedge effect"), prepared.frictions),
             "center": (Variable((_PULLEY, "axis"), "m", "Center"), path.centers),
+            "rest_hub_load": (Variable((_PULLEY,), "N", "Hub load at rest"), np.linalg.norm(rest.hub_loads, axis=1)),
             "span_length": (Variable((_SPAN,), "m", "Span length"), path.span_lengths),
         }
+        if belt.entry is not None and belt.entry.is_v_belt and path.spans == 2:
+            distance = float(np.linalg.norm(path.centers[1] - path.centers[0]))
+            nominal = belt.nominal_length_of(prepared.belt_length)
+            self.variables |= {
+                "center_distance": (Variable((), "m", "Center distance"), distance),
+                "fitting_allowance": (Variable((), "m", "Shorter center distance to fit belts"), FITTING * nominal),
+                "tensioning_allowance": (
+                    Variable((), "m", "Longer center distance to tension belts"),
+                    TENSIONING * nominal,
+                ),
+            }
         tensions = np.column_stack([rest.span_tensions, rest.extreme_tensions, rest.end_tensions]).T
         for (name, label), values in zip(REST_TENSIONS.items(), tensions, strict=True):
             self.variables[name] = Variable((_SPAN,), "N", label), values
@@ -549,12 +584,20 @@ class _DriveSheet:
         longer = (np.array(standard) - nominal) / belt.measured_stretch
         states = self._steady.balance.under(np.zeros((longer.size, self._radii.size)), 0.0, longer).states()
         tension = states.tension.mean.mean(axis=1)
-        held = np.isfinite(tension) & (tension > _SLACK * self._rest.tension)
+        most = np.inf if belt.largest_tension is None else belt.largest_tension
+        held = np.isfinite(tension) & (tension > _SLACK * self._rest.tension) & (tension <= most)
         self.coordinates["standard"] = (Variable(_STANDARD, "m", "Standard nominal length"), standard)
         self.variables |= {
             "standard_longer": (Variable(_STANDARD, "m", "Longer than the belt of the drive"), longer),
             "standard_tension": (Variable(_STANDARD, "N", "Tension at rest"), np.where(held, tension, np.nan)),
         }
+        path = self._rest.path
+        if path.spans == 2 and not self._prepared.carriers and not self._drive.belt.crossed:
+            radii = float(abs(path.radii[0])), float(abs(path.radii[1]))
+            lengths = path.length + longer * path.length / length
+            distances = [center_distance(one, radii) or np.nan for one in lengths.tolist()]
+            label = "Center distance for the same tension"
+            self.variables["standard_center_distance"] = Variable(_STANDARD, "m", label), distances
         if self._prepared.carriers:
             places = np.where(held, states.positions[:, 0], np.nan)
             units = "rad" if self._prepared.carriers[0].tensioner.turns else "m"

@@ -13,11 +13,10 @@ from beltdyn.designs.toothed_selection import of_toothed_profile
 from beltdyn.errors import ModelError
 from beltdyn.model import Entry, read_catalogue
 from beltdyn.model.catalogue import find_entry
-from beltdyn.model.installation import RUN_IN
 from beltdyn.model.rating import RatedBelt, Rating, lower_bound
 from beltdyn.parts.messages import reason
 from beltdyn.parts.quantity import RPM, number_in, numbers_in
-from beltdyn.theory.rating import TENSION_FORMULAS, least_tension
+from beltdyn.theory.rating import RUN_IN, TENSION_FORMULAS, least_tension
 from beltdyn.theory.span import OpenBelt, center_distance, lowest_frequency, open_belt
 
 DIAMETERS = tuple(

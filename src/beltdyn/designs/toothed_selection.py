@@ -8,7 +8,7 @@ import numpy as np
 
 from beltdyn.designs.proposal import Proposal, Task
 from beltdyn.model import Entry
-from beltdyn.model.demand import OF_TEETH
+from beltdyn.model.belt_loads import OF_TEETH
 from beltdyn.model.toothing import RatedTeeth
 from beltdyn.theory.rating import least_rest_tension, pull_of_cords
 from beltdyn.theory.span import OpenBelt, center_distance, lowest_frequency, open_belt

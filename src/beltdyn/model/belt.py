@@ -109,7 +109,8 @@ class Belt(Part):
         None,
         gt=0,
         description="the unstretched length of the belt; without it and `installed_tension` that which sets the first "
-        "spring-loaded tensioner to its nominal position, in m",
+        "spring-loaded tensioner to its nominal position, or gives a belt of a rated profile the tension that its "
+        "loads require, in m",
     )
     installed_tension: Force | None = Field(
         None, gt=0, description="the tension of the belt at rest in the drive, instead of its length, in N"

@@ -32,6 +32,7 @@ from beltdyn.model.layout import (
 from beltdyn.model.path import Path
 from beltdyn.model.pulley import Pulley, fastest_rim, friction_on
 from beltdyn.model.static_estimate import StaticEstimate
+from beltdyn.parts.messages import plain
 
 _SMALLEST_STRAIN = 1e-10
 
@@ -82,6 +83,9 @@ def _complete(layout: Layout) -> Completed:
     choices += _choices(given, estimate)
     if layout.nominal is not None:
         reason = f'sets the tensioner of "{layout.nominal}" to its nominal position'
+        choices = (Choice("belt.length", estimate.length, "m", reason), *choices)
+    if layout.for_loads:
+        reason = f"gives {plain(estimate.tension)} N, of a run-in belt, as the loads require"
         choices = (Choice("belt.length", estimate.length, "m", reason), *choices)
     return Completed(
         belt=given.belt.replace(**_chosen(choices, "belt.")),

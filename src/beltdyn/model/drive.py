@@ -18,6 +18,7 @@ from beltdyn.machines.carrying import AnySupport
 from beltdyn.machines.tensioners import AnyTensioner
 from beltdyn.model.as_supplied import Rotation, as_supplied
 from beltdyn.model.belt import Belt
+from beltdyn.model.belt_loads import BeltLoads
 from beltdyn.model.carrying import check_carrying, check_lift
 from beltdyn.model.completion import Completed, complete
 from beltdyn.model.contact import Contact
@@ -456,7 +457,18 @@ class Drive(Part):
             tension = self.unwinder.tension_at(self.simulation.begin, self.belt.thickness)
             belt = belt.replace(installed_tension=tension)
         given = Given(belt, self.pulleys, self.contact, self.tensioners, self.path_ends, self.fineness, self.nips)
-        return lay_out(given)
+        if belt.length is not None or belt.installed_tension is not None or given.ends or given.has_springs:
+            return lay_out(given)
+        path = given.path_around(given.pulleys_in_place)
+        required = None if self.driver is None else self.belt_loads(self.driver).run_in_tension(path)
+        if required is None:
+            return lay_out(given)
+        return lay_out(given._replace(belt=belt.replace(installed_tension=required)))._replace(for_loads=True)
+
+    def belt_loads(self, driver: int) -> BeltLoads:
+        """The loads on the belt with the number of a driver, at the highest speed of that."""
+        factor, times = self.limits.service_factor or 1.0, self.simulation
+        return BeltLoads(self.pulleys, driver, self.belt, factor, times.begin, times.end)
 
     @cached_property
     def completed(self) -> Completed:

@@ -12,6 +12,7 @@ from beltdyn.model.belt import Belt
 from beltdyn.model.carrying import swinging_lengths
 from beltdyn.model.drive import Drive
 from beltdyn.model.path import Path
+from beltdyn.theory.rating import NEW, RUN_IN
 from beltdyn.theory.span import deflection_force, lowest_frequency, sag_parameter, stretching
 
 
@@ -112,8 +113,9 @@ def span_frequencies(
 
 DEFLECTION = 0.016
 """Deflection of the middle over the length of a span, by custom of belt makers (1/64 inch per inch)."""
-NEW, RUN_IN = 1.5, 1.3
-"""Tension of a new and of a run-in belt over the least one that carries the load (GB/T 13575.1)."""
+FITTING, TENSIONING = 0.015, 0.03
+"""Least travel of a center to fit V-belts, and to tension them over their life, over the nominal length (GB/T 13575.1).
+Makers whose belts stretch less ask for less: Optibelt for 20 and 45 mm, not 60 and 120 mm, with SPB 4000."""
 STATES = MappingProxyType({"new": NEW / RUN_IN, "run in": 1.0, "least": 1.0 / RUN_IN})
 """Tension over that of the drive, a run-in belt's: of a new belt, and the least before it is tensioned again, where the
 load that requires it is unknown."""

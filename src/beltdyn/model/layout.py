@@ -110,6 +110,8 @@ class Layout(NamedTuple):
     nominal: str | None = None
     """Pulley of the tensioner that the belt's length sets to its nominal position; None if the length is given, or is
     that for a given tension."""
+    for_loads: bool = False
+    """Whether the tension at rest, and so the length of the belt, is that which the loads require."""
 
 
 def loaded(belt: Belt, ends: tuple[PathEnd, ...]) -> Belt:
@@ -152,7 +154,8 @@ def _require_length(given: Given) -> str | None:
     if given.ends or not given.has_springs:
         raise ValueError(
             "belt.length is missing. Give the unstretched length, nominal_length or installed_tension, or a "
-            "spring-loaded tensioner of a closed belt, whose nominal position then gives the length"
+            "spring-loaded tensioner of a closed belt, whose nominal position then gives the length; or the loads of a "
+            "belt of a rated profile, which then give its tension"
         )
     return given.springs[0].pulley
 

@@ -7,16 +7,17 @@ import numpy as np
 
 from beltdyn.errors import BeltdynError
 from beltdyn.model.alignment import judge_alignment
-from beltdyn.model.demand import MAKERS, powers_drawn, prescribed_torque, required_tension
+from beltdyn.model.belt_loads import MAKERS
+from beltdyn.model.demand import powers_drawn, prescribed_torque, required_tension
 from beltdyn.model.drive import Drive
-from beltdyn.model.installation import RUN_IN, Installation
+from beltdyn.model.installation import Installation
 from beltdyn.model.layout import mesh_misfit, teeth_in_mesh
 from beltdyn.model.prepared import install, prepare
 from beltdyn.model.pulley import Pulley, fastest_rim
 from beltdyn.model.toothing import RatedTeeth
 from beltdyn.parts.messages import NOTABLE, Finding, listing, plain
 from beltdyn.parts.quantity import RPM
-from beltdyn.theory.rating import REST_SHARE
+from beltdyn.theory.rating import REST_SHARE, RUN_IN
 
 _DIAMETER_POWER = 5.6
 """Exponent of belt life over pulley diameter: published fits have 5.6 and 5.65."""
@@ -182,7 +183,7 @@ def _tight_side(drive: Drive, installation: Installation) -> Iterator[Finding]:
     driver = drive.driver
     if driver is None or drive.ends or not drive.layout.given.springs:
         return
-    powers, speed = powers_drawn(drive, driver, installation)
+    powers, speed = powers_drawn(drive, driver, installation.path)
     others, step = len(drive.pulleys) - 1, drive.running_sense
     behind = [(driver + step * place) % len(drive.pulleys) for place in range(1, 1 + others)]
     total = float(powers[behind].sum())
@@ -265,7 +266,7 @@ def _slack_teeth(drive: Drive, installation: Installation) -> Iterator[Finding]:
     driver = drive.driver
     if drive.belt.teeth is None or driver is None or drive.moving_tensioners:
         return
-    powers, speed = powers_drawn(drive, driver, installation)
+    powers, speed = powers_drawn(drive, driver, installation.path)
     pull = float(powers[powers > 0.0].sum()) / speed if speed > 0.0 else 0.0
     least = REST_SHARE * pull
     if not installation.tension < least:
@@ -296,7 +297,7 @@ def _narrow_teeth(drive: Drive, installation: Installation) -> Iterator[Finding]
     driver, belt = drive.driver, drive.rated_belt
     if driver is None or not isinstance(belt, RatedTeeth):
         return
-    powers, speed = powers_drawn(drive, driver, installation)
+    powers, speed = powers_drawn(drive, driver, installation.path)
     if not speed > 0.0:
         return
     powers[driver] = -powers.sum()
@@ -377,7 +378,7 @@ def _driving_loads(drive: Drive, installation: Installation) -> Iterator[Finding
     driver = drive.driver
     if driver is None or drive.pulleys[driver].speed is None or drive.ends or drive.nips:
         return
-    powers = powers_drawn(drive, driver, installation)[0]
+    powers = powers_drawn(drive, driver, installation.path)[0]
     if powers.sum() >= 0.0:
         return
     for number in np.flatnonzero(powers < 0.0).tolist():

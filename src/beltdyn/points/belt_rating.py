@@ -1,21 +1,24 @@
 """Power rating of the belt of a drive: rated power, utilization, and number or width of belts needed at each pulley."""
 
 from collections.abc import Iterator
-from typing import Annotated, Any
+from typing import Annotated, Any, NamedTuple
 
 import numpy as np
 from pydantic import Field
 
 from beltdyn.arrays import FloatArray
-from beltdyn.errors import ModelError
-from beltdyn.model import Drive, prepare
+from beltdyn.errors import ConvergenceError, ModelError
+from beltdyn.model import Drive, install, prepare
+from beltdyn.model.demand import powers_drawn, required_tension
 from beltdyn.model.rating import PowerRating, RatedBelt, lower_bound
 from beltdyn.model.toothing import MeshRating, RatedTeeth
 from beltdyn.parts.messages import listing
 from beltdyn.parts.options import takes_options
 from beltdyn.parts.quantity import Ratio
+from beltdyn.points.belt_checks import Loads, checks_of, variables_of, verdict_of
 from beltdyn.points.changed_drive import held_at
 from beltdyn.results import Result, Variable, build_result
+from beltdyn.results.damage import fatigue_by_name
 from beltdyn.results.means import ROUNDING, rate, smaller_than_rated, utilization
 from beltdyn.results.schema import COORDINATES
 from beltdyn.results.summary import means_of
@@ -24,6 +27,7 @@ from beltdyn.state.steady import steady_state
 from beltdyn.theory.rating import belts_factor, pulleys_factor
 
 _PULLEY = ("pulley",)
+Values = dict[str, tuple[Variable, Any]]
 
 COLUMNS = {
     "diameter": Variable(_PULLEY, "m", "Diameter of the tension line"),
@@ -78,7 +82,7 @@ def rating(
     at: float | str | None = None,
     progress: Report | None = None,
 ) -> Result:
-    """Rate the belt in steady running: rated power, utilization, and belts, ribs or width needed at each pulley.
+    """Rate the belt in steady running: rated power, utilization, belts, ribs or width needed, and a verdict.
 
     The rated power is that of the belt's profile in the catalogue, by the law of `beltdyn.theory.rating` with the
     wrap, length, belts and pulleys factors. That of a toothed belt is by the law of `beltdyn.theory.rating`, with
@@ -99,14 +103,15 @@ def rating(
     Returns
     -------
     Result
-        Variables along ``pulley``, and the factors; the attribute ``rating_source`` names the source of the rating.
+        Variables along ``pulley``, and the factors; checks of power, tension, slip, speed, pulleys and length along
+        ``check``. The attribute ``verdict`` begins with "passes" or "fails"; ``rating_source`` names the source.
 
     Raises
     ------
     ModelError
         If the profile has no rating, the belt is not given by a profile, or the drive cannot run steadily.
     ConvergenceError
-        If no steady running is found.
+        If no steady running is found, but for a belt between fixed centers that slips through: it fails.
 
     Examples
     --------
@@ -116,26 +121,82 @@ def rating(
     """
     held = held_at(_served(drive, service_factor), at)
     belt = _rated(held)
-    run = steady_state(held, progress=progress)
-    means, centers = means_of(run).pulleys, run.dataset["pulley_center"].values[-1]
-    speeds, powers = (np.array([getattr(one, name) for one in means]) for name in ("speed", "power"))
-    found = rate(prepare(held), speeds, powers, centers)
+    loads = _loads(held, progress)
+    found = rate(prepare(held), loads.speeds, loads.powers, loads.centers)
     assert found is not None
-    used = utilization(held, found.power, powers)
-    speed = float(abs(speeds[held.reference] * held.radii[held.reference]))
+    used = utilization(held, found.power, loads.powers)
+    speed = float(abs(loads.speeds[held.reference] * held.radii[held.reference]))
     if isinstance(found, MeshRating):
         assert isinstance(belt, RatedTeeth)
-        values = _of_teeth(belt, found, powers, used) | _scalars_of_teeth(belt, used, speed, held)
+        values = _of_teeth(belt, found, loads.powers, used) | _scalars_of_teeth(belt, used, speed, held)
     else:
         assert isinstance(belt, RatedBelt)
-        values = _of_belts(belt, found, powers, used) | _scalars_of_belts(belt, used, speed, held)
-    names = {"pulley": (COORDINATES["pulley"], [pulley.name for pulley in held.pulleys])}
-    result = build_result("rating", held, values, names, list(_doubts(held, belt, found, speed)))
-    result.dataset.attrs |= {"drive_as_given": drive.text, "rating_source": belt.rating.source}
+        values = _of_belts(belt, found, loads.powers, used) | _scalars_of_belts(belt, used, speed, held)
+    rest = install(held)
+    required = required_tension(held, rest)
+    checks = list(checks_of(held, belt, rest, required, Loads(used, loads.least_safety, speed)))
+    values |= variables_of(checks) | loads.values
+    values["tension_at_rest"] = Variable((), "N", "Tension at rest"), rest.tension
+    values["rest_hub_load"] = Variable(_PULLEY, "N", "Hub load at rest"), np.linalg.norm(rest.hub_loads, axis=1)
+    names = {
+        "pulley": (COORDINATES["pulley"], [pulley.name for pulley in held.pulleys]),
+        "check": (Variable(("check",), "1", "Check", "str"), [one.name for one in checks]),
+    }
+    warnings = [*loads.warnings, *_doubts(held, belt, found, speed)]
+    result = build_result("rating", held, values, names, warnings)
+    result.dataset.attrs |= {
+        "drive_as_given": drive.text,
+        "rating_source": belt.rating.source,
+        "verdict": verdict_of(checks),
+    }
     return result
 
 
-Values = dict[str, tuple[Variable, Any]]
+class _Loads(NamedTuple):
+    """Speeds and powers of all pulleys."""
+
+    speeds: FloatArray
+    powers: FloatArray
+    """Into the drive, W."""
+    centers: FloatArray
+    least_safety: float
+    """Least slip safety; zero where the belt slips through, NaN where teeth hold it."""
+    values: Values
+    """Hub loads, and lives where the belt has data."""
+    warnings: list[str]
+
+
+def _loads(drive: Drive, progress: Report | None) -> _Loads:
+    """Loads in steady running; where the belt slips through, those that the drive file asks for."""
+    try:
+        run = steady_state(drive, progress=progress)
+    except ConvergenceError as error:
+        if drive.driver is None or drive.moving_tensioners:
+            raise
+        taken, speed = powers_drawn(drive, drive.driver, drive.path)
+        if not taken.max() > 0.0:
+            raise
+        powers = -taken
+        powers[drive.driver] = taken.sum()
+        speeds = drive.running_sense * speed / drive.path.radii
+        return _Loads(
+            speeds,
+            powers,
+            drive.centers,
+            0.0,
+            {},
+            [f"{str(error).rstrip('.')}. The rating is that of the loads asked for."],
+        )
+    means = means_of(run).pulleys
+    speeds, powers, hub, safety = (
+        np.array([getattr(one, name) for one in means]) for name in ("speed", "power", "hub_load", "least_safety")
+    )
+    values: Values = {"hub_load": (Variable(_PULLEY, "N", "Hub load"), hub)}
+    for name, label in (("cord_life", "Life of the cords"), ("rib_life", "Life of the ribs")):
+        life = fatigue_by_name(run).get(name)
+        if life is not None:
+            values[name] = Variable((), "h", label), life
+    return _Loads(speeds, powers, run.dataset["pulley_center"].values[-1], float(np.fmin.reduce(safety)), values, [])
 
 
 def _of_belts(belt: RatedBelt, found: PowerRating, powers: FloatArray, used: FloatArray) -> Values:

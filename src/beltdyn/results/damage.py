@@ -135,6 +135,28 @@ def hourly_damage(run: Run) -> Damage:
     return Damage(cord, rib, 1.0, force).times(turns)
 
 
+def damage_of_tensions(prepared: Prepared, ends: FloatArray, speed: float) -> Damage:
+    """Damage in an hour of a closed belt on rims of its path, by tensions at both ends of spans (N) and speed (m/s).
+
+    A material point meets two tensions without and with bending at each pulley: those of the spans beside it.
+
+    Parameters
+    ----------
+    ends : ndarray, shape (spans, 2)
+    """
+    path, order = prepared.path, np.asarray(prepared.path.order)
+    pulley = np.repeat(path.span_pulleys[order, 1], 4)
+    curvature = np.repeat(1.0 / np.abs(path.radii[path.span_pulleys[order, 1]]), 4) * np.tile(
+        [0.0, 1.0, 1.0, 0.0], len(order)
+    )
+    tension = np.column_stack([ends[order, 1], ends[order, 1], *[np.roll(ends[order, 0], -1)] * 2]).ravel()
+    places = np.arange(tension.size, dtype=float)
+    history = BeltHistory(places, places, tension[:, None], curvature[:, None], pulley[:, None])
+    cord, force = _cord_damage(prepared.drive, history, rainflow_of_turn)
+    rib = _rib_passages(prepared, SpanTension(ends[:, 0], ends[:, 1], ends.mean(axis=1)))
+    return Damage(cord, rib, 1.0, force).times(HOUR * abs(speed) / prepared.belt_length)
+
+
 def damage_of_run(run: Run) -> Damage:
     """Damage in a run over time, the mean over material points of the belt, which begin in different places."""
     if runs_steadily(run.dataset):

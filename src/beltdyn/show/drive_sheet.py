@@ -19,6 +19,8 @@ if TYPE_CHECKING:
     import xarray as xr
 
 _DEGREES = 180.0 / np.pi
+CENTER_DISTANCES = ("center_distance", "fitting_allowance", "tensioning_allowance")
+_NO_FIT = "does not fit"
 _STATES = {
     "free": "free arm",
     "replace": "replace (stretched)",
@@ -64,6 +66,16 @@ def _facts(dataset: "xr.Dataset") -> Iterable[tuple[str, str]]:
             "tension check",
             "frequency of a plucked span at rest; force on one belt across the middle of a span",
         )
+    if "center_distance" in dataset:
+        distance, fit, tension = (1e3 * float(dataset[name]) for name in CENTER_DISTANCES)
+        yield (
+            "center distance",
+            f"{distance:.5g} mm, at least {fit:.3g} mm less to fit belts and {tension:.3g} mm more to tension them "
+            "(GB/T 13575.1)",
+        )
+    for name in ("cord_life", "rib_life"):
+        if name in dataset:
+            yield str(dataset[name].attrs["long_name"]).lower(), f"{float(dataset[name]):.3g} h, under this duty"
     if "required_tension" in dataset:
         least = zip(dataset["tension_formula"].values, dataset["required_tension"].values, strict=True)
         yield "least tension", listing([f"{tension:.4g} N ({name})" for name, tension in least])
@@ -95,8 +107,18 @@ def _pulleys(dataset: "xr.Dataset") -> Table:
         (f"{_DEGREES * one:.1f}°" for one in dataset["wrap_angle"].values),
         (f"{one:.4f}" for one in dataset["speed_ratio"].values),
         (f"{one:.3g}" for one in dataset["friction_coefficient"].values),
+        aligned(dataset["rest_hub_load"].values.tolist()),
     )
-    headings = ("", "x\nmm", "y\nmm", "pitch diameter\nmm", "wrap", "speed\nratio", "friction,\nwith wedge")
+    headings = (
+        "",
+        "x\nmm",
+        "y\nmm",
+        "pitch diameter\nmm",
+        "wrap",
+        "speed\nratio",
+        "friction,\nwith wedge",
+        "hub load\nat rest N",
+    )
     return Table("Pulleys", headings, tuple(zip(*columns, strict=True)))
 
 
@@ -237,13 +259,16 @@ def _belts(dataset: "xr.Dataset") -> Table:
     columns: list[Sequence[str]] = [
         [f"{1e3 * one:.5g}" for one in dataset["standard"].values],
         aligned((1e3 * dataset["standard_longer"].values).tolist(), 3),
-        _or_dash(dataset["standard_tension"].values),
+        [_NO_FIT if cell == "–" else cell for cell in _or_dash(dataset["standard_tension"].values)],
     ]
     headings: tuple[str, ...] = ("nominal length\nmm", "longer by\nmm", "tension\nN")
     if "standard_position" in dataset:
         turns = dataset["standard_position"].attrs["units"] == "rad"
         columns.append(_or_dash((_DEGREES if turns else 1e3) * dataset["standard_position"].values, 3))
         headings = (*headings, f"tensioner\n{'°' if turns else 'mm'}")
+    if "standard_center_distance" in dataset:
+        columns.append(_or_dash(1e3 * dataset["standard_center_distance"].values, 5))
+        headings = (*headings, "center distance for the\nsame tension mm")
     if "standard_take_up" in dataset:
         columns.append(_or_dash(1e3 * dataset["standard_take_up"].values, 3))
         headings = (*headings, "take-up for the\nsame tension mm")

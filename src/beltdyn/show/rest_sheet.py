@@ -23,7 +23,8 @@ from beltdyn.model import (
     unstable_balance,
 )
 from beltdyn.model.alignment import is_given
-from beltdyn.model.demand import RequiredTension, required_tension
+from beltdyn.model.belt_loads import RequiredTension
+from beltdyn.model.demand import required_tension
 from beltdyn.model.hysteresis import bending_resistance, compression_losses
 from beltdyn.model.installation import DEFLECTION, TensionCheck, tension_checks
 from beltdyn.model.layout import teeth_in_mesh
@@ -273,7 +274,7 @@ def _facts(given: Drive, drive: Drive, installation: Installation) -> list[tuple
     unused = unused_settings(drive.belt, drive.contact) if drive.frame.stays else []
     return [
         *([("drive", drive.name)] if drive.name else []),
-        ("tension at rest", f"{installation.tension:.4g} N{_origin(drive, installation, asked_for)}"),
+        ("tension at rest", f"{installation.tension:.4g} N{_origin(given, drive, installation, asked_for)}"),
         *_least_facts(required_tension(drive, installation)),
         (
             "belt length",
@@ -365,8 +366,8 @@ def _lost_in_the_belt(drive: Drive) -> list[tuple[str, str]]:
     ]
 
 
-def _origin(drive: Drive, installation: Installation, asked_for: bool) -> str:
-    asked = " as specified" * asked_for
+def _origin(given: Drive, drive: Drive, installation: Installation, asked_for: bool) -> str:
+    asked = (", run in, as the loads require" if given.layout.for_loads else " as specified") * asked_for
     if installation.tensioner_positions.size:
         return f"{asked}, set by tensioners"
     if any(not end.held for end in drive.ends):

@@ -494,7 +494,10 @@ _AMONG_WARNINGS = frozenset({"failure"})
 """Variables of long texts, which warnings quote."""
 
 
-OF_KINDS = {"sheet": "beltdyn.show.drive_sheet:drive_sheet"}
+OF_KINDS = {
+    "sheet": "beltdyn.show.drive_sheet:drive_sheet",
+    "rating": "beltdyn.show.rating_sheet:rating_sheet",
+}
 """Kind of result -> "MODULE:FUNCTION" that gives its sheet, where it has tables of its own."""
 
 

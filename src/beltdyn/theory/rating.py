@@ -53,6 +53,9 @@ TENSION_FORMULAS = MappingProxyType({"Optibelt": 2.02, "GB/T 13575.1": 2.5})
 """Constant k of the tension at rest (k / c - 1) F / 2 + m v^2, with the wrap factor c, ascending: Optibelt, Technical
 Manual V-Belt Drives, and the standard, which requires half as much again."""
 
+NEW, RUN_IN = 1.5, 1.3
+"""Tension at rest of a new and of a run-in belt over the least one that carries the load (GB/T 13575.1)."""
+
 
 class RatingLaw(NamedTuple):
     """Coefficients of the rating law, of a belt or rib."""

@@ -13,9 +13,9 @@ from beltdyn.designs.proposal import Task
 from beltdyn.designs.selection import DIAMETERS, Proposal, _pairs, select
 from beltdyn.errors import ModelError
 from beltdyn.model import install, loads, prepare, read_catalogue
-from beltdyn.model.installation import RUN_IN
 from beltdyn.model.rating import RatedBelt
 from beltdyn.results.means import rate
+from beltdyn.theory.rating import RUN_IN
 from beltdyn.theory.span import open_belt
 
 RPM = 30.0 / pi
