@@ -66,6 +66,14 @@ def _own_kinds() -> Iterator[None]:
                 registry.forget(name)
 
 
+@pytest.fixture(autouse=True)
+def _strict_arithmetic(request: pytest.FixtureRequest) -> Iterator[None]:
+    """NumPy raises in quick tests, as a user's script may tell it to; numbers below the least one are zero."""
+    states: dict[str, Any] = {} if "slow" in request.keywords else {"all": "raise", "under": "ignore"}
+    with np.errstate(**states):
+        yield
+
+
 @pytest.fixture(autouse=True, scope="session")
 def _tracebacks(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """Where this process, and those that it starts, leave tracebacks of internal errors."""

@@ -54,7 +54,7 @@ def convergence(
     drive: Drive,
     *,
     of: str | Sequence[str] = "all",
-    elements: Numbers | None = None,
+    meshes: Numbers | None = None,
     tolerances: Numbers | None = None,
     repeated: str = SIMULATE,
     progress: Report | None = None,
@@ -71,7 +71,7 @@ def convergence(
     of
         Results, a list or separated by commas, as of a study, such as "efficiency, hub_load[driven]" or
         "largest(span_tension)"; "all" are all single numbers.
-    elements
+    meshes
         Numbers of belt elements, at least three, such as "20, 40, 80". A mesh that is refined has at least as many.
     tolerances
         Tolerances, at least three, such as "1e-3, 1e-4, 1e-5": of `simulate` and `sweep` ``simulation.rtol``, of
@@ -97,17 +97,17 @@ def convergence(
 
     Examples
     --------
-    >>> found = bd.convergence(drive, of="hub_load[driven]", elements=[12, 16, 24], repeated="equilibrium")
+    >>> found = bd.convergence(drive, of="hub_load[driven]", meshes=[12, 16, 24], repeated="equilibrium")
     >>> found.dataset.mesh_error.dims
     ('result', 'elements')
     """
     sizes = {
         axis: _levels(axis, numbers)
-        for axis, numbers in ((ELEMENTS, elements), (TOLERANCE, tolerances))
+        for axis, numbers in ((ELEMENTS, meshes), (TOLERANCE, tolerances))
         if numbers is not None
     }
     if not sizes:
-        raise ModelError("no levels are given. Give elements = [20, 40, 80] or tolerances = [1e-3, 1e-4, 1e-5].")
+        raise ModelError("no levels are given. Give meshes = [20, 40, 80] or tolerances = [1e-3, 1e-4, 1e-5].")
     if repeated not in ANALYSES:
         raise ModelError(f'repeated = "{repeated}" is no analysis. Choose one of {listing(list(ANALYSES))}.')
     keys = {axis: _key(axis, repeated) for axis in sizes}
@@ -128,21 +128,21 @@ def convergence(
 
 def _levels(axis: str, numbers: Numbers) -> NDArray[Any]:
     """Levels of an axis, the finest last."""
-    name = axis if axis == ELEMENTS else "tolerances"
+    name = "meshes" if axis == ELEMENTS else "tolerances"
     levels = numbers_in(name, numbers, "", FEWEST_LEVELS)
     if levels.size < FEWEST_LEVELS:
         raise ModelError(f"{name} has {levels.size} levels; an order needs at least {FEWEST_LEVELS}. Give more.")
     if axis == TOLERANCE:
         return levels[::-1]
     if np.any(levels != np.round(levels)):
-        raise ModelError(f"elements = {numbers!r} must be whole numbers.")
+        raise ModelError(f"meshes = {numbers!r} must be whole numbers.")
     return levels.astype(int)
 
 
 def _key(axis: str, analysis: str) -> str:
     """The key of the drive file that an axis varies."""
     if axis == TOLERANCE and analysis not in _TOLERANCE_KEYS:
-        raise ModelError(f'"{analysis}" has no tolerance. Give elements, or choose {listing(list(_TOLERANCE_KEYS))}.')
+        raise ModelError(f'"{analysis}" has no tolerance. Give meshes, or choose {listing(list(_TOLERANCE_KEYS))}.')
     return _MESH_KEY if axis == ELEMENTS else _TOLERANCE_KEYS[analysis]
 
 

@@ -70,10 +70,14 @@ def kernel(function: Callable[..., Any] | None = None, /, *, inline: bool = Fals
 
 
 def interpreted(function: Callable[P, R]) -> Callable[P, R]:
-    """Let Python run a kernel and those that it calls, for a few calls where nothing is to be compiled."""
+    """Let Python run a kernel and those that it calls, for a few calls where nothing is to be compiled.
+
+    What is below the least number is zero, as in compiled code, whatever NumPy is told to do then.
+    """
+    from numpy import errstate
 
     def run(*args: P.args, **kwargs: P.kwargs) -> R:
-        with _in_mode(_INTERPRET):
+        with _in_mode(_INTERPRET), errstate(under="ignore"):
             return function(*args, **kwargs)
 
     return run

@@ -58,7 +58,8 @@ class Path:
 
     def __post_init__(self) -> None:
         centers, radii = _circles(self.centers[self.on], self.radii[self.on], self.ends)
-        distance = np.linalg.norm(_next(centers, -2) - centers, axis=1)
+        with np.errstate(under="ignore"):  # of centers that rounding sets apart
+            distance = np.linalg.norm(_next(centers, -2) - centers, axis=1)
         apart = distance <= np.abs(_next(radii, -1) - radii)
         if np.any(_of_belt(apart, self.ends, axis=0)):
             raise ValueError("two successive pulleys have no common tangent")
@@ -359,6 +360,7 @@ def _of_belt(values: NDArray[Any], ends: FloatArray | None, axis: int) -> NDArra
     return values if ends is None else np.delete(values, -2, axis)
 
 
+@np.errstate(under="ignore")  # of centers that rounding sets apart
 def _directions(centers: FloatArray, radii: FloatArray) -> FloatArray:
     """Unit vectors from each circle to the next, along the common tangent."""
     between = _next(centers, -2) - centers

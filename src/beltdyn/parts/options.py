@@ -57,12 +57,16 @@ def option_types(annotation: Any) -> tuple[Any, ...]:
 
 
 def takes_options(function: Callable[P, R]) -> Callable[P, R]:
-    """Let a function check its keyword arguments by type and range, and read numbers from text as drive files do."""
+    """Let a function check its keyword arguments by type and range, and read numbers from text as drive files do.
+
+    What is below the least number is zero in it, whatever NumPy is told to do then.
+    """
 
     @wraps(function)
     def checked(*arguments: P.args, **options: P.kwargs) -> R:
         read: Any = options | read_options(function, options)
-        return function(*arguments, **read)
+        with np.errstate(under="ignore"):
+            return function(*arguments, **read)
 
     return checked
 

@@ -210,6 +210,7 @@ class Grip(NamedTuple):
         return np.where(self.allowed > 1.0, used, 0.0)
 
 
+@np.errstate(under="ignore")  # of a belt that has come to rest
 def grip_of_states(tension: SpanTension, belt_speed: FloatArray, centers: FloatArray, prepared: Prepared) -> Grip:
     """Tension ratios; parameters are those of `slip_safety_of_states`. Where teeth or guides hold, none is allowed."""
     spans, pulleys = belt_speed.shape[-1], len(prepared.pulleys)

@@ -92,7 +92,8 @@ class TensionBalance:
         self._prepared, self._centers, self.tension = prepared, centers, tension
         count = len(tension.mean)
         self._frictions = np.tile(prepared.frictions, (count, 1)) if frictions is None else frictions
-        self._lifted = prepared.belt.mass_per_length * speed**2
+        with np.errstate(under="ignore"):  # of a belt that has come to rest
+            self._lifted = prepared.belt.mass_per_length * speed**2
         self._backward = speed.mean(axis=1) < 0.0
         self._carriers = prepared.carriers
         self._pulled = _pulled_span(prepared)

@@ -325,8 +325,9 @@ class _Solver(Protocol):
 
 
 class _SciPy:
-    """An implicit method of SciPy."""
+    """An implicit method of SciPy, which passes by numbers below the least one."""
 
+    @np.errstate(under="ignore")
     def __init__(self, leg: _Leg) -> None:
         from scipy.integrate import BDF, Radau
 
@@ -345,6 +346,7 @@ class _SciPy:
             self._solver.error_const[_HIGHEST_A_STABLE_ORDER + 1] = _HUGE
         self.time, self.y, self._longest = leg.start, leg.y, self._solver.max_step
 
+    @np.errstate(under="ignore")
     def step(self, farthest: float) -> None:
         rest = max(farthest - self.time, _ROUNDINGS * float(np.spacing(self.time)))
         self._solver.max_step = min(self._longest, rest)

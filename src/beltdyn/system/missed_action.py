@@ -121,6 +121,7 @@ def missed_work(
             work[TORQUE_WORK] -= 0.25 * length * (after - before) * (end.velocity[i] - motion.velocity[i])
 
 
+@np.errstate(under="ignore")  # below the least number is zero
 def jump_work(system: System, before: FloatArray, after: FloatArray) -> float:
     """Work of drivers where prescribed speeds jump, J: the change of the kinetic energy of prescribed bodies."""
     first = system.first_body

@@ -172,6 +172,7 @@ def layer_length(
     return stiffness / (creep_rate_factor * transport_speed)
 
 
+@np.errstate(under="ignore")  # below the least number is zero
 def tension_along_arc(x: FloatArray, entry: float, leaving: float, arc: float, layer: float) -> FloatArray:
     """Tension along an arc, linearized and below the cap: T = T_in + (T_out - T_in) (e^(X/l) - 1) / (e^(a/l) - 1)."""
     _require_layer(arc, layer)
@@ -180,6 +181,7 @@ def tension_along_arc(x: FloatArray, entry: float, leaving: float, arc: float, l
     return np.asarray(entry + (leaving - entry) * grown)
 
 
+@np.errstate(under="ignore")  # below the least number is zero
 def friction_along_arc(x: FloatArray, entry: float, leaving: float, arc: float, layer: float) -> FloatArray:
     """Friction -dT/dX that belongs to `tension_along_arc`, N/m; it grows towards the exit.  Parameters as there."""
     _require_layer(arc, layer)

@@ -94,6 +94,7 @@ def rated_force(law: RatingLaw, diameter: FloatArray | float, speed: float) -> F
     return np.asarray(law.force - lost)
 
 
+@np.errstate(under="ignore")  # below the least number is zero
 def ratio_factor(ratio: FloatArray | float, exponent: float) -> FloatArray:
     """Equivalent diameter K of two pulleys over the smaller diameter, for a ratio of the diameters of at least 1."""
     require_at_least(1.0, ratio=ratio)
@@ -107,6 +108,7 @@ def ratio_force(law: RatingLaw, diameter: FloatArray | float, ratio: FloatArray 
     return np.asarray(law.bending / np.asarray(diameter) * (1.0 - 1.0 / ratio_factor(ratio, exponent)))
 
 
+@np.errstate(under="ignore")  # below the least number is zero
 def wrap_factor(wrap: FloatArray | float) -> FloatArray:
     """Factor on the rated power for a wrap angle in rad: 1 for half a turn, 0.82 for 120 degrees (ISO 5292)."""
     require_at_least(wrap=wrap)

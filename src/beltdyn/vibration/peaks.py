@@ -301,7 +301,8 @@ class _Lumping:
         slid = np.minimum(reach * np.abs(entry - leaving) + layer, arcs)
         adhering = np.maximum(arcs - ends[0] - ends[1] - radii * np.abs(np.log(entry / leaving)) / grip, 0.0)
         delay, smearing = (one / speed if speed else np.zeros(arcs.size) for one in (adhering, layer))
-        decay = np.exp(-arcs / np.maximum(layer, _THIN * arcs))
+        with np.errstate(under="ignore"):
+            decay = np.exp(-arcs / np.maximum(layer, _THIN * arcs))
         slid, delay, smearing, leak = (
             self._behind(one, np.roll(one, -1)) for one in (slid, delay, smearing, decay / (1.0 - decay))
         )

@@ -42,7 +42,7 @@ def fine(drive: Drive) -> Drive:
 
 
 def test_orders_limits_and_what_is_left(fine: Drive) -> None:
-    found = bd.convergence(fine, of="all", elements="10, 20, 30, 50", tolerances=[1e-4, 1e-2, 1e-3], repeated="powers")
+    found = bd.convergence(fine, of="all", meshes="10, 20, 30, 50", tolerances=[1e-4, 1e-2, 1e-3], repeated="powers")
     data = found.dataset
     assert data.tolerance.values.tolist() == [1e-2, 1e-3, 1e-4]  # the finest last
     force = data.sel(result="force")
@@ -62,7 +62,7 @@ def test_orders_limits_and_what_is_left(fine: Drive) -> None:
 
 
 def test_a_level_that_fails_leaves_the_others(fine: Drive) -> None:
-    found = bd.convergence(fine, of="force", elements=[13, 20, 30, 50], repeated="powers")
+    found = bd.convergence(fine, of="force", meshes=[13, 20, 30, 50], repeated="powers")
     assert np.isnan(found.dataset.mesh_value.values[0, 0])
     assert found.dataset.mesh_order.values[0, -1] == pytest.approx(ORDER, rel=1e-6)
     assert "elements: failed at" in found.warnings[1]
@@ -73,7 +73,7 @@ def test_a_level_that_fails_leaves_the_others(fine: Drive) -> None:
 
 def test_tables_and_figures(fine: Drive) -> None:
     found = bd.convergence(
-        fine, of="force, swing", elements="10, 20, 30, 50", tolerances="1e-2, 1e-3, 1e-4", repeated="powers"
+        fine, of="force, swing", meshes="10, 20, 30, 50", tolerances="1e-2, 1e-3, 1e-4", repeated="powers"
     )
     titles = [table.title for table in sheet_without_limits(found).parts]
     assert titles[1:4] == ["Value", "Difference from the finest mesh", "Observed order"]
@@ -90,14 +90,14 @@ def test_tables_and_figures(fine: Drive) -> None:
 @pytest.mark.parametrize(
     ("options", "message"),
     [
-        ({}, "no levels are given. Give elements"),
-        ({"elements": [20, 40]}, "elements has 2 levels; an order needs at least 3"),
-        ({"elements": [20.5, 30, 40]}, "must be whole numbers"),
-        ({"elements": "20, 20, 30"}, "contains the same number twice"),
+        ({}, "no levels are given. Give meshes"),
+        ({"meshes": [20, 40]}, "meshes has 2 levels; an order needs at least 3"),
+        ({"meshes": [20.5, 30, 40]}, "must be whole numbers"),
+        ({"meshes": "20, 20, 30"}, "contains the same number twice"),
         ({"tolerances": [1e-3, 1e-4]}, "tolerances has 2 levels"),
-        ({"tolerances": [1e-3, 1e-4, 1e-5], "repeated": "modes"}, '"modes" has no tolerance. Give elements'),
-        ({"elements": [20, 30, 40], "repeated": "stress"}, 'repeated = "stress" is no analysis'),
-        ({"elements": [20, 30, 40], "of": "forces", "repeated": "powers"}, "'forces' is not a numerical result"),
+        ({"tolerances": [1e-3, 1e-4, 1e-5], "repeated": "modes"}, '"modes" has no tolerance. Give meshes'),
+        ({"meshes": [20, 30, 40], "repeated": "stress"}, 'repeated = "stress" is no analysis'),
+        ({"meshes": [20, 30, 40], "of": "forces", "repeated": "powers"}, "'forces' is not a numerical result"),
     ],
 )
 def test_what_cannot_be_compared(fine: Drive, options: dict[str, object], message: str) -> None:

@@ -12,7 +12,7 @@ from beltdyn.cli import main
 from beltdyn.designs.study import study
 from beltdyn.errors import BeltdynError, ModelError
 from beltdyn.model import Drive, ParameterStudy
-from beltdyn.parts.options import options_of, read_options
+from beltdyn.parts.options import options_of, read_options, takes_options
 
 EVERY = [(name, option) for name, one in ANALYSES.items() for option in options_of(one.function)]
 NUMBERS = ("points", "load_points", "count", "most", "elements", "sobol", "force_tolerance", "repeats", "light_load")
@@ -99,3 +99,15 @@ def test_a_percentage_is_a_number_on_the_command_line(drive_file: Path, tmp_path
     with pytest.raises(SystemExit) as ended:
         main(words)
     assert ended.value.code in (None, 0)
+
+
+@takes_options
+def _small_number(drive: Drive, *, factor: float = 1.0) -> float:
+    return float(np.exp(np.array([-1e3 * factor]))[0])
+
+
+def test_below_the_least_number_an_analysis_goes_on_with_zero(drive: Drive) -> None:
+    with np.errstate(all="raise"):
+        assert _small_number(drive, factor=1.0) == 0.0
+        with pytest.raises(FloatingPointError, match="overflow"):
+            _small_number(drive, factor=-1.0)

@@ -50,7 +50,7 @@ def mesh_convergence(result: Result, of: str | None = None, ax: Axes | None = No
 
     Examples
     --------
-    >>> found = bd.convergence(drive, of="hub_load", elements=[12, 16, 24], repeated="equilibrium")
+    >>> found = bd.convergence(drive, of="hub_load", meshes=[12, 16, 24], repeated="equilibrium")
     >>> bd.plot.mesh_convergence(found).get_xscale()
     'log'
     """
