@@ -448,3 +448,12 @@ def test_rest_is_found_beside_that_of_another_drive(teeth: bool, lost: int, monk
     assert tension == pytest.approx(expected, rel=1e-4 if teeth else 1e-7)
     assert tension > 1.001 * rest.tension
     assert set(nodes) == {rest.system.nodes}
+
+
+@pytest.mark.parametrize(("factor", "part"), [(1.0, 0.1), (10.0, 0.05)])
+def test_a_belt_lies_a_tenth_of_the_smallest_radius_deep_at_most(factor: float, part: float) -> None:
+    """In contact in which it would sink by half of it, and ten times less in contact ten times as stiff."""
+    prepared = prepare(BENDING["EI 0.03"](24).with_({"contact.stiffness": 200.0 / (0.5 * 0.05**2)}))
+    path, depth = installation.drawn_in(prepared, factor), float(prepared.installation.penetrations.min())
+    assert depth == pytest.approx(0.5 * 0.05, rel=0.1)
+    np.testing.assert_allclose(prepared.path.radii - path.radii, part * 0.05, rtol=0.1)

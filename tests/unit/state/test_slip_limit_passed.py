@@ -112,7 +112,7 @@ def test_an_idler_limits_nothing(loading: Loading) -> None:
     """It has no load; all of its friction is used by its own bearing."""
     refusal = loading.limit(
         loading.passed(0.0, [0.0] * 3, [0.0] * 3, [0.0] * 3),
-        loading.passed(0.6, [-5.0, 5.0, 30.0], [0.5, 0.4, 1.0], [0.0] * 3),
+        loading.passed(0.6, [-5.0, 5.0, 30.0], [0.5, 0.4, 1.0], [GROSS] * 3),  # no slip beyond what counts as such
     )
     assert not refusal.is_limit
     assert "ends at 60.0% of the loads, where `motor` uses 50% of its friction" in refusal.reason

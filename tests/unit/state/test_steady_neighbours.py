@@ -14,7 +14,9 @@ from beltdyn.results import Run
 from beltdyn.solvers.run_progress import Progress
 from beltdyn.state import steady
 from beltdyn.state.newton import SteadyWork
+from beltdyn.state.refinement import MeshRule
 from beltdyn.state.search import SteadySearch
+from beltdyn.state.staying import FINER
 from beltdyn.state.steady import _require_trims, search_from, steady_beside, steady_from, steady_state, tangent_of
 from tests.unit.vibration.test_small_motions import loose
 
@@ -145,3 +147,25 @@ def test_steady_running_of_analyses_begins_with_a_neighbor_or_at_rest(
     monkeypatch.setattr(steady, "_as_run", lambda prepared, instant, result: result)
     begun: list[Any] = [steady_from(proportional.drive, start, None, bands=True) for start in (None, proportional)]
     assert begun == ["rest", "near" if converges else "rest"]
+
+
+@pytest.mark.parametrize(("tolerance", "refined"), [(0.05, False), (0.005, True)])
+def test_the_mesh_of_a_neighbor_is_refined_from_the_coarser_one_on(
+    proportional: Run, tolerance: float, refined: bool, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """With which it was compared, where its error of 1 % is too large; the first finer one is that of the neighbor."""
+    begun, rule = list[MeshRule](), MeshRule(0.01, 0.7)
+
+    def refine(search: object, coarse: MeshRule, tolerance: float) -> tuple[dict[str, float], MeshRule]:
+        assert search == "coarser"
+        begun.append(coarse)
+        return {"peak pressure": 0.001}, coarse.finer()
+
+    monkeypatch.setattr(steady, "_rule_of", lambda _: rule)
+    monkeypatch.setattr(steady, "against_coarser", lambda *_: ({"peak pressure": 0.01, "tension": 0.0}, "coarser"))
+    monkeypatch.setattr(steady, "refine", refine)
+    result = steady._continued(proportional.prepared, proportional, 1.0, tolerance, bands=False)
+    assert result is not None
+    assert isinstance(result.search, SteadySearch) is not refined
+    assert result.rule.fineness == pytest.approx(rule.fineness)
+    assert [each.fineness for each in begun] == [pytest.approx(0.7 / FINER)] * refined

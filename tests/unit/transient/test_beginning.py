@@ -301,3 +301,16 @@ def test_steady_running_is_taken_over_by_a_mesh_that_travels() -> None:
     speeds = np.hypot(*state.velocity[: system.first_body].reshape(system.nodes, -1)[:, :2].T)
     slopes = np.hypot(*state.nodes(system)[:, 2:4].T)
     np.testing.assert_allclose(speeds, search.belt_parameter * slopes, rtol=1e-3)
+
+
+def test_the_mesh_of_the_earlier_run_is_required(run: Run, saved_run: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Before its state is taken over."""
+
+    def other(system: System, earlier: Run) -> None:
+        assert system.bodies.size == 2
+        raise ModelError("other nodes")
+
+    begun = run.drive.with_({"simulation.start": {"file": str(saved_run)}})
+    monkeypatch.setattr(beginning, "_require_same_mesh", other)
+    with pytest.raises(ModelError, match=r"simulation\.start: other nodes"):
+        mesh_of(prepare(with_instant(begun)), choose_integrator(begun))
