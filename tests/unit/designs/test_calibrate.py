@@ -87,6 +87,7 @@ def test_an_interrupted_calibration_keeps_what_it_has_come_to(drive: Drive, slip
     before = list[Result]()
 
     def interrupt(progress: Progress) -> None:
+        assert (progress.duration, progress.phase) == (60.0, "designs")  # so many at most
         if progress.time >= 3.0:
             before.append(open_result(tmp_path / "out.nc"))
             raise KeyboardInterrupt

@@ -143,6 +143,20 @@ def test_tangent_over_time(load: dict[str, Any], belt: dict[str, float]) -> None
     check(way, 2e-3, on_spans(system, state))
 
 
+def test_equations_are_linear_in_accelerations() -> None:
+    """Of nodes, bodies, flow and shifts: their tangent is exact, and tells them apart from elastic forces."""
+    system, state = over_time(*laid(**LOADED), spread=1.0)
+    equations, nodes = new_equations(system), system.first_body
+    before = residual(system, state, equations, TangentFactors(0.0, 0.0, 1.0))
+    tangent, unknown = dense(equations), np.asarray(system.bodies.unknown)
+    way = np.random.default_rng(12).normal(size=len(tangent))
+    moved = State(state.position, state.velocity, state.acceleration.copy())
+    moved.acceleration[:nodes] += way[:nodes]
+    moved.acceleration[nodes:][unknown >= 0] += way[nodes + unknown[unknown >= 0]]
+    difference = residual(system, moved, equations) - before
+    np.testing.assert_allclose(tangent @ way, difference, rtol=1e-8, atol=1e-10 * np.abs(before).max())
+
+
 @pytest.mark.parametrize("load", [LOADED, BARE | {"tensioner": [ARM]}], ids=["loaded", "on-an-arm"])
 def test_tangent_of_steady_running(load: dict[str, Any]) -> None:
     """By nodes and the arm along a direction, by the flow, and by the shifts."""
