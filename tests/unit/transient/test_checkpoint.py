@@ -247,3 +247,13 @@ def test_a_file_that_lost_outputs_is_refused(stopped: Path, travelling: Drive) -
     stopped.with_name("short.nc").replace(stopped)
     with pytest.raises(ModelError, match=r"it holds \d+ of"):
         simulate(travelling, stopped, resume=True)
+
+
+def test_a_short_run_goes_on_to_the_bit(travelling: Drive, tmp_path: Path) -> None:
+    """Some steps before its end."""
+    path, settings = tmp_path / "run.nc", {"simulation.duration": 4e-3, "simulation.output_interval": 2e-4}
+    short = travelling.with_(settings)
+    stopped = simulate(short, path, stopping_after(1e-3), checkpoint=OFTEN)
+    assert stopped.status == "interrupted"
+    stopped.dataset.close()
+    require_same(simulate(short, path, resume=True), simulate(short))

@@ -11,6 +11,7 @@ import pytest
 import xarray as xr
 
 from beltdyn import equilibrium, example, simulate
+from beltdyn.arrays import FloatArray
 from beltdyn.errors import ConvergenceError, ModelError
 from beltdyn.machines import FunctionLoad
 from beltdyn.model import Drive
@@ -18,6 +19,8 @@ from beltdyn.results import open_run
 from beltdyn.results.checks.mesh import COARSE_SETTINGS
 from beltdyn.results.summary import FAILURE, VALUES
 from beltdyn.solvers.run_progress import Progress
+from beltdyn.solvers.standard import FixedSteps, Stepwise
+from beltdyn.system.first_order import FirstOrder
 from beltdyn.transient.checkpoint import CheckpointWarning
 from beltdyn.transient.simulate import _without_checkpoints, choose_integrator
 
@@ -217,3 +220,29 @@ def test_an_open_belt_is_not_compared_with_steady_running(tmp_path: Path) -> Non
 def test_a_run_needs_a_duration(change: Change) -> None:
     with pytest.raises(ModelError, match=r"simulation\.duration is missing, the time to be simulated"):
         simulate(change(simulation={"duration": None, "output_interval": None}))
+
+
+class Frozen:
+    """A method of others, for which nothing moves."""
+
+    name, order = "frozen", 1
+
+    def step(self, equations: FirstOrder, time: float, y: FloatArray, length: float) -> tuple[FloatArray, FloatArray]:
+        return y.copy(), np.zeros_like(y)
+
+
+def test_methods_of_others_are_recorded_without_checkpoints(change: Change, tmp_path: Path) -> None:
+    """All their states, from the length that gives the installed tension."""
+    drive = change(
+        belt={"length": None, "installed_tension": 60.0},
+        simulation={"start": "equilibrium", "duration": 4e-4, "output_interval": 1e-4},
+    )
+    method = Stepwise(Frozen(), FixedSteps(1e-4))
+    with warnings.catch_warnings():
+        warnings.simplefilter("error", CheckpointWarning)
+        run = simulate(drive, tmp_path / "run.nc", integrator=method, checkpoint=1e-9)
+    np.testing.assert_allclose(run.dataset.time, 1e-4 * np.arange(5))
+    assert run.dataset.attrs["integrator"] == "frozen"
+    assert run.dataset.attrs["drive_as_given"] == drive.text
+    assert run.drive.belt_length != drive.belt_length
+    assert float(run.dataset.span_tension[0].mean()) == pytest.approx(60.0, rel=1e-4)

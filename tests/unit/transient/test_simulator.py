@@ -307,9 +307,12 @@ def test_a_state_refers_to_rows_that_are_there(sprung: Drive) -> None:
             simulator.restore(damaged(saved, name))
         assert not _same_sizes(damaged(saved, name).changed, saved.changed), name
     simulator.restore(damaged(saved, "not at all"))
-    vectors = saved.integrator._replace(position=saved.integrator.position[:-1])
-    with pytest.raises(ModelError, match="the state belongs to another drive"):
-        simulator.restore(SimulatorState(vectors, saved.changed, saved.pulleys, saved.anew, saved.moves))
+    tables = saved.changed | {"tensioners": np.zeros(saved.changed["tensioners"].size)}
+    position = saved.integrator.position
+    for vector, changed in ((position[:-1], {}), (position.astype("f4"), {}), (position, tables)):
+        state = saved.integrator._replace(position=vector)
+        with pytest.raises(ModelError, match="the state belongs to another drive"):
+            simulator.restore(SimulatorState(state, changed or saved.changed, saved.pulleys, saved.anew, saved.moves))
 
 
 def test_kinks_of_what_is_prescribed_are_instants_of_steps(sprung: Drive, monkeypatch: pytest.MonkeyPatch) -> None:
@@ -351,6 +354,8 @@ def test_a_center_moves_evenly_and_stops(sprung: Drive) -> None:
     simulator.step(3e-4)
     assert simulator.center("right") == pytest.approx((0.4, 0.0001), abs=1e-12)
     assert simulator.center("left") == pytest.approx((0.0, 0.0002), abs=1e-12)
+    assert simulator._moves
     simulator.step(4e-4)
+    assert not simulator._moves  # the integration goes on without a new beginning
     assert simulator.center("left") == pytest.approx((0.0, 0.0002), abs=1e-12)
     assert list(simulator.outputs()) == output_names(sprung)

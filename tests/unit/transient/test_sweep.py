@@ -12,6 +12,7 @@ from beltdyn.model import Drive
 from beltdyn.results import open_run
 from beltdyn.results.summary import FAILURE, VALUES
 from beltdyn.transient.sweep import run_up, sweep, without_schedules
+from tests.unit.model.test_carrying import conveyor
 
 
 def test_the_speed_rises_linearly(drive: Drive) -> None:
@@ -203,3 +204,15 @@ def test_quantities_that_are_held_are_named(drive: Drive, monkeypatch: pytest.Mo
     assert begun["held"] == "driven.torque = -0.25"
     sweep(drive.with_({"pulley[driven].torque": -0.25}), pulley="driver", from_=3.0, to=9.0)
     assert begun["held"] == ""
+
+
+def test_goods_that_come_keep_their_final_mass() -> None:
+    """Each by its number."""
+    schedule = {"kind": "ramp", "start": 0.0, "end": 1.0, "value": 0.5}
+    load: dict[str, Any] = {"span": ["tail", "head"], "mass_per_length": 30.0}
+    goods = [load | {"start": 2.0, "end": 7.0}, load | {"start": 10.0, "end": 15.0, "schedule": schedule}]
+    steady, held = without_schedules(conveyor(goods=goods))
+    assert held == ["goods[2].schedule = 0.5"]
+    assert steady.goods[0].schedule is None
+    assert steady.goods[1].schedule is not None
+    np.testing.assert_array_equal(steady.goods[1].schedule.at([0.0, 9.0]), 0.5)
