@@ -98,6 +98,34 @@ def test_tangent(
         np.testing.assert_allclose(tangent @ way, difference, rtol=2e-4, atol=2e-6 * np.abs(difference).max())
 
 
+def hoop(ring: System) -> FloatArray:
+    """Coordinates of a belt without pulleys that is stretched to a circle, shape (6 N,)."""
+    radius = float(ring.length.sum()) / (2.0 * np.pi)
+    angle = point_coordinates(ring) / radius
+    out, tangent = np.stack([np.cos(angle), np.sin(angle)], 1), np.stack([-np.sin(angle), np.cos(angle)], 1)
+    return nodal_coordinates(ring, radius * out, 1.001 * tangent, -1.001 / radius * out).ravel()
+
+
+@pytest.mark.parametrize("factors", [(1.0, 0.0), (1.0, 50.0)])
+def test_damping_of_a_belt_that_travels_with_its_mesh_has_no_flow(drive: Drive, factors: tuple[float, float]) -> None:
+    """By central differences along all coordinates."""
+    ring, random = ring_of(drive, stretch_damping_time=1e-2, bending_damping_time=1e-1), np.random.default_rng(9)
+    system = ring._replace(frame=Travelling(), bodies=ring.bodies[:0].view(np.recarray))
+    position, size = hoop(ring), ring.first_body
+    velocity, equations = 0.1 * random.normal(size=size), new_equations(system)
+
+    def at(step: FloatArray) -> FloatArray:
+        state = State(position + factors[0] * step, velocity + factors[1] * step, np.zeros(size))
+        return residual(system, state, equations)
+
+    residual(system, State(position, velocity, np.zeros(size)), equations, TangentFactors(*factors, 0.0))
+    tangent = np.zeros((size, size))
+    np.add.at(tangent, places(equations.matrix), entries(equations.matrix))
+    step = 1e-7 * random.normal(size=size) * np.tile([1.0, 1.0, 10.0, 10.0, 100.0, 100.0], system.nodes)
+    difference = 0.5 * (at(step) - at(-step))
+    np.testing.assert_allclose(tangent @ step, difference, rtol=1e-5, atol=1e-7 * np.abs(difference).max())
+
+
 @pytest.mark.parametrize(
     "losses", [{"stretch_loss_factor": 0.2}, {"bending_loss_factor": 0.3}], ids=["stretch", "bend"]
 )
@@ -105,11 +133,7 @@ def test_losses_of_the_material_change_with_the_flow(drive: Drive, losses: dict[
     """By central differences, without those of a belt that loses nothing: of stretch and of bending each alone."""
     systems, random = [ring_of(drive, **each) for each in (losses, {})], np.random.default_rng(8)
     size = systems[0].first_body + 1
-    radius, along = drive.belt_length / (2.0 * np.pi), point_coordinates(systems[0])
-    angle = along / radius
-    out, tangent = np.stack([np.cos(angle), np.sin(angle)], 1), np.stack([-np.sin(angle), np.cos(angle)], 1)
-    nodes = nodal_coordinates(systems[0], radius * out, 1.001 * tangent, -1.001 / radius * out)
-    position = np.append(nodes.ravel(), 0.0) + 1e-3 * random.normal(size=size)
+    position = np.append(hoop(systems[0]), 0.0) + 1e-3 * random.normal(size=size)
     velocity = np.append(0.01 * random.normal(size=size - 1), SPEED)
     columns, differences, step = [], [], 1e-3
     for system in systems:
