@@ -38,6 +38,14 @@ def test_plain_names_of_a_run_are_those_of_its_summary(run: Run) -> None:
     assert found.values["pulley_slip[driven]"] == summarize(run).pulleys[1].slip
 
 
+def test_results_at_rest_are_those_that_are_asked_for(drive: Drive) -> None:
+    running, resting = set(names_of(drive)), set(names_of(drive, at_rest=True))
+    assert {"efficiency", "hub_load[driven]"} <= running
+    assert {"tension", "belt_length", "hub_load[driven]"} <= resting
+    assert "efficiency" not in resting
+    assert "belt_length" not in running
+
+
 def test_all_takes_every_single_number(drive: Drive) -> None:
     variables: dict[str, tuple[Variable, ArrayLike]] = {
         "one": (Variable((), "m", "One"), 1.5),

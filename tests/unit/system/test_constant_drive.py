@@ -7,10 +7,17 @@ import pytest
 
 from beltdyn.machines.loads.shaft import shaft_torque
 from beltdyn.machines.tensioners import tensioner_force
-from beltdyn.model import Drive, prepare
+from beltdyn.model import Drive, Pulley, prepare
 from beltdyn.system.arrays import System
-from beltdyn.system.build import drive_system
-from beltdyn.system.constant_drive import constant_drive, drive_shafts, rim_of_bodies, twists, with_speeds_unknown
+from beltdyn.system.build import belt_system, drive_system
+from beltdyn.system.constant_drive import (
+    constant_drive,
+    drive_shafts,
+    guess_hubs,
+    rim_of_bodies,
+    twists,
+    with_speeds_unknown,
+)
 from beltdyn.system.state import at_rest
 
 DRIVEN, FIRST_HUB, SECOND_HUB = 2, 3, 4
@@ -52,6 +59,31 @@ def test_springs_couple_speeds(system: System) -> None:
     assert sorted(set(unknown)) == [-1, 0, 1, 2, 3]
     held = with_speeds_unknown(system, (DRIVEN,)).bodies.unknown
     assert held[FIRST_HUB] == held[SECOND_HUB] == -1 < held[DRIVEN]
+
+
+def test_speeds_that_are_unknown_stay_as_they_are_guessed(system: System) -> None:
+    free = with_speeds_unknown(system)
+    unknown = np.asarray(free.bodies.unknown) >= 0
+    velocity = np.arange(1.0, 1.0 + free.first_body + free.bodies.size)
+    before = velocity.copy()
+    drive_shafts(free, velocity)
+    np.testing.assert_array_equal(velocity[free.first_body :][unknown], before[free.first_body :][unknown])
+
+
+@pytest.mark.parametrize(
+    ("rim", "expected"), [(20.0, (1.0 / 0.03) ** 0.5), (4.0, 4.0), (-20.0, -((1.0 / 0.03) ** 0.5))]
+)
+def test_a_hub_turns_where_its_clutch_carries_its_load(drive: Drive, rim: float, expected: float) -> None:
+    """1 N m and 0.03 omega^2 against 2 N m of the clutch; with the rim where it does not slip."""
+    clutch = {"kind": "friction_clutch", "locking_damping": 1e4, "capacity": 2.0, "inertia": 0.1}
+    load = {"kind": "resistance", "constant": 1.0, "creep_speed": 0.1, "quadratic": 0.03}
+    pulley = Pulley(name="far", center=(0.0, 50.0), radius=0.1, inertia=0.4, hub=[clutch], load=[load])
+    system = with_speeds_unknown(belt_system(drive.belt.replace(elements=3), [pulley], drive.contact))
+    velocity = np.zeros(system.first_body + system.bodies.size)
+    (link,) = system.links
+    velocity[system.first_body + link.front] = rim
+    guess_hubs(system, velocity)
+    assert velocity[system.first_body + link.back] == pytest.approx(expected, rel=1e-2)
 
 
 def test_a_spring_twists_by_the_torque_through_it(system: System) -> None:
