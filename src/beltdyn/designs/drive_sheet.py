@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 from pydantic import Field
 
 from beltdyn.arrays import FloatArray
-from beltdyn.designs.line_sheet import line_sheet
+from beltdyn.designs.line_sheet import Launch, braking_force, line_sheet
 from beltdyn.errors import ModelError
 from beltdyn.model import Drive, FixedTensioner, Prepared, alignment, prepare
 from beltdyn.model.alignment import judge_alignment
@@ -190,7 +190,8 @@ def _sheet_of_line(
                 "a guided belt has operating points: give them as groups [[duty]], or as a CSV file with table."
             )
     columns, factors = duty_of(drive, table), numbers_in("friction", friction, "", 3)
-    made = line_sheet(held_at(drive, at), columns, factors, rising)
+    held = held_at(drive, at)
+    made = line_sheet(held, columns, factors, Launch(rising, braking_force(drive) - braking_force(held)))
     result = build_result("sheet", drive, made.variables, made.coordinates, made.warnings)
     result.dataset.attrs |= {"drive_as_given": drive.text, "axes": _ROW, "title": f"Drive sheet of {drive.title}"}
     return result

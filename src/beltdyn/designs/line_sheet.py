@@ -13,7 +13,7 @@ import numpy as np
 
 from beltdyn.arrays import FloatArray, row
 from beltdyn.kernel import interpreted
-from beltdyn.machines import Idlers
+from beltdyn.machines import Brake, Idlers
 from beltdyn.machines.carrying.support import Support
 from beltdyn.machines.loads.shaft import shaft_torque
 from beltdyn.model import Drive, Prepared, prepare
@@ -41,6 +41,9 @@ STRETCHES = {
 
 Values = dict[str, tuple[Variable, Any]]
 _ROW, _PULLEY, _SPAN, _TENSIONER, _ROLL, _NIP = "row", "pulley", "span", "tensioner", "roll", "nip"
+_MOTION, _IDLERS = "motion", "idlers"
+MOTIONS = ("start", "coasting", "emergency stop")
+"""With the torque of the start, without drives, and with all brakes."""
 
 RESISTANCES = {
     "main_resistance": "Main resistance of idlers, and friction of guides",
@@ -58,6 +61,25 @@ NIPS = (
 """What a sheet has of `beltdyn.derived.nips`."""
 
 
+class Launch(NamedTuple):
+    """How a line starts and is stopped."""
+
+    rising: float
+    """Largest acceleration of the driver in starts, rad/s^2; zero for that of its motor."""
+    braking: float
+    """Forces of all brakes on the belt that do not act in steady running, N."""
+
+
+def braking_force(drive: Drive) -> float:
+    """Largest forces of all brakes on the belt together, at any time, N."""
+    return sum(
+        load.torque.largest(np.inf) / abs(float(radius))
+        for one, radius in zip(drive.pulleys, drive.rolling_radii, strict=True)
+        for load in one.load
+        if isinstance(load, Brake)
+    )
+
+
 class LineSheet(NamedTuple):
     """Variables and coordinates of a sheet, and what a designer has to look after."""
 
@@ -66,12 +88,11 @@ class LineSheet(NamedTuple):
     warnings: list[str]
 
 
-def line_sheet(given: Drive, columns: list[Column] | None, factors: FloatArray, rising: float) -> LineSheet:
+def line_sheet(given: Drive, columns: list[Column] | None, factors: FloatArray, launch: Launch) -> LineSheet:
     """The sheet of a line, whose speeds and loads are those of an instant.
 
     `given`: a web line, or a belt that carries or slides over guides; `columns`: the duty; none for the drive as it is;
-    `factors`: on friction, ascending; `rising`: largest acceleration of the driver in starts, rad/s^2; zero for that of
-    its motor.
+    `factors`: on friction, ascending; `launch`: how it starts and stops.
     """
     durations = durations_of(columns) if columns else np.ones(1)
     drives = [at_row(given, columns, number) for number in range(durations.size)] if columns else [given]
@@ -79,7 +100,7 @@ def line_sheet(given: Drive, columns: list[Column] | None, factors: FloatArray, 
     rows, run = list[_Row](), None
     for one in drives:
         run = steady_state(one, start=run)
-        rows.append(_Row(run, factors, rising))
+        rows.append(_Row(run, factors, launch))
     first = rows[0]
     coordinates: Values = {
         _ROW: (
@@ -90,6 +111,11 @@ def line_sheet(given: Drive, columns: list[Column] | None, factors: FloatArray, 
         _SPAN: (COORDINATES[_SPAN], ["-".join(one) for one in given.spans]),
         "friction": (Variable(("friction",), "1", "Factor on friction"), factors),
     }
+    if given.carries:
+        coordinates[_MOTION] = (Variable((_MOTION,), "1", "Motion", "str"), list(MOTIONS))
+    if first.idlers:
+        places = ["-".join(one.span) for one in first.idlers]
+        coordinates[_IDLERS] = (Variable((_IDLERS,), "1", "Span of the idlers", "str"), places)
     if given.moving_tensioners:
         coordinates[_TENSIONER] = (COORDINATES[_TENSIONER], [one.pulley for one in given.moving_tensioners])
     if given.rolls:
@@ -146,8 +172,8 @@ def _geometry(prepared: Prepared, at_rest: float) -> Values:
 class _Row:
     """An operating point."""
 
-    def __init__(self, run: Run, factors: FloatArray, rising: float) -> None:
-        self.run, self.prepared, self.factors, self.rising = run, run.prepared, factors, rising
+    def __init__(self, run: Run, factors: FloatArray, launch: Launch) -> None:
+        self.run, self.prepared, self.factors, self.launch = run, run.prepared, factors, launch
         self.drive: Drive = run.drive
         self.at = run.dataset.isel(time=-1, field_time=-1)
         self.means: Means = means_of(run)
@@ -162,6 +188,8 @@ class _Row:
         yield from self._of_spans()
         if self.drive.carries:
             yield from self._of_starts()
+        if self.idlers:
+            yield from self._of_idlers()
         if self.drive.moving_tensioners:
             yield from self._of_tensioners()
         if self.drive.rolls:
@@ -177,6 +205,8 @@ class _Row:
         yield "power_in", (Variable((), "W", "Power input"), balance.power_in)
         yield "power_out", (Variable((), "W", "Power output"), balance.power_out)
         yield "loss", (Variable((), "W", "Losses"), balance.lost)
+        if self.drive.carries:
+            yield "lifting_power", (Variable((), "W", "Power that lifts goods, part of the output"), balance.lifted)
 
     def _of_pulleys(self) -> Iterator[tuple[str, tuple[Variable, Any]]]:
         pulleys = self.means.pulleys
@@ -264,6 +294,7 @@ class _Row:
         slack, needed = start.slack
         yield "start_slack_tension", (Variable((_PULLEY,), "N", "Slack tension of drives in starts"), slack)
         yield "least_start_slack_tension", (Variable((_PULLEY,), "N", "Least of it, by Euler's formula"), needed)
+        yield from self._of_motions(start)
         lift = sum(float(np.sum(self.resistances()[name])) for name in ("slope_resistance", "goods_resistance"))
         holds = max(0.0, lift) * float(np.abs(self.prepared.installation.path.radii)[self.drive.reference])
         meaning = "Torque of a holdback at the driver, without friction of idlers and guides"
@@ -271,6 +302,48 @@ class _Row:
         for (name, meaning), part in zip(STRETCHES.items(), (0.0, 1.0), strict=True):
             ends = np.array(self.span_ends) + part * np.array(start.rises)
             yield name, (Variable((), "m", meaning), self._stretch(ends))
+
+    def _of_motions(self, start: "_Start") -> Iterator[tuple[str, tuple[Variable, Any]]]:
+        """Start, coasting and emergency stop at constant acceleration of a belt that moves as a whole."""
+        speed, masses = float(np.abs(self.at["belt_speed"].values).mean()), start.mass + start.driving_mass
+        running, brakes = float(np.sum(start.pulls)), self.launch.braking
+        slowing = np.array([running, running + brakes if brakes > 0.0 else np.nan]) / masses
+        rates = np.concatenate([[start.acceleration], slowing])
+        rates = np.where(rates > 0.0, rates, np.nan)
+        goods = float(np.max(self.goods_mass, initial=0.0))
+        columns = {
+            "motion_rate": ("m/s^2", "Acceleration or deceleration of the belt", rates),
+            "motion_time": ("s", "Time", speed / rates),
+            "motion_travel": ("m", "Travel of the belt", 0.5 * speed**2 / rates),
+            "motion_goods": ("kg", "Goods that leave the belt in it", 0.5 * speed**2 / rates * goods),
+            "motion_brakes": ("N", "Force of the brakes on the belt", np.array([0.0, 0.0, brakes])),
+        }
+        for name, (unit, meaning, values) in columns.items():
+            yield name, (Variable((_MOTION,), unit, meaning), values)
+
+    def _of_idlers(self) -> Iterator[tuple[str, tuple[Variable, Any]]]:
+        """Number, load and speed of the idlers of each support that has them."""
+        drive, path = self.drive, self.prepared.installation.path
+        speed, gravity = float(np.abs(self.at["belt_speed"].values).mean()), np.array(drive.gravity)
+        columns: dict[str, list[float]] = {"count": [], "spacing": [], "load": [], "speed": []}
+        for one in self.idlers:
+            place = stretch_of(one, drive.spans, path)
+            down = abs(float(upper_side(place.direction, drive.gravity) @ gravity))
+            carried = self.prepared.belt.mass_per_length + self.goods_mass[place.span]
+            columns["count"].append(place.length / one.spacing)
+            columns["spacing"].append(one.spacing)
+            columns["load"].append((carried * one.spacing + one.idler_mass) * down)
+            columns["speed"].append(np.nan if one.idler_diameter is None else 2.0 * speed / one.idler_diameter)
+        units = {"count": "1", "spacing": "m", "load": "N", "speed": "rad/s"}
+        words = {"count": "Number of idlers", "load": "Load of an idler, with its rotating parts"}
+        for name, values in columns.items():
+            label = words.get(name, f"{name.capitalize()} of idlers")
+            yield f"idler_{name}", (Variable((_IDLERS,), units[name], label), values)
+
+    @cached_property
+    def idlers(self) -> list[Idlers]:
+        """Supports that are idlers."""
+        return [one for one in self.drive.supports if isinstance(one, Idlers)]
 
     def _stretch(self, ends: FloatArray) -> float:
         """Stretch of the belt, m, by tensions at starts and ends of spans, linear between; arcs have their mean."""
@@ -374,13 +447,14 @@ class _Start:
         self.inertia = np.array([one.inertia for one in drive.pulleys]) / self.radii**2
         self.masses = _span_masses(row)
         self.mass = float(np.sum(self.masses) + np.sum(self.inertia[~self.drives]))
+        self.driving_mass = float(np.sum(self.inertia[self.drives]))
         self.acceleration = max(0.0, self._acceleration())
 
     def _acceleration(self) -> float:
         """As asked for at the driver, or what the largest torques of motors give at speeds up to the present one."""
         row, drive = self.row, self.row.drive
-        if row.rising > 0.0 or drive.driver is None or drive.pulleys[drive.driver].prescribed:
-            return row.rising * float(self.radii[drive.reference])
+        if row.launch.rising > 0.0 or drive.driver is None or drive.pulleys[drive.driver].prescribed:
+            return row.launch.rising * float(self.radii[drive.reference])
         machines = machine_arrays(row.prepared.pulleys, (), row.prepared.path)
         speeds, states = row.at["pulley_speed"].values, np.zeros(row.run.dataset.sizes["body"])
         torque, pull = interpreted(shaft_torque), 0.0

@@ -158,13 +158,13 @@ def _check(drive: Drive, installation: Installation, state: str, factor: float, 
     """The spans with their tensions times a factor."""
     path, belt, tensions = installation.path, drive.completed.belt, factor * installation.span_tensions
     forces = []
-    for length, tension in zip(path.span_lengths.tolist(), tensions.tolist(), strict=True):
-        if length == 0.0:  # in a nip
+    swinging = swinging_lengths(drive.supports, drive.spans, path)
+    for length, tension in zip(swinging.tolist(), tensions.tolist(), strict=True):
+        if length == 0.0:  # in a nip, or on a guide
             forces.append(np.inf)
             continue
         deflection = DEFLECTION * length
         more = 0.0 if held else belt.local_stiffness(tension) * stretching(deflection, length) / belt.given_length
         forces.append(deflection_force(deflection, length, tension + more, belt.bending_stiffness) / drive.belt.v_belts)
-    swinging = swinging_lengths(drive.supports, drive.spans, path)
     frequencies = span_frequencies(belt, path, tensions, drive.gravity, swinging)
     return TensionCheck(state, float(tensions.mean()), frequencies, np.array(forces))

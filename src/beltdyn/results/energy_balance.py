@@ -8,6 +8,8 @@ from typing import NamedTuple
 import numpy as np
 
 from beltdyn.arrays import FloatArray
+from beltdyn.model import Prepared
+from beltdyn.model.carrying import stretch_of
 from beltdyn.results.cycles import Window, plain_window
 from beltdyn.results.schema import Recorded
 
@@ -60,20 +62,22 @@ class Balance:
     """Rate of change of the stored energy: kinetic, strain, contact, spring and potential energy."""
     web: float = 0.0
     """Power that comes in with the web of a line, less that which goes out with it."""
+    lifted: float = 0.0
+    """Power that lifts goods, which is useful; negative where goods that go down drive the belt."""
 
     @property
     def power_in(self) -> float:
-        """Power input of the driving shafts, and of a web that brings more than it takes along."""
-        return sum(power for power in (*self.pulleys, self.web) if power > 0.0)
+        """Power input of driving shafts, of goods that go down, and of a web that brings more than it takes along."""
+        return sum(power for power in (*self.pulleys, self.web, -self.lifted) if power > 0.0)
 
     @property
     def power_out(self) -> float:
-        """Power output to the loads, and to a web that takes more along than it brings."""
-        return -sum(power for power in (*self.pulleys, self.web) if power < 0.0)
+        """Power output to the loads, to goods that are lifted, and to a web that takes more along than it brings."""
+        return -sum(power for power in (*self.pulleys, self.web, -self.lifted) if power < 0.0)
 
     @property
     def efficiency(self) -> float:
-        """Power output over the sum of power output and losses; NaN without power input, or power output (a conveyor).
+        """Power output over the sum of power output and losses; NaN without either power, as of a level conveyor.
 
         In steady running this is power output over power input; stored and returned energy is not counted.
         """
@@ -99,7 +103,25 @@ def causes_of(*, toothed: bool) -> Mapping[str, str]:
     return {**LOSSES, "compression_loss": OF_TEETH} if toothed else LOSSES
 
 
-def power_balance(recorded: Recorded, window: Window | None = None) -> Balance:
+def lifting_power(recorded: Recorded, prepared: Prepared, window: Window) -> float:
+    """Power that lifts the goods on spans, mean over a window, W; batches, whose place changes, count as losses.
+
+    It is part of the recorded work on supports and goods.
+    """
+    whole = [one for one in prepared.goods if one.batch is None]
+    if not whole:
+        return 0.0
+    path, speed = prepared.installation.path, window.mean(recorded, "belt_speed")
+    uphill = -path.span_directions @ np.array(prepared.gravity)
+    power, times = 0.0, np.asarray(recorded["time"])[window.first :]
+    for one in whole:
+        place = stretch_of(one, prepared.spans, path)
+        share = 1.0 if one.schedule is None else float(np.mean(one.schedule.at(times)))
+        power += share * one.mass_per_length * place.length * float(uphill[place.span] * speed[place.span])
+    return power
+
+
+def power_balance(recorded: Recorded, window: Window | None = None, lifted: float = 0.0) -> Balance:
     """Give mean powers over a window.
 
     Shaft powers are means over outputs; losses and stored power are differences of recorded integrals. With a single
@@ -111,6 +133,8 @@ def power_balance(recorded: Recorded, window: Window | None = None) -> Balance:
         The results.
     window : Window, optional
         The averaging window; by default from the first to the last output.
+    lifted : float, default 0
+        Power that lifts goods, W (`lifting_power`), which the work on supports and goods includes.
 
     Returns
     -------
@@ -127,9 +151,13 @@ def power_balance(recorded: Recorded, window: Window | None = None) -> Balance:
     window = plain_window(np.asarray(recorded["time"])) if window is None else window
     pulleys = tuple(map(float, window.product(recorded, "shaft_torque", "shaft_speed")))
     put_in = sum(float(window.rate(recorded, name)) for name in ("driver_work", "torque_work"))
+    losses = {cause: float(window.rate(recorded, name)) for name, cause in losses_of(recorded).items()}
+    if lifted:
+        losses[LOSSES["carrying_loss"]] -= lifted
     return Balance(
         pulleys=pulleys,
-        losses={cause: float(window.rate(recorded, name)) for name, cause in losses_of(recorded).items()},
+        losses=losses,
+        lifted=lifted,
         stored=sum(float(window.rate(recorded, name)) for name in STORED),
         web=put_in - sum(pulleys) if WEB_LINE in recorded.attrs else 0.0,
     )

@@ -10,7 +10,7 @@ from beltdyn.model import Drive
 from beltdyn.model.simulation import Simulation
 from beltdyn.results.checks.mesh import STEADY_LOSSES, STEADY_SLIPS
 from beltdyn.results.cycles import Window, mean_window
-from beltdyn.results.energy_balance import Balance, causes_of, largest_closure, power_balance
+from beltdyn.results.energy_balance import Balance, causes_of, largest_closure, lifting_power, power_balance
 from beltdyn.results.means import (
     PulleySummary,
     SpanSummary,
@@ -131,7 +131,7 @@ def _means(run: Run, recorded: Recorded, window: Window) -> Means:
         pulleys=pulley_means(recorded, run.prepared, window),
         spans=span_means(recorded, run.prepared, window),
         tensioners=tensioner_means(recorded, run.prepared, window),
-        balance=power_balance(recorded, window),
+        balance=power_balance(recorded, window, lifting_power(recorded, run.prepared, window)),
     )
 
 

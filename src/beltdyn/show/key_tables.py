@@ -14,7 +14,7 @@ from pydantic.fields import FieldInfo
 from beltdyn.contact.surface import KINDS as SURFACES
 from beltdyn.errors import ModelError
 from beltdyn.machines import Goods, Support
-from beltdyn.machines.carrying.support import SUPPORTS
+from beltdyn.machines.carrying.support import SUPPORTS, MassFlow
 from beltdyn.machines.links.link import LINKS
 from beltdyn.machines.loads.load import LOADS, Load
 from beltdyn.machines.profiles.harmonic import CrankSpeed
@@ -127,7 +127,7 @@ def key_groups() -> dict[str, Group]:
         "arm": Group("[[tensioner]] as supplied", _keys(ArmAsSupplied)),
         "contact": Group("[contact]", _keys(Contact)),
         **_family("support", "[[support]]", SUPPORTS, Support),
-        "goods": Group("[[goods]]", _keys(Goods)),
+        "goods": Group("[[goods]]", _keys(Goods, MassFlow)),
         "nip": Group("[[nip]]", _keys(Nip)),
         **_family("end", "[[end]]", {"fixed": FixedEnd, "pulled": PulledEnd, "weight": WeightEnd}),
         "carriage": Group("[carriage]", _keys(Carriage)),

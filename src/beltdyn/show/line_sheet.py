@@ -5,9 +5,9 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from beltdyn.arrays import BoolArray
+from beltdyn.arrays import BoolArray, FloatArray
 from beltdyn.designs.line_sheet import LARGEST_SAG, RESISTANCES, STRETCHES
-from beltdyn.parts.messages import aligned
+from beltdyn.parts.messages import aligned, plain
 from beltdyn.parts.quantity import RPM
 from beltdyn.results import Result
 from beltdyn.results.schema import least_safeties, variable_of
@@ -29,7 +29,7 @@ def line_sheet(result: Result) -> Sheet:
     dataset, parts = result.dataset, list[Table | Facts]()
     parts += [*parts_list(result.prepared), Facts(tuple(_facts(dataset))), _points(dataset)]
     if "moved_mass" in dataset:
-        parts.append(_starts(dataset))
+        parts += [_starts(dataset), _motions(dataset)]
     for number, name in enumerate(dataset["row"].values):
         at, where = dataset.isel(row=number), f", operating point {name}" if dataset.sizes["row"] > 1 else ""
         stands = np.array(result.drive.guides, dtype=bool)
@@ -38,6 +38,8 @@ def line_sheet(result: Result) -> Sheet:
             parts.append(_resistances(at, where))
             if at["sag"].notnull().any():
                 parts.append(_sag(at, where))
+        if "idler_load" in at:
+            parts.append(_idlers(at, where))
         if "tensioner_position" in at:
             parts.append(_tensioners(at, where, result))
         if "roll_radius" in at:
@@ -86,8 +88,8 @@ def _points(dataset: "xr.Dataset") -> Table:
     )
     if "goods_mass" in dataset and dataset["goods_mass"].values.any():
         flow = _HOUR * (dataset["goods_mass"] * dataset["belt_speed"]).max("span").values
-        columns.append(aligned(flow.tolist(), 4))
-        headings = (*headings, "goods\nt/h")
+        columns += [aligned((dataset["lifting_power"].values / watts).tolist(), 4), aligned(flow.tolist(), 4)]
+        headings = (*headings, f"lifting\n{unit}", "goods\nt/h")
     return Table("Operating points", headings, tuple(zip(*columns, strict=True)))
 
 
@@ -116,6 +118,39 @@ def _starts(dataset: "xr.Dataset") -> Table:
         columns += [aligned((1e3 / ratio * dataset[one].values).tolist(), 4) for one in STRETCHES]
         headings = (*headings, "take-up, running\nmm", "start\nmm")
     return Table("Starts", headings, tuple(zip(*columns, strict=True)))
+
+
+def _motions(dataset: "xr.Dataset") -> Table:
+    """Start, coasting and emergency stop of each operating point."""
+    several = dataset.sizes["row"] > 1
+    names = [
+        f"{motion}, {row}" if several else str(motion)
+        for row in dataset["row"].values
+        for motion in dataset["motion"].values
+    ]
+    columns = [
+        _known(dataset[f"motion_{name}"].values.ravel()) for name in ("rate", "time", "travel", "goods", "brakes")
+    ]
+    headings = ("", "rate\nm/s²", "time\ns", "travel\nm", "goods that\nleave kg", "brakes\nN")
+    return Table("Start and stops", headings, tuple(zip(names, *columns, strict=True)))
+
+
+def _known(values: FloatArray) -> list[str]:
+    """Numbers with four digits; a dash where there is none."""
+    return [plain(one, 4) if np.isfinite(one) else "–" for one in values.tolist()]
+
+
+def _idlers(at: "xr.Dataset", where: str) -> Table:
+    """Number, load and speed of idlers."""
+    columns = (
+        map(str, at["idlers"].values),
+        [f"{one:.0f}" for one in at["idler_count"].values],
+        aligned(at["idler_spacing"].values.tolist(), 3),
+        aligned(at["idler_load"].values.tolist()),
+        aligned((RPM * at["idler_speed"].values).tolist()),
+    )
+    headings = ("", "number", "spacing\nm", "load of one\nN", "speed\nrpm")
+    return Table(f"Idlers{where}", headings, tuple(zip(*columns, strict=True)))
 
 
 def _pulleys(at: "xr.Dataset", where: str, stands: BoolArray) -> Table:

@@ -24,6 +24,7 @@ from beltdyn.model import (
 )
 from beltdyn.model.alignment import is_given
 from beltdyn.model.belt_loads import RequiredTension
+from beltdyn.model.carrying import swinging_lengths
 from beltdyn.model.demand import required_tension
 from beltdyn.model.hysteresis import bending_resistance, compression_losses
 from beltdyn.model.installation import DEFLECTION, TensionCheck, tension_checks
@@ -203,7 +204,7 @@ def _tension_facts(drive: Drive, checks: tuple[TensionCheck, ...]) -> list[tuple
 
 def _tension_table(drive: Drive, installation: Installation, checks: tuple[TensionCheck, ...]) -> Table:
     """Frequency and force of each span, in each state."""
-    lengths = installation.path.span_lengths.tolist()
+    lengths = swinging_lengths(drive.supports, drive.spans, installation.path).tolist()
     columns = [aligned(lengths, 4), aligned([1e3 * DEFLECTION * one for one in lengths], 3)]
     headings = ["", "length\nm", "deflection\nmm"]
     for check in checks:

@@ -395,7 +395,9 @@ def _power(summary: Summary) -> list[tuple[str, str]]:
         return []
     losses = ", ".join(f"{cause} {_watts(power, 3)}" for cause, power in balance.losses.items() if power != 0.0)
     efficiency = f"{balance.efficiency:.2%}" if balance.power_out > 0.0 else "none (no power output)"
-    taken = f" (the web {_watts(-balance.web)})" if balance.web < 0.0 else ""
+    takers = {"the web": -balance.web, "lifting of goods": balance.lifted}
+    parts = [f"{name} {_watts(power)}" for name, power in takers.items() if power > 0.0]
+    taken = f" ({', '.join(parts)})" if parts else ""
     flows = f"{_watts(balance.power_in)} in{_givers(summary)}, {_watts(balance.power_out)} out{taken}"
     return [
         ("power", f"{flows}, {_watts(balance.stored, 3)} stored" if summary.steps else flows),
@@ -407,6 +409,7 @@ def _power(summary: Summary) -> list[tuple[str, str]]:
 def _givers(summary: Summary) -> str:
     """The shafts that put power in, and the web of a line, if several."""
     powers = [*((pulley.name, pulley.power) for pulley in summary.pulleys), ("the web", summary.balance.web)]
+    powers.append(("goods that go down", -summary.balance.lifted))
     givers = [(name, power) for name, power in powers if power > _LEAST_SHARE * summary.balance.power_in]
     parts = ", ".join(f"{name} {_watts(power)}" for name, power in givers)
     return f" ({parts})" if len(givers) > 1 else ""

@@ -9,7 +9,9 @@ import pytest
 import beltdyn as bd
 from beltdyn.designs.line_sheet import RESISTANCES
 from beltdyn.errors import ModelError
-from beltdyn.model import Drive, example
+from beltdyn.model import Drive, example, install
+from beltdyn.model.installation import DEFLECTION, tension_checks
+from beltdyn.show.rest_sheet import tensioning
 from beltdyn.show.sheet import as_text, sheet
 from tests.unit.model.test_web import line
 
@@ -104,6 +106,53 @@ def test_a_mirrored_conveyor_has_the_same_sheet() -> None:
     radius = RADIUS[0]
     gain = (150.0 / radius - float(one.running_pull)) / (float(one.moved_mass) + 0.5 / radius**2)
     assert float(one.acceleration) == pytest.approx(gain, rel=2e-3)
+
+
+@pytest.mark.parametrize("mirrored", [False, True])
+def test_lifting_is_useful_and_starts_coasting_and_stops_follow_from_force_and_mass(mirrored: bool) -> None:
+    """By hand: m' g h v of the goods, F / m of all that moves, v / a and v^2 / 2a, and the load of a meter of belt."""
+    drive = conveyor(mirrored)
+    tail = drive.pulleys[1].replace(load=[{"kind": "brake", "torque": {"kind": "step", "time": 5.0, "value": 36.0}}])
+    supports = [one.replace(idler_diameter="80 mm") for one in drive.supports]
+    dataset = bd.sheet(drive.replace(support=supports), acceleration="4 rad/s^2").dataset
+    found = dataset.isel(row=0)
+    speed, upper = 4.0 * RADIUS[0], int(np.argmax(found.goods_mass.values))
+    rising = 1.0 + RADIUS[0] - RADIUS[1]  # from the top of one drum to that of the other
+    assert float(found.lifting_power) == pytest.approx(GOODS * GRAVITY * rising * speed, rel=0.01)
+    assert float(found.power_in) == pytest.approx(float(found.power_out + found.loss), rel=1e-3)
+    assert float(found.power_out) == pytest.approx(float(found.lifting_power), rel=1e-9)
+    assert 0.0 < float(found.loss) < float(found.power_in - 0.99 * found.lifting_power)
+
+    mass = float(found.moved_mass) + 0.5 / RADIUS[0] ** 2
+    start, coasting, stop = (found.sel(motion=name) for name in ("start", "coasting", "emergency stop"))
+    assert float(start.motion_time) == pytest.approx(1.0, rel=2e-3)
+    slowing = float(found.running_pull) / mass
+    assert float(coasting.motion_rate) == pytest.approx(slowing, rel=2e-3)
+    assert float(coasting.motion_travel) == pytest.approx(0.5 * speed**2 / slowing, rel=5e-3)
+    assert float(coasting.motion_goods) == pytest.approx(GOODS * float(coasting.motion_travel), rel=1e-6)
+    assert np.isnan(float(stop.motion_rate))  # without a brake
+    braked = bd.sheet(drive.replace(pulley=[drive.pulleys[0], tail])).dataset.isel(row=0).sel(motion="emergency stop")
+    assert float(braked.motion_brakes) == pytest.approx(36.0 / RADIUS[1], rel=1e-2)
+    force = float(braked.running_pull + braked.motion_brakes)
+    assert float(braked.motion_rate) == pytest.approx(force / mass, rel=2e-3)
+
+    carrying, returning = 0, 1
+    down = GRAVITY * np.sqrt(1.0 - (rising / float(found.span_length[upper])) ** 2)
+    assert float(found.idler_load[carrying]) == pytest.approx(((BELT + GOODS) * 1.0 + 5.0) * down, rel=2e-3)
+    assert float(found.idler_load[returning]) == pytest.approx((BELT * 2.0 + 6.0) * down, rel=2e-3)
+    np.testing.assert_allclose(found.idler_speed, speed / 0.04, rtol=5e-3)
+    assert float(found.idler_count[carrying]) == pytest.approx(float(found.span_length[upper]))
+
+
+def test_the_tension_of_carried_strands_is_checked_between_idlers() -> None:
+    """A span of a kilometer does not deflect by 16 m."""
+    drive = example("conveyor_1km")
+    checks = tension_checks(drive, install(drive))
+    string = 4.0 * install(drive).span_tensions * DEFLECTION
+    assert (checks[0].forces > string).all()  # bending stiffness adds to a string
+    np.testing.assert_allclose(checks[0].forces, string, rtol=0.2)
+    table = tensioning(drive)
+    assert table is None or {row[2] for row in table.table.rows} == {"48.0", "19.2"}
 
 
 def test_conveyors_are_warned_of_slip_and_sag() -> None:
@@ -203,7 +252,8 @@ def test_a_web_line_has_the_strains_of_its_draws() -> None:
     np.testing.assert_allclose(spans.span_tension, stiffness * spans.span_strain, rtol=1e-3)
     np.testing.assert_allclose(dataset.roll_torque[0], [120.0 * 0.4, 100.0 * 0.076], rtol=1e-6)
     titles = [part.title for part in sheet(found).parts]
-    assert titles == ["", "Operating points", "Pulleys", "Grip", "Spans", "Tensioners", "Rolls"]
+    assert titles[:4] == ["Parts", "Pulleys as supplied", "", "Operating points"]
+    assert titles[4:] == ["Pulleys", "Grip", "Spans", "Tensioners", "Rolls"]
     assert any("coater slips at operating point 1 with 0.7 times the friction" in one for one in found.warnings)
 
 

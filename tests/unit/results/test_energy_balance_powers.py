@@ -41,6 +41,10 @@ def test_one_output_has_no_rates(make_run: MakeRun) -> None:
 
 
 def test_a_drive_that_delivers_no_power_has_no_efficiency() -> None:
-    """All power of a conveyor is lost to its supports and goods."""
+    """All power of a level conveyor is lost to its supports and goods; lifting is useful, and sinking goods drive."""
+    lifts = Balance(pulleys=(1000.0, 0.0), losses={"supports and goods": 600.0}, stored=0.0, lifted=400.0)
+    assert (lifts.power_in, lifts.power_out, lifts.efficiency) == (1000.0, 400.0, 0.4)
+    sinks = Balance(pulleys=(-300.0, 0.0), losses={"supports and goods": 100.0}, stored=0.0, lifted=-400.0)
+    assert (sinks.power_in, sinks.power_out, sinks.efficiency) == (400.0, 300.0, 0.75)
     assert math.isnan(Balance(pulleys=(1000.0, 0.0), losses={"supports and goods": 1000.0}, stored=0.0).efficiency)
     assert Balance(pulleys=(1000.0, -900.0), losses={"friction": 100.0}, stored=0.0).efficiency == pytest.approx(0.9)

@@ -5,7 +5,8 @@ from math import tanh
 from typing import TYPE_CHECKING, Any, ClassVar, Literal, NamedTuple, Self
 
 import numpy as np
-from pydantic import Field, model_validator
+from pydantic import ConfigDict, Field, model_validator
+from pydantic.fields import FieldInfo
 
 from beltdyn.arrays import record
 from beltdyn.kernel import KernelKinds, kernel
@@ -18,6 +19,7 @@ from beltdyn.parts.quantity import (
     LineDamping,
     LineStiffness,
     Mass,
+    MassFlowRate,
     MassPerLength,
     Name,
     Ratio,
@@ -156,6 +158,9 @@ class Idlers(Support):
     kind: Literal["idlers"] = Field(description="the kind of support")
     spacing: Length = Field(gt=0, description="the distance from idler to idler, in m")
     idler_mass: Mass = Field(0.0, ge=0, description="the mass of the rotating parts of an idler, in kg")
+    idler_diameter: Length | None = Field(
+        None, gt=0, description="the diameter of an idler, for its speed on the sheet, in m"
+    )
     friction: Ratio = Field(
         0.02, ge=0, description="the hypothetical friction coefficient f of DIN 22101, for belt, goods and idlers"
     )
@@ -222,16 +227,34 @@ class Guide(Support):
     creep_speed: Speed = Field(0.01, gt=0, description="the speed at which friction reaches 76 %, in m/s")
 
 
+class MassFlow(Part):
+    """Goods as a flow on a belt of a speed."""
+
+    mass_flow: MassFlowRate = Field(
+        gt=0, description='the flow of the goods at `speed`, such as "1500 t/h", instead of mass_per_length, in kg/s'
+    )
+    speed: Speed = Field(gt=0, description="the belt speed at which the goods flow with mass_flow, in m/s")
+
+
+def _describe_flow(schema: dict[str, Any]) -> None:
+    """Add the flow, which becomes a mass per length on reading, to the JSON schema."""
+    schema["properties"] |= MassFlow.model_json_schema()["properties"]
+    schema["required"] = [key for key in schema["required"] if key != "mass_per_length"]
+
+
 class Goods(OnSpan):
     """Goods that ride on a span: they get on with the belt's speed, have weight, and are accelerated with it.
 
-    They lie from `start` to `end`, or, as a batch, move with the belt from `start`, where they get on, to `end`.
+    They lie from `start` to `end`, or, as a batch, move with the belt from `start`, where they get on, to `end`. Their
+    mass per length is `mass_per_length`, or `mass_flow` over `speed`.
 
     Examples
     --------
     >>> bd.model.Goods(span=["tail", "head"], mass_per_length="110 kg/m").mass_per_length
     110.0
     """
+
+    model_config = ConfigDict(json_schema_extra=lambda schema: _describe_flow(schema))
 
     mass_per_length: MassPerLength = Field(gt=0, description="the mass of the goods over the length, in kg/m")
     schedule: Schedule | None = Field(None, description="the factor on the mass over time, from 0 to 1")
@@ -240,6 +263,26 @@ class Goods(OnSpan):
         description="the rear and the front, at time zero, of a batch that moves with the belt, from the start of the "
         "span, in m; by default goods lie everywhere",
     )
+
+    @classmethod
+    def alternatives(cls) -> Mapping[str, FieldInfo]:
+        """A flow with its speed replaces the mass per length."""
+        return MassFlow.model_fields
+
+    @model_validator(mode="before")
+    @classmethod
+    def _take_a_flow(cls, data: Any) -> Any:
+        keys = MassFlow.model_fields.keys()
+        if not isinstance(data, Mapping) or not any(data.get(key) is not None for key in keys):
+            return data
+        if data.get("mass_per_length") is not None:
+            raise ValueError("mass_per_length and mass_flow exclude each other. Keep one of them")
+        for key in keys:
+            if data.get(key) is None:
+                raise ValueError(f"{key} is missing: mass_flow and speed give the mass per length together. Give both")
+        flow = MassFlow.model_validate({key: data[key] for key in keys})
+        rest = {key: value for key, value in data.items() if key not in keys}
+        return rest | {"mass_per_length": flow.mass_flow / flow.speed}
 
     @model_validator(mode="after")
     def _has_a_front(self) -> Self:

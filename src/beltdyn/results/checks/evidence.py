@@ -10,7 +10,7 @@ from beltdyn.arrays import FloatArray
 from beltdyn.model import Prepared
 from beltdyn.parts.messages import Finding
 from beltdyn.results.cycles import Window, mean_window
-from beltdyn.results.energy_balance import Balance, power_balance
+from beltdyn.results.energy_balance import Balance, lifting_power, power_balance
 from beltdyn.results.means import PulleySummary, SpanSummary, pulley_means, span_means
 from beltdyn.results.provenance import Resolution
 from beltdyn.results.schema import Recorded
@@ -59,7 +59,8 @@ class Evidence:
     @cached_property
     def balance(self) -> Balance:
         """Powers over the end of the run."""
-        return power_balance(self.recorded, self.window)
+        lifted = lifting_power(self.recorded, self.prepared, self.window)
+        return power_balance(self.recorded, self.window, lifted)
 
     @cached_property
     def power(self) -> float:

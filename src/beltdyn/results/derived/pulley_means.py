@@ -4,7 +4,7 @@ import numpy as np
 import xarray as xr
 
 from beltdyn.results.cycles import Cycle, Window, plain_window, turn_window
-from beltdyn.results.energy_balance import Balance, power_balance
+from beltdyn.results.energy_balance import Balance, lifting_power, power_balance
 from beltdyn.results.mechanics import SpanTension, rim_speeds
 from beltdyn.results.run import Run, labelled, window
 from beltdyn.results.schema import SLIP_SAFETIES
@@ -72,7 +72,8 @@ def balance(run: Run, start: float | None = None, end: float | None = None) -> B
     ['belt bending', 'belt compression', 'belt stretch']
     """
     part = window(run, start, end)
-    return power_balance(part, plain_window(part["time"].values))
+    over = plain_window(part["time"].values)
+    return power_balance(part, over, lifting_power(part, run.prepared, over))
 
 
 # Span tensions and mid-span displacements

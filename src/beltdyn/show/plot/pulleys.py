@@ -11,9 +11,10 @@ from matplotlib.projections.polar import PolarAxes
 from matplotlib.ticker import MaxNLocator
 
 from beltdyn.errors import ModelError
-from beltdyn.results import Balance, Run, derived, power_balance, summarize
+from beltdyn.results import Balance, Run, derived, summarize
 from beltdyn.results.cycles import mean_window
 from beltdyn.results.incidents import GROSS_SLIP
+from beltdyn.results.summary import means_of
 from beltdyn.show.plot.figures import Choice, figure, over_time, over_turns
 from beltdyn.show.plot.headline import names_of_results
 from beltdyn.show.plot.history import draw_limits, envelope, lines, mark_incidents
@@ -44,7 +45,7 @@ def _losses_of_several(runs: Sequence[Run], ax: Axes | None) -> Axes:
     ax = axes_or_new(ax)
     for run in runs:
         run.require_output()
-    balances = [power_balance(run.dataset, mean_window(run.dataset, run.prepared)) for run in runs]
+    balances = [means_of(run).balance for run in runs]
     causes = _worth_drawing(balances)
     height = _ROOM / len(runs)
     for number, (balance, name) in enumerate(zip(balances, names_of_results(runs), strict=True)):
@@ -91,7 +92,7 @@ def losses(run: Run, ax: Axes | None = None) -> Axes:
     run.require_output()
     ax = axes_or_new(ax)
     over = mean_window(run.dataset, run.prepared)
-    balance = power_balance(run.dataset, over)
+    balance = means_of(run).balance
     by_pulley = derived.pulley_powers(run).map(lambda power: xr.DataArray(over.mean_of(power.values), dims="pulley"))
     by_pulley = by_pulley.assign_coords(pulley=run.dataset["pulley"])
     parts = {"friction": by_pulley["friction_power"], "contact damping": by_pulley["contact_damping_power"]}

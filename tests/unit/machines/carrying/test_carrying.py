@@ -80,3 +80,20 @@ def test_impossible_numbers_are_refused(made: object, words: str) -> None:
 def test_constants_are_all_filled() -> None:
     for support in (IDLERS, GUIDE):
         assert set(support.values(9.81)) == set(np.dtype(type(support).constants).names or ())
+
+
+def test_a_flow_of_goods_is_their_mass_per_length_times_speed() -> None:
+    """1500 t/h at 4 m/s are 104.17 kg/m."""
+    flow = {"mass_flow": "1500 t/h", "speed": "4 m/s"}
+    goods = Goods(span=["tail", "head"], **flow)
+    assert goods.mass_per_length == pytest.approx(1.5e6 / 3600.0 / 4.0)
+    assert goods == Goods(span=["tail", "head"], mass_per_length=goods.mass_per_length)
+    for keys, words in (
+        ({"mass_flow": "1500 t/h"}, "speed is missing"),
+        ({"speed": 4.0}, "mass_flow is missing"),
+        ({"mass_flow": 1.0, "speed": 4.0, "mass_per_length": 1.0}, "exclude each other"),
+        ({"mass_flow": "1500 t", "speed": 4.0}, "must be in units of kg/s"),
+        ({"mass_flow": 1.0, "speed": 0.0}, "speed"),
+    ):
+        with pytest.raises(ModelError, match=words):
+            Goods(span=["tail", "head"], **keys)
