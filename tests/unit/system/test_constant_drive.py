@@ -84,6 +84,8 @@ def test_a_hub_turns_where_its_clutch_carries_its_load(drive: Drive, rim: float,
     velocity[system.first_body + link.front] = rim
     guess_hubs(system, velocity)
     assert velocity[system.first_body + link.back] == pytest.approx(expected, rel=1e-2)
+    drive_shafts(system, velocity)
+    assert velocity[system.first_body + link.front] == rim
 
 
 def test_a_spring_twists_by_the_torque_through_it(system: System) -> None:
