@@ -14,7 +14,7 @@ from beltdyn.model import Drive, Prepared, prepare
 from beltdyn.model.resolution import Laid
 from beltdyn.state import staying
 from beltdyn.state.installation import looked_at
-from beltdyn.state.newton import find_steady
+from beltdyn.state.newton import NOT_FOUND, find_steady
 from beltdyn.state.staying import (
     FINER,
     Sampled,
@@ -260,6 +260,25 @@ def test_a_finer_mesh_begins_with_the_coarser_one(drive: Drive, monkeypatch: pyt
 
     monkeypatch.setattr(staying, "_balanced", lost)
     assert staying._on_finer_mesh(rest).tension == pytest.approx(finer.tension, rel=1e-8)
+
+
+def test_a_search_that_fails_leaves_the_mesh_of_arcs_as_it_was(monkeypatch: pytest.MonkeyPatch) -> None:
+    prepared = prepare(conveyor())
+    system = staying_system(prepared, prepared.equal_lengths(40))
+    state = staying._lying(prepared, system, 1.0)
+    fitted(system, state.position)
+    lengths, shifts = system.length.copy(), shifts_of(system.frame).copy()
+
+    def lost(still: System, *_: Any) -> tuple[int, int]:
+        shifts_of(still.frame)[:] += 1e-3
+        fitted(still, state.position)
+        assert not np.array_equal(still.length, lengths)
+        return NOT_FOUND, 1
+
+    monkeypatch.setattr(staying, "find_steady", lost)
+    assert not staying._found(prepared, system, state, anchor_at(state, True))
+    np.testing.assert_array_equal(shifts_of(system.frame), shifts)
+    np.testing.assert_array_equal(system.length, lengths)
 
 
 @pytest.mark.parametrize(("torque", "held"), [(2.0, True), (3000.0, False)])

@@ -8,7 +8,7 @@ import pytest
 
 import beltdyn as bd
 from beltdyn.arrays import FloatArray
-from beltdyn.errors import ConvergenceError
+from beltdyn.errors import ConvergenceError, ModelError
 from beltdyn.model import Drive
 from beltdyn.results import Run
 from beltdyn.solvers.run_progress import Progress
@@ -18,6 +18,7 @@ from beltdyn.state.refinement import MeshRule
 from beltdyn.state.search import SteadySearch
 from beltdyn.state.staying import FINER
 from beltdyn.state.steady import _require_trims, search_from, steady_beside, steady_from, steady_state, tangent_of
+from tests.unit.state.test_search import two
 from tests.unit.vibration.test_small_motions import loose
 
 SET_FORCE, TORQUE, GAIN, RATE, PRELOAD = 360.5, -4.0, 1e-2, 2e4, 400.0
@@ -96,10 +97,15 @@ def test_a_neighbor_at_another_speed_begins_in_proportion(proportional: Run) -> 
 
 
 def test_the_same_drive_changes_nothing(proportional: Run) -> None:
+    """In the time that it takes; one with other pulleys is none beside it."""
+    begun = time.perf_counter()
     result = steady_beside(proportional.drive, proportional)
     assert result is not None
+    assert 0.0 < result.seconds <= time.perf_counter() - begun
     assert np.abs(result.change).max() < 1e-6
     assert np.abs(result.search.unknowns()).max() > 1.0
+    with pytest.raises(ModelError, match="start has the pulleys left, right, slide and 1 moving tensioners; the drive"):
+        steady_beside(two(), proportional)
 
 
 @pytest.mark.parametrize("with_tangent", [False, True])

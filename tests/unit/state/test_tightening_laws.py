@@ -130,6 +130,15 @@ def test_the_installed_tension_is_met_in_a_few_trials(layout: Layout, smooth: La
     assert len(searched.trials) < 15
 
 
+@pytest.mark.parametrize("factor", [0.5, 2.0])
+@pytest.mark.parametrize("missing", [0.5, 30.0])
+def test_two_trials_tell_the_slope_of_a_straight_law(layout: Layout, factor: float, missing: float) -> None:
+    """The third one meets the tension."""
+    searched = Searched(layout, lambda tighter: WANTED - missing + factor * SLOPE * tighter)
+    assert searched.run().tension == pytest.approx(WANTED, rel=ACCURACY)
+    assert len(searched.trials) == 3
+
+
 def test_a_belt_that_has_its_tension_is_left_as_it_is(layout: Layout) -> None:
     searched = Searched(layout, lambda tighter: WANTED + SLOPE * tighter)
     assert searched.run().prepared is layout
@@ -274,12 +283,18 @@ def test_starts_lie_between_lengths_with_too_much_and_too_little_tension(sprung:
         return WANTED + 3.0 * ((tighter / step) ** 2 - 10.0)
 
     starts = list(Searched(sprung, law).search()._brackets())
-    assert len(starts) == 2
+    assert [np.sign(start.tighter) for start in starts] == [-1.0, 1.0]
     for start in starts:
         side = np.sign(start.tighter)
         assert abs(start.tighter) == pytest.approx(4.0 * step)
         chord = (law(start.tighter) - law(start.tighter - side * step)) / (side * step)
         assert start.slope == pytest.approx(chord, rel=1e-9)
+
+
+def test_a_tension_that_is_nearly_met_is_no_start(sprung: Layout) -> None:
+    """It comes as near as 0.3 N, and turns."""
+    step = 0.005 * sprung.belt_length
+    assert not list(Searched(sprung, lambda tighter: WANTED + 0.3 + (tighter / step - 5.0) ** 2).search()._brackets())
 
 
 def test_a_tension_far_from_the_first_length_is_found_where_springs_turn_it(sprung: Layout) -> None:

@@ -13,7 +13,7 @@ from beltdyn.state.staying import bring_to_stand
 from beltdyn.state.way import Way, between
 from beltdyn.system.constant_drive import controllers
 from beltdyn.system.web import content
-from tests.unit.state.test_search import two, unsolved, web
+from tests.unit.state.test_search import solved, two, unsolved, web
 
 FARTHER = 1e-3
 """Part of the loads by which solutions differ."""
@@ -87,3 +87,13 @@ def test_ways_of_unknowns_are_lengths(drive: Callable[[], Drive]) -> None:
         expected[-2] = system.length.sum()
     np.testing.assert_allclose(others, expected)
     assert np.count_nonzero(expected) == border - 1
+
+
+def test_the_tangent_of_a_small_drive_is_the_derivative_of_solutions() -> None:
+    """Two pulleys on 30 elements."""
+    search = solved(two())
+    start, way = search.unknowns(), Way(search, search.setting, Setting(load=1.0 + FARTHER))
+    tangent, ahead = way.tangent(0.0), way.solve(1.0, start)
+    assert tangent is not None
+    assert ahead is not None
+    assert np.max(np.abs(ahead - start - tangent)) < 0.01 * np.max(np.abs(tangent))
