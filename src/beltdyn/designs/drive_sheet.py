@@ -8,14 +8,14 @@ from collections.abc import Iterator, Mapping
 from functools import reduce
 from inspect import signature
 from pathlib import Path
-from typing import Annotated, Any, NamedTuple
+from typing import Annotated, Any, NamedTuple, cast
 
 import numpy as np
 from numpy.typing import NDArray
 from pydantic import Field
 
 from beltdyn.arrays import FloatArray
-from beltdyn.designs.line_sheet import Launch, braking_force, line_sheet
+from beltdyn.designs.line_sheet import Launch, braking_force, line_sheet, travel_of_take_up
 from beltdyn.errors import ModelError
 from beltdyn.model import Drive, FixedTensioner, Prepared, alignment, prepare
 from beltdyn.model.alignment import judge_alignment
@@ -112,7 +112,8 @@ def sheet(
     tolerance
         Tolerance of the belt length, as for `tensioner_sheet`.
     wear
-        Elongation of the belt over its life, as for `tensioner_sheet`.
+        Elongation of the belt over its life, as for `tensioner_sheet`; of a conveyor, permanent and by heat, for the
+        travel of its take-up.
     full
         Also compute the duty with finite elements, as `duty`, and put its tensions and hub loads beside.
     at
@@ -184,7 +185,9 @@ def _sheet_of_line(
     """The sheet of a web line, or of a belt that carries or slides over guides."""
     rising = _acceleration(options["acceleration"]) or _steepest(drive)
     for name, value in options.items():
-        if (name != "acceleration" or not drive.carries) and value != signature(sheet).parameters[name].default:
+        if (name not in ("acceleration", "wear") or not drive.carries) and value != signature(sheet).parameters[
+            name
+        ].default:
             raise ModelError(
                 f"{name} = {value} is an option for belts between pulleys alone. A sheet of a web line, a conveyor or "
                 "a guided belt has operating points: give them as groups [[duty]], or as a CSV file with table."
@@ -192,6 +195,9 @@ def _sheet_of_line(
     columns, factors = duty_of(drive, table), numbers_in("friction", friction, "", 3)
     held = held_at(drive, at)
     made = line_sheet(held, columns, factors, Launch(rising, braking_force(drive) - braking_force(held)))
+    if options["wear"] is not None:
+        longer = lengths_of(prepare(drive), None, cast("Number", options["wear"]))[1]
+        made.variables.update(travel_of_take_up(made.variables, longer))
     result = build_result("sheet", drive, made.variables, made.coordinates, made.warnings)
     result.dataset.attrs |= {"drive_as_given": drive.text, "axes": _ROW, "title": f"Drive sheet of {drive.title}"}
     return result

@@ -169,6 +169,19 @@ def _geometry(prepared: Prepared, at_rest: float) -> Values:
     }
 
 
+def travel_of_take_up(variables: Values, longer: float) -> Values:
+    """Travel of a take-up from the belt without tension to starts of a belt that is longer (m) by wear and heat."""
+    stretch = max(float(np.max(variables[name][1])) for name in STRETCHES)
+    ratio = float(variables["take_up_ratio"][1])
+    return {
+        "elongation": (Variable((), "m", "Elongation of the belt over its life, and by heat"), longer),
+        "take_up_travel": (
+            Variable((), "m", "Travel of the take-up over the life of the belt"),
+            (stretch + longer) / ratio,
+        ),
+    }
+
+
 class _Row:
     """An operating point."""
 

@@ -55,6 +55,12 @@ def _facts(dataset: "xr.Dataset") -> Iterator[tuple[str, str]]:
     if "take_up_ratio" in dataset and np.isfinite(dataset["take_up_ratio"]):
         taken = 1e3 * float(dataset["stretch_at_rest"] / dataset["take_up_ratio"])
         yield "take-up", f"{taken:.4g} mm for the stretch of the belt at rest"
+    if "take_up_travel" in dataset:
+        travel, longer = (1e3 * float(dataset[name]) for name in ("take_up_travel", "elongation"))
+        yield (
+            "travel of the take-up",
+            f"{travel:.4g} mm, with {longer:.4g} mm of elongation by wear and heat, and starts",
+        )
     factors = ", ".join(f"{one:.3g}" for one in dataset["friction"].values)
     yield "slack tension needed", f"by Euler's formula, with {factors} times the friction of the pulleys"
     if "main_resistance" in dataset:

@@ -144,6 +144,20 @@ def test_lifting_is_useful_and_starts_coasting_and_stops_follow_from_force_and_m
     assert float(found.idler_count[carrying]) == pytest.approx(float(found.span_length[upper]))
 
 
+def test_a_take_up_travels_for_starts_wear_and_heat() -> None:
+    """Half of stretch and elongation at a tail drum with two strands along its travel."""
+    drive = conveyor(False)
+    dataset = bd.sheet(drive, acceleration="4 rad/s^2", wear="0.5 %").dataset
+    longer = 0.005 * float(dataset.belt_length)
+    assert float(dataset.elongation) == pytest.approx(longer, rel=1e-6)
+    stretch = float(dataset.start_stretch[0])
+    assert float(dataset.take_up_travel) == pytest.approx((stretch + longer) / float(dataset.take_up_ratio), rel=1e-6)
+    assert float(dataset.take_up_ratio) == pytest.approx(2.0, rel=0.01)
+    assert "take_up_travel" not in bd.sheet(drive).dataset
+    with pytest.raises(ModelError, match="wear"):
+        bd.sheet(drive, wear="-1 %")
+
+
 def test_the_tension_of_carried_strands_is_checked_between_idlers() -> None:
     """A span of a kilometer does not deflect by 16 m."""
     drive = example("conveyor_1km")
