@@ -7,9 +7,10 @@ import numpy as np
 from numpy.typing import ArrayLike
 from pydantic import Field
 
-from beltdyn.arrays import BoolArray, ComplexArray, IntArray
+from beltdyn.arrays import BoolArray, ComplexArray, FloatArray, IntArray
 from beltdyn.errors import ConvergenceError, ModelError
 from beltdyn.model import Drive, prepare
+from beltdyn.parts.messages import listing
 from beltdyn.parts.options import ForceTolerance, takes_options
 from beltdyn.parts.quantity import RPM, Count, Number, numbers_in
 from beltdyn.points.changed_drive import at_speed, driver_of, held_at, sense_of
@@ -20,6 +21,7 @@ from beltdyn.solvers.run_progress import Report
 from beltdyn.state.linearized import SmallMotions, growing
 from beltdyn.state.steady import steady_state
 from beltdyn.transient.beginning import compile_solving_ahead, instant_of
+from beltdyn.vibration.creep_damping import CREEP_SHARE, creep_damping
 from beltdyn.vibration.mode_shapes import Points, Shapes, Shares, belt_points, part_names, shapes_of, shares_of
 from beltdyn.vibration.small_motions import (
     about_instant,
@@ -40,12 +42,15 @@ FIRST_STUCK = MOST_SWINGING + 2
 _GROUPS = (f"lightly damped (damping ratio below {LIGHT:g})", f"heavily damped ({LIGHT:g} or above: barely resonates)")
 _GROWS = 1e-6
 """Growth rate of an unstable mode, over its angular frequency."""
+_DAMPED, _CREEPS = 1e-3, 0.05
+"""Damping ratio, and part of it by the slope of the friction law, above which that is told."""
 _MODE = ("mode",)
 
 VARIABLES = {
     "frequency": Variable(_MODE, "Hz", "Frequency"),
     "damping_ratio": Variable(_MODE, "1", "Damping ratio"),
     "damping": Variable(_MODE, "1", "Damping class", "str"),
+    "creep_damping": Variable(_MODE, "1", "Damping ratio by friction slope"),
     "growth_rate": Variable(_MODE, "1/s", "Growth rate, negative for decaying modes"),
     "kind": Variable(_MODE, "1", "Kind, by shares of kinetic energy", "str"),
     "moving_parts": Variable(_MODE, "1", "Parts with most of the energy", "str"),
@@ -81,14 +86,20 @@ class _Found(NamedTuple):
     shapes: Shapes
     shares: Shares
     dry: str
+    creep: FloatArray
+    """Part of the damping ratios by the slope of the friction law; NaN where it is not known."""
 
 
-def modes_about(motions: SmallMotions, count: int) -> Result:
-    """Find the modes of small motions about a state, with sliding and with stuck tensioners."""
+def modes_about(motions: SmallMotions, count: int, steeper: SmallMotions | None = None) -> Result:
+    """Find the modes of small motions about a state, with sliding and with stuck tensioners.
+
+    `steeper`: the same under steeper friction, see `creep_damping`; without it damping by creep is not known.
+    """
     points, dry = belt_points(motions), dry_tensioners(motions.prepared)
-    found = [_find(motions, points, count, SLIDING if dry.size else "")]
+    found = [_find(motions, points, count, SLIDING if dry.size else "", steeper)]
     if dry.size:
-        found.append(_find(motions.with_stuck(dry), points, count, STUCK))
+        stuck = None if steeper is None else steeper.with_stuck(dry)
+        found.append(_find(motions.with_stuck(dry), points, count, STUCK, stuck))
     return _result(motions, points, found)
 
 
@@ -106,11 +117,14 @@ def eigenmodes(
     return values, given.coordinates(values, vectors)
 
 
-def _find(motions: SmallMotions, points: Points, count: int, dry: str) -> _Found:
+def _find(motions: SmallMotions, points: Points, count: int, dry: str, steeper: SmallMotions | None) -> _Found:
     """Modes of a drive about a state."""
     values, coordinates = eigenmodes(motions, count, counted=lightly_damped)
     shapes = shapes_of(motions, points, coordinates)
-    return _Found(values, shapes, shares_of(motions, points, values, coordinates), dry)
+    creep = np.full(values.size, np.nan)
+    if steeper is not None:
+        creep = creep_damping(motions, steeper, values, coordinates)
+    return _Found(values, shapes, shares_of(motions, points, values, coordinates), dry, creep)
 
 
 def _result(motions: SmallMotions, points: Points, found: list[_Found]) -> Result:
@@ -119,7 +133,7 @@ def _result(motions: SmallMotions, points: Points, found: list[_Found]) -> Resul
     shapes = Shapes(*(np.concatenate(parts) for parts in zip(*(one.shapes for one in found), strict=True)))
     shares = Shares(*(np.concatenate(parts) for parts in zip(*(one.shares for one in found), strict=True)))
     each, names = [shares.of(number) for number in range(values.size)], part_names(drive)
-    light = lightly_damped(values)
+    light, creep = lightly_damped(values), np.concatenate([one.creep for one in found])
     firsts = (1, FIRST_STUCK)[: len(found)]
     numbers = np.concatenate([first + np.arange(one.values.size) for first, one in zip(firsts, found, strict=True)])
     tensioners = [one.pulley for one in drive.moving_tensioners]
@@ -127,6 +141,7 @@ def _result(motions: SmallMotions, points: Points, found: list[_Found]) -> Resul
         "frequency": values.imag / (2.0 * np.pi),
         "damping_ratio": -values.real / np.abs(values),
         "damping": [_GROUPS[0 if one else 1] for one in light],
+        "creep_damping": creep,
         "growth_rate": values.real,
         "kind": [one.kind for one in each],
         "moving_parts": [one.parts(names) for one in each],
@@ -151,13 +166,18 @@ def _result(motions: SmallMotions, points: Points, found: list[_Found]) -> Resul
         "tensioner": tensioners,
         "point_coordinate": points.along,
     }
-    absent = {*(() if tensioners else ("tensioner",)), *(() if found[0].dry else ("dry_tensioners",))}
+    known = {
+        "tensioner": bool(tensioners),
+        "dry_tensioners": bool(found[0].dry),
+        "creep_damping": not np.isnan(creep).all(),
+    }
+    absent = {name for name, is_known in known.items() if not is_known}
     made = build_result(
         "modes",
         drive,
         {name: (one, arrays[name]) for name, one in VARIABLES.items() if absent.isdisjoint((name, *one.dims))},
         {name: (one, labels[name]) for name, one in _COORDINATES.items() if name not in absent},
-        [*_warnings(numbers, values), *_monotonic(motions)],
+        [*_warnings(numbers, values), *_monotonic(motions), *_creeping(numbers[light], values[light], creep[light])],
     )
     ordered = made.dataset.isel(mode=np.argsort(~light, kind="stable")).assign_attrs(
         tables_by="damping", mesh_elements=motions.system.nodes
@@ -180,6 +200,20 @@ def _warnings(numbers: IntArray, values: ComplexArray) -> list[str]:
         f"unstable modes: {named}. The drive does not remain in this state. Add damping, or simulate it over "
         "time with `beltdyn simulate`."
     ]
+
+
+def _creeping(numbers: IntArray, values: ComplexArray, creep: FloatArray) -> Iterator[str]:
+    """Modes that the slope of the friction law damps a good deal."""
+    ratios = -values.real / np.abs(values)
+    with np.errstate(invalid="ignore"):
+        named = np.flatnonzero((ratios > _DAMPED) & (creep > _CREEPS * ratios))
+    if named.size:
+        parts = [f"{creep[place] / ratios[place]:.0%} of that of mode {numbers[place]}" for place in named.tolist()]
+        yield (
+            f"the slope of the friction law adds to the damping: it is {listing(parts)}. By this law a belt creeps "
+            "where it would adhere under Coulomb's. A slope twice as steep, such as by half the contact.creep_ratio, "
+            "leaves about half of that."
+        )
 
 
 def _monotonic(motions: SmallMotions) -> Iterator[str]:
@@ -268,12 +302,13 @@ def modes(
         about, drive = drive, drive.drive
     _require_sense(about, speed, pulley, at, count)
     require_closed(drive, web=about == STEADY or (isinstance(about, Run) and runs_steadily(about.dataset)))
+    steeper = None
     if isinstance(about, Run) and not runs_steadily(about.dataset):
         require_mesh_that_stays(about)
         drive, instant = about.drive, instant_of(about, at)
         motions, state = about_instant(about, instant), f"in its run at t = {instant:.6g} s"
     elif isinstance(about, Run):
-        motions, state = about_steady(about), _running(about)
+        motions, steeper, state = about_steady(about), _steeper(about), _running(about)
     elif about == REST:
         motions, state = about_rest(drive), "at rest"
     else:
@@ -281,10 +316,18 @@ def modes(
         held = drive if speed is None else _at_speed(drive, speed, pulley, at)
         with compile_solving_ahead(prepare(held)):
             run = steady_state(held, at=at, force_tolerance=force_tolerance, progress=progress)
-        motions, state = about_steady(run), _running(run)
-    result = modes_about(motions, count)
+        motions, steeper, state = about_steady(run), _steeper(run), _running(run)
+    result = modes_about(motions, count, steeper)
     told = {"title": f"Modes of {drive.title}, {state}", "drive_as_given": given}
     return Result(result.dataset.assign_attrs(told), result.drive)
+
+
+def _steeper(run: Run) -> SmallMotions | None:
+    """Steady running under steeper friction; None if it is not found nearby."""
+    try:
+        return about_steady(run, smoothing=CREEP_SHARE)
+    except ConvergenceError:
+        return None
 
 
 def _require_sense(

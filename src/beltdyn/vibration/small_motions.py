@@ -3,12 +3,13 @@
 import numpy as np
 
 from beltdyn.arrays import IntArray
-from beltdyn.errors import ModelError
+from beltdyn.errors import ConvergenceError, ModelError
 from beltdyn.model import Drive, Prepared, prepare
 from beltdyn.model.nip import refuse_set
 from beltdyn.results import Run
 from beltdyn.state.linearized import DRY_FRICTION, SmallMotions, in_motion, linearised
 from beltdyn.state.settling import DIRECTION
+from beltdyn.state.slip_limit import Setting
 from beltdyn.state.static import standing
 from beltdyn.state.staying import Standing, bring_to_stand
 from beltdyn.state.steady import search_from, steady_from
@@ -103,15 +104,23 @@ def sticking_rate(tension: float, system: System) -> float:
     return float(_STICKS * system.law.normal.stiffness / slope.min()) if rough.any() else 0.0
 
 
-def about_steady(run: Run, *, all_shafts: bool = False) -> SmallMotions:
-    """A drive in steady running, with the rollers of nips that forces press on slides."""
+def about_steady(run: Run, *, all_shafts: bool = False, smoothing: float = 1.0) -> SmallMotions:
+    """A drive in steady running, with the rollers of nips that forces press on slides.
+
+    `smoothing`: factor on the slip velocity at which friction saturates; ConvergenceError without such a state nearby.
+    """
     require_closed(run.drive, web=True)
     freed = run.drive.with_slides()
     if freed is not run.drive:
         run = steady_from(freed, run, None, bands=False)
     search = search_from(run.prepared, run, float(run.dataset.attrs["steady_at"]))
     search.resume()
-    return in_motion(search.prepared, search.constant, search.state, search.belt_parameter, all_shafts=all_shafts)
+    system = search.constant
+    if smoothing != 1.0:
+        if search.solve(Setting(smoothing=smoothing), search.unknowns(), 1.0) is None:
+            raise ConvergenceError(f"no steady running under friction with {smoothing:g} of its creep.")
+        system = system._replace(law=system.law._replace(friction=system.law.friction.smoothed(smoothing)))
+    return in_motion(search.prepared, system, search.state, search.belt_parameter, all_shafts=all_shafts)
 
 
 def about_instant(run: Run, time: float) -> SmallMotions:

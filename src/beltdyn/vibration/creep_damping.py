@@ -1,0 +1,91 @@
+"""Damping of modes by the slope of the friction law: a belt that adheres creeps a little, and loses power.
+
+With friction as steep as Coulomb's a belt that adheres does not slip. Modes are followed to steady running under
+friction four times as steep, on the same mesh, by Rayleigh quotients of right and left vectors. Their damping falls
+about in proportion to the creep: 4/3 of that change is what the slope adds.
+"""
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from beltdyn.arrays import ComplexArray, FloatArray
+from beltdyn.solvers.eigenvalues import unit_masses
+from beltdyn.state.linearized import SmallMotions
+
+if TYPE_CHECKING:
+    from scipy.sparse import csc_array
+
+CREEP_SHARE = 0.25
+"""Creep of the steeper friction, over that of the drive."""
+_ITERATIONS, _ACCURACY = 8, 1e-6
+_OFF = 1e-6
+"""Distance of a shift from an eigenvalue, relative: on it the matrix is singular."""
+_FARTHEST = 0.5
+"""Change of an eigenvalue, relative, beyond which it may be that of another mode."""
+
+
+def creep_damping(
+    motions: SmallMotions, steeper: SmallMotions, values: ComplexArray, coordinates: ComplexArray
+) -> FloatArray:
+    """Damping ratios of modes by the slope of the friction law, shape (k,); NaN where a mode is not found again.
+
+    `steeper`: the same under friction with the part `CREEP_SHARE` of the creep; `values`: eigenvalues, 1/s, shape (k,);
+    `coordinates`: their vectors, shape (n, k).
+    """
+    before, after = _Problem(motions), _Problem(steeper)
+    found = np.array(
+        [_followed(before, after, value, vector) for value, vector in zip(values, coordinates.T, strict=True)]
+    )
+    return np.asarray((found - values).real / (1.0 - CREEP_SHARE) / np.abs(values))
+
+
+class _Problem:
+    """(K + s C + s^2 M) x = 0 in coordinates whose masses are one."""
+
+    def __init__(self, motions: SmallMotions) -> None:
+        from scipy.sparse import diags_array
+
+        self.scale = unit_masses(motions.mass)
+        scaled = diags_array(self.scale)
+        self._stiffness, self._damping, self._mass = (
+            (scaled @ matrix @ scaled).tocsc() for matrix in (motions.stiffness, motions.damping, motions.mass)
+        )
+
+    def at(self, value: complex) -> "csc_array":
+        """K + s C + s^2 M."""
+        return (self._stiffness + value * self._damping + value**2 * self._mass).tocsc()
+
+    def slope(self, value: complex) -> "csc_array":
+        """Its derivative by s."""
+        return (self._damping + 2.0 * value * self._mass).tocsc()
+
+
+def _followed(before: _Problem, after: _Problem, value: complex, vector: ComplexArray) -> complex:
+    """The eigenvalue of a mode in another problem; NaN if it is not found."""
+    from scipy.sparse.linalg import splu
+
+    right = vector / before.scale
+    begin, nan = value, complex(np.nan)
+    try:
+        factors = splu(before.at(value * (1.0 + _OFF)))
+        left = np.random.default_rng(0).standard_normal(right.size).astype(complex)
+        for _ in range(2):
+            left = _unit(factors.solve(before.slope(value).conj().T @ left, "H"))
+        for _ in range(_ITERATIONS):
+            factors, slope = splu(after.at(value * (1.0 + _OFF))), after.slope(value)
+            right = _unit(factors.solve(slope @ right))
+            left = _unit(factors.solve(slope.conj().T @ left, "H"))
+            step = complex(left.conj() @ (after.at(value) @ right) / (left.conj() @ (slope @ right)))
+            value -= step
+            if not abs(value - begin) < _FARTHEST * abs(begin):
+                return nan
+            if abs(step) < _ACCURACY * abs(value):
+                return value
+    except RuntimeError:  # a singular matrix
+        return nan
+    return nan
+
+
+def _unit(vector: ComplexArray) -> ComplexArray:
+    return np.asarray(vector / np.linalg.norm(vector))
