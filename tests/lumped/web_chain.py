@@ -44,30 +44,35 @@ class Chain(NamedTuple):
     """From the unwinder to the winder, N."""
 
 
+def backwards(rollers: Sequence[Roller], winder: float, passed: float) -> list[float]:
+    """Tensions from the unwinder to the winder of a web of which a length passes in a unit of time (m/s), N."""
+    tensions = [winder]
+    for roller in reversed(rollers):
+        behind = tensions[0]
+        lifted = MASS * (passed * (1.0 + behind / AXIAL)) ** 2
+        wanted = behind if roller.speed is None else AXIAL * (roller.speed / passed - 1.0)
+        least, most = ((behind - lifted) * np.exp(sense * roller.grip) + lifted for sense in (-1.0, 1.0))
+        tensions.insert(0, float(np.clip(wanted, least, most)))
+    return tensions
+
+
+def bracket(rollers: Sequence[Roller]) -> tuple[float, float]:
+    """Lengths in a unit of time at which all driven rollers slide, ahead of the web and behind it, m/s."""
+    speeds = [roller.speed for roller in rollers if roller.speed]
+    return 0.9 * min(speeds), max(speeds)
+
+
 def chain(rollers: Sequence[Roller], unwinder: float, winder: float) -> Chain | None:
     """Tensions of a line; None where no speed of the web gives both tensions (N)."""
 
-    def backwards(passed: float) -> list[float]:
-        tensions = [winder]
-        for roller in reversed(rollers):
-            behind = tensions[0]
-            lifted = MASS * (passed * (1.0 + behind / AXIAL)) ** 2
-            wanted = behind if roller.speed is None else AXIAL * (roller.speed / passed - 1.0)
-            least, most = ((behind - lifted) * np.exp(sense * roller.grip) + lifted for sense in (-1.0, 1.0))
-            tensions.insert(0, float(np.clip(wanted, least, most)))
-        return tensions
-
-    fastest = max(roller.speed or 0.0 for roller in rollers)
-    slowest = min(roller.speed for roller in rollers if roller.speed)
-
     def missing(passed: float) -> float:
-        return backwards(passed)[0] - unwinder
+        return backwards(rollers, winder, passed)[0] - unwinder
 
-    low, high = 0.9 * slowest, fastest
+    low, high = bracket(rollers)
     if not (missing(low) > 0.0 > missing(high)):
         return None
     passed = brentq(missing, low, high, xtol=1e-14, rtol=1e-14)
-    return Chain(passed, backwards(passed))
+    return Chain(passed, backwards(rollers, winder, passed))
 
 
 class DrawnLine(NamedTuple):
@@ -87,6 +92,45 @@ def drawn_line(seed: int) -> DrawnLine:
 
 
 def _draw(rng: np.random.Generator) -> DrawnLine | None:
+    drawn = _draw_line(rng)
+    if drawn is None:
+        return None
+    drive, rollers, ends = drawn
+    found = chain(rollers, *ends)
+    return None if found is None or not _is_clear(rollers, found) else DrawnLine(drive, found)
+
+
+class RefusedLine(NamedTuple):
+    """A web line that cannot run, and what the chain of capstans says of it."""
+
+    drive: Drive
+    sliding: list[str]
+    """Names of the driven rollers, all of which slide."""
+    allowed: tuple[float, float]
+    """Least and largest ratio of T - m v^2 at the winder to that at the unwinder that the rollers hold."""
+    required: float
+    """That of the ends."""
+
+
+def refused_line(seed: int) -> RefusedLine:
+    """The line of a seed whose tensions differ by 10 % more than its rollers hold."""
+    rng = np.random.default_rng([SEED, 3, seed])
+    while True:
+        drawn = _draw_line(rng)
+        if drawn is None:
+            continue
+        drive, rollers, (unwinder, winder) = drawn
+        lifted = MASS * 2.0**2
+        most, least = (backwards(rollers, winder, passed)[0] for passed in bracket(rollers))
+        allowed = (winder - lifted) / (most - lifted), (winder - lifted) / (least - lifted)
+        required = (winder - lifted) / (unwinder - lifted)
+        if not 0.9 * allowed[0] < required < 1.1 * allowed[1]:
+            names = [pulley.name for pulley, roller in zip(drive.pulleys, rollers, strict=True) if roller.speed]
+            return RefusedLine(drive, names, allowed, required)
+
+
+def _draw_line(rng: np.random.Generator) -> tuple[Drive, list[Roller], tuple[float, float]] | None:
+    """A line, its rollers, and the tensions of unwinder and winder, N; None where no roller is driven."""
     count, speed = int(rng.integers(2, 6)), 2.0
     kinds = rng.choice(["driven", "idle", "held"], count, p=[0.6, 0.25, 0.15])
     if "driven" not in kinds:
@@ -110,8 +154,7 @@ def _draw(rng: np.random.Generator) -> DrawnLine | None:
         Roller({"driven": speeds[k], "idle": None, "held": 0.0}[str(kind)], frictions[k] * float(wraps[k]))
         for k, kind in enumerate(kinds)
     ]
-    found = chain(rollers, unwinder, winder)
-    return None if found is None or not _is_clear(rollers, found) else DrawnLine(drive, found)
+    return drive, rollers, (unwinder, winder)
 
 
 def _pulley(k: int, kind: str, friction: float, speed: float) -> dict[str, Any]:

@@ -11,6 +11,7 @@ from beltdyn.arrays import BoolArray, FloatArray
 from beltdyn.machines.carrying.support import Goods, OnSpan, Support
 from beltdyn.model.path import Path
 from beltdyn.model.resolution import Laid
+from beltdyn.parts.messages import beyond
 
 SINKING = 1e-3
 """How far belt and goods sink into a support without a given stiffness, m, at most."""
@@ -193,5 +194,5 @@ def check_lift(
             raise ValueError(
                 f"support[{number}].curve_radius = {support.curve_radius:.5g} m is too small: the tension at rest of "
                 f"{tension:.4g} N lifts the empty belt of {load:.4g} N/m off the idlers. Give more than "
-                f"{tension / load:.4g} m, or reduce the tension"
+                f"{beyond(support.curve_radius, tension / load, 4):.4g} m, or reduce the tension"
             )

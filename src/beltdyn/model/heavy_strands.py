@@ -56,14 +56,15 @@ def slack_strands(prepared: Prepared, path: Path, tension: FloatArray) -> Findin
         return None
     each = [
         f"{prepared.spans[span][0]} to {prepared.spans[span][1]} with {plain(tension[span])} N, which needs "
-        f"{plain(needed[span])} N"
+        f"{plain(beyond(tension[span], needed[span], 4))} N"
         for span in slack
     ]
+    enough = beyond(float(tension[slack].max()), float(needed[slack].max()), 3)
     return Finding(
         f"strands are heavier than their tension and hang slack: {listing(each)}.",
         "They sag by more than an eighth of their length, or have no tension at their lower end; tensions, wrap angles "
         "and frequencies are not those of straight spans, and no equilibrium may be found.",
-        f"Increase their tension to {plain(beyond(0.0, needed[slack].max(), 3))} N or more, or support them.",
+        f"Increase their tension to {plain(enough)} N or more, or support them.",
     )
 
 

@@ -15,7 +15,7 @@ from beltdyn.model.layout import mesh_misfit, teeth_in_mesh
 from beltdyn.model.prepared import install, prepare
 from beltdyn.model.pulley import Pulley, fastest_rim
 from beltdyn.model.toothing import RatedTeeth
-from beltdyn.parts.messages import NOTABLE, Finding, listing, plain
+from beltdyn.parts.messages import NOTABLE, Finding, beyond, listing, plain
 from beltdyn.parts.quantity import RPM
 from beltdyn.theory.rating import REST_SHARE, RUN_IN
 
@@ -79,7 +79,7 @@ def _tension(drive: Drive, installation: Installation) -> Iterator[Finding]:
             f"at {speed:.4g} m/s, the largest belt speed, the tension is {each(running)}, of which "
             f"{running - tension:.4g} N are centrifugal; the belt is rated for {each(most)}.",
             "The cords stretch permanently, and belt and bearings fail early.",
-            f"Reduce the speed below {limit:.3g} m/s, or use a lighter belt.",
+            f"Reduce the speed below {beyond(speed, limit, 3):.3g} m/s, or use a lighter belt.",
         )
         return
     readings = _other_readings(drive) if belt.length is not None else []
@@ -274,7 +274,7 @@ def _slack_teeth(drive: Drive, installation: Installation) -> Iterator[Finding]:
     yield Finding(
         f"the tension at rest is {installation.tension:.4g} N, but the loads pull by {pull:.4g} N.",
         "The slack side loses its tension, teeth are no longer pressed into their grooves, and the belt may jump.",
-        f"Raise the tension to at least {least:.4g} N, half of the pull and a tenth more.",
+        f"Raise the tension to at least {beyond(installation.tension, least, 4):.4g} N, {REST_SHARE:.0%} of the pull.",
     )
 
 

@@ -41,7 +41,10 @@ def beyond(present: float, wanted: float, digits: int = 2) -> float:
         return wanted
     step = 10.0 ** (math.floor(math.log10(abs(wanted))) - digits + 1)
     rounded = math.ceil if wanted > present else math.floor
-    return float(f"{step * rounded(round(wanted / step, 2)):.{digits}g}")
+    steps = rounded(round(wanted / step, 2))  # 0.5 % of a step are rounding
+    if wanted != present and math.isclose(step * steps, float(f"{present:.{max(digits, 2)}g}"), rel_tol=1e-9):
+        steps += 1 if wanted > present else -1
+    return float(f"{step * steps:.{digits}g}")
 
 
 # A problem of a drive or its results: what is wrong, what it affects, what to do

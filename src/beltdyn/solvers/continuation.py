@@ -22,7 +22,7 @@ _POLYNOMIAL = 3
 """Solutions through which a polynomial is laid, a parabola."""
 _SHORTEST = 1e-3
 """Step, over the whole way, below which no solution lies ahead, by default."""
-_ARC_STEPS = 80
+_ARC_STEPS = 200
 """Steps around a limit point, at most."""
 _ARC_ITERATIONS = 12
 """Newton iterations of a step around a limit point, at most."""

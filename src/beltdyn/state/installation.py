@@ -16,7 +16,7 @@ from beltdyn.model import Path as BeltPath
 from beltdyn.model.heavy_strands import naming_heavy_strands
 from beltdyn.model.prepared import Prepared, prepare
 from beltdyn.observation.compilation import compile_for_rest, rest_is_compiled
-from beltdyn.parts.messages import listing
+from beltdyn.parts.messages import beyond, listing
 from beltdyn.solvers.run_progress import Phase, Progress, Report
 from beltdyn.state.newton import steady_work
 from beltdyn.state.static import find_equilibrium, standing, tensioner_compliance
@@ -310,7 +310,7 @@ def _sunk(prepared: Prepared) -> ConvergenceError | None:
     worst = int(np.argmax(parts))
     if not parts[worst] > _SOUND:
         return None
-    enough = prepared.contact_stiffness * parts[worst] / _SOUND
+    enough = beyond(prepared.contact_stiffness, prepared.contact_stiffness * float(parts[worst]) / _SOUND)
     return ConvergenceError(
         f'no static equilibrium found. The contact is too soft: on "{prepared.pulleys[worst].name}" the belt would '
         f"sink by {parts[worst]:.0%} of the radius. Increase contact.stiffness from {prepared.contact_stiffness:.2g} "

@@ -79,6 +79,8 @@ _SLIDES = 0.05
 grows there with the loads, in place of the difference, which would be passed in a thousandth of the way."""
 _LOST = 0.2
 """Slip of a pulley, beside elastic creep, behind which a curve is not followed any more."""
+_BEFORE = 2
+"""Solutions before the last one from which a curve is followed, where it is not from that."""
 _GENTLE = 0.3
 """Slip velocity at which friction is fully used at first, over the belt's speed, at least."""
 
@@ -216,17 +218,23 @@ class SteadySearch:
         """Whether a pulley that ran with the belt without loads has come to a standstill, or nearly so, under them.
 
         With nearly all of its friction: a flat friction law needs large slip for little of it, and tells so itself.
+        A web may stand still, held by a roller of speed zero, while others slide below it.
         """
         rims = self.state.velocity[self.system.first_body :][: self._uniform.size]
-        slow = np.abs(rims) < (1.0 - _STALLED) * np.abs(self._uniform)
-        if self.prepared.drive.is_web or self._loading is None or not np.any(slow & (self._here().used > _USED_UP)):
+        slow, is_web = np.abs(rims) < (1.0 - _STALLED) * np.abs(self._uniform), self.prepared.drive.is_web
+        if is_web:
+            stalls = np.all(self.belt_parameter < (1.0 - _STALLED) * np.abs(self._driving_rims()))
+            stalls &= self._driving_rims().size > 0
+        else:
+            stalls = np.any(slow & (self._here().used > _USED_UP))
+        if self._loading is None or not stalls:
             return False
         if not self._passed:
             here, setting = self.unknowns(), self.setting
             self._passed = [self._seen(self._loading, solution) for solution in self._loading.solutions]
             self.place(here)
             self.setting = setting
-        return self._largest_slip() > _STALLED
+        return is_web or self._largest_slip() > _STALLED
 
     def _largest_slip(self) -> float:
         """Largest slip of a pulley beyond elastic creep, against the first of the solutions that were passed."""
@@ -455,7 +463,11 @@ class SteadySearch:
         passed = [self._seen(way, solution) for solution in way.solutions]
         sliding = np.max(gross_slips(passed), axis=1) > GROSS
         count = int(np.argmax(sliding)) if sliding.any() else len(passed)
-        for start, is_lost in ((count, self._is_lost), (len(passed), lambda: False)):
+        # at a sharp corner, where all friction is used, no direction is known: the curve is followed from before it
+        starts = [(count, self._is_lost), (max(count - _BEFORE, 1), self._is_lost)]
+        if count < len(passed):
+            starts.insert(1, (len(passed), lambda: False))
+        for start, is_lost in starts:
             self._seen(way, way.solutions[start - 1])
             place, allowed = way.solutions[start - 1].place, _ON_THE_WAY * float(np.min(self.prepared.radii))
             turned = turn(way, place, allowed, is_lost)
@@ -463,8 +475,6 @@ class SteadySearch:
                 return True
             if start == count:
                 self._passed = passed[:count] + [self._seen(way, solution) for solution in turned[1:]]
-            if count == len(passed):
-                break
         self.setting = begin
         self.place(here)
         return False
@@ -585,11 +595,16 @@ class SteadySearch:
 
     def _runs_away(self) -> bool:
         """Whether a web runs backwards, or faster than all rims that drive it, lifted off by its own inertia."""
-        rims = (self._wanted[: self._prescribed.size] * self.prepared.path.radii)[self._prescribed]
-        if not self.prepared.drive.is_web or not np.any(rims):
+        rims = self._driving_rims()
+        if not self.prepared.drive.is_web or not rims.size:
             return False
         ratio = self.belt_parameter / float(rims[np.argmax(np.abs(rims))])
         return not 0.0 < ratio < 1.0 + _SLIDES
+
+    def _driving_rims(self) -> FloatArray:
+        """Speeds of the rims with a prescribed one that is not zero, m/s."""
+        rims = (self._wanted[: self._prescribed.size] * self.prepared.path.radii)[self._prescribed]
+        return np.asarray(rims[rims != 0.0])
 
     def at(self, setting: Setting) -> System:
         """The system at a setting."""

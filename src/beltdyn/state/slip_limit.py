@@ -5,12 +5,14 @@ its inertia took before.  What a pulley transmits is told where its slip becomes
 """
 
 from collections.abc import Sequence
+from math import exp, log
 from typing import NamedTuple
 
 import numpy as np
 
 from beltdyn.arrays import FloatArray
 from beltdyn.model import Prepared
+from beltdyn.parts.messages import beyond, listing
 from beltdyn.parts.quantity import RPM
 from beltdyn.system.arrays import System
 from beltdyn.system.constant_drive import own_torque
@@ -18,6 +20,7 @@ from beltdyn.system.nips import seen_nips
 from beltdyn.system.observations import Observations
 from beltdyn.system.observe import observe
 from beltdyn.system.state import State, curve_lengths
+from beltdyn.system.web import WebLine
 
 _FULL = 0.9
 """Use of friction of a pulley that slips as a whole, at least."""
@@ -95,6 +98,8 @@ def slip_limit(prepared: Prepared, system: System, asked: System, passed: Sequen
             "time with `beltdyn simulate`.",
             False,
         )
+    if isinstance(asked.carriage, WebLine) and (ratio := _web_slips(prepared, asked, asked.carriage, passed[0])):
+        return Refusal(ratio, True)
     slips = gross_slips(passed)
     sliding = np.flatnonzero(np.max(slips, axis=1) > GROSS)
     at = int(sliding[0]) if sliding.size else int(np.argmax([one.setting.load for one in passed]))
@@ -146,8 +151,9 @@ class Tensions(NamedTuple):
         if not self.sets_tension or factor <= 1.0:
             return "Raise the tension"
         tension = float(np.nanmean(self.first))
-        least = f"{factor * tension + self.inertia:.4g} N"
-        return f"Raise the tension without loads from {tension + self.inertia:.4g} N to at least {least}"
+        present = tension + self.inertia
+        least = beyond(present, factor * tension + self.inertia, 4)
+        return f"Raise the tension without loads from {present:.4g} N to at least {least:.4g} N"
 
 
 def slack(prepared: Prepared, tensions: Tensions) -> str | None:
@@ -184,6 +190,35 @@ def _slipping(
     if goes_slack:
         return f"{slips_on}, as {goes_slack}. {remedy}, or reduce the load; more friction does not help."
     return f"{slips_on}. {remedy}, the friction or the wrap angle, or reduce the load."
+
+
+def _web_slips(prepared: Prepared, asked: System, line: WebLine, here: Passed) -> str | None:
+    """Say that the tensions at the ends of a web differ by more than its rollers hold; None where they may not.
+
+    Over driven rollers ln(T - m v^2) changes by at most mu theta, over held ones it grows by that; others must idle.
+    `here`: the first state that was passed, since a web that slips through may run at any speed.
+    """
+    rollers = range(prepared.path.count)
+    prescribed = asked.bodies.unknown[asked.pulleys.shaft] < 0
+    if prepared.path.beside or not all(prescribed[p] or _idles(asked, here, p) for p in rollers):
+        return None
+    stretch = prepared.belt.stretch_parameters.stretch(line.ends.tensions)
+    enters, leaves = line.ends.tensions - prepared.belt.mass_per_length * (here.belt_parameter * stretch) ** 2
+    if not min(enters, leaves) > 0.0:
+        return None
+    grips, held = asked.pulleys.friction * prepared.path.wrap_angles, prepared.drive.guides
+    driven = prescribed & ~held
+    grown, most = float(grips[held].sum()), float(grips[driven].sum())
+    if grown - most <= log(leaves / enters) <= grown + most:
+        return None
+    least, largest = exp(grown - most), exp(grown + most)
+    names = listing([f"`{prepared.pulleys[p].name}`" for p in np.flatnonzero(driven).tolist()])
+    others = " and that of held rollers" if grown else ""
+    return (
+        f"the web slips on {names}, whose friction{others} allows {least:.4g} to {largest:.4g} times the tension of "
+        f"the unwinder at the winder (T - m v^2), where {leaves / enters:.4g} is required. Bring both tensions nearer "
+        "to each other, raise the friction or the wrap angles, or drive another roller."
+    )
 
 
 def _without_slip(prepared: Prepared, passed: Sequence[Passed], at: int, used: FloatArray) -> Refusal:

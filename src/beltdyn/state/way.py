@@ -84,6 +84,7 @@ class Way:
                 border[row.unknown] = max(border[row.unknown], reach)
         last, shifts = border.size - 1 - content(system).size, arc_count(system.frame)
         border[last - shifts : last] = 1.0
+        border[-1] = float(np.min(system.rims.radius)) / speed  # all rims may be prescribed, and the belt slow down
         if content(system).size:
             border[last] = float(np.sum(system.length))
         return np.concatenate([nodes.ravel(), border])

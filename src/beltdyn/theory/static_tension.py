@@ -6,6 +6,7 @@ from typing import NamedTuple
 import numpy as np
 
 from beltdyn.errors import ModelError
+from beltdyn.parts.messages import beyond
 from beltdyn.parts.ranges import require_above, require_at_least
 from beltdyn.stretch import StretchParameters
 from beltdyn.theory.span import open_belt
@@ -142,7 +143,7 @@ def arc_at_rest(section: Section, tension: float, radius: float) -> ArcAtRest:
             raise ModelError(
                 f"a contact stiffness of {section.contact:.4g} N/m^2 does not hold a belt with {here:.4g} N on a "
                 f"radius of {1e3 * radius:.4g} mm: the belt sinks in by more than half of it. Give at least "
-                f"{4.0 * here * g / radius**2:.2g} N/m^2."
+                f"{beyond(section.contact, 4.0 * here * g / radius**2):.2g} N/m^2."
             )
         depth = 0.5 * (radius - sqrt(left))
         here = tension + 0.5 * section.contact * depth**2 / g - 2.0 * section.bending / (radius - depth) ** 2

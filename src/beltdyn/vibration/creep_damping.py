@@ -5,7 +5,7 @@ friction four times as steep, on the same mesh, by Rayleigh quotients of right a
 about in proportion to the creep: 4/3 of that change is what the slope adds.
 """
 
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -54,11 +54,15 @@ class _Problem:
 
     def at(self, value: complex) -> "csc_array":
         """K + s C + s^2 M."""
-        return (self._stiffness + value * self._damping + value**2 * self._mass).tocsc()
+        from scipy.sparse import csc_array
+
+        return csc_array(self._stiffness + value * self._damping + value**2 * self._mass)
 
     def slope(self, value: complex) -> "csc_array":
         """Its derivative by s."""
-        return (self._damping + 2.0 * value * self._mass).tocsc()
+        from scipy.sparse import csc_array
+
+        return csc_array(self._damping + 2.0 * value * self._mass)
 
 
 def _followed(before: _Problem, after: _Problem, value: complex, vector: ComplexArray) -> complex:
@@ -68,15 +72,16 @@ def _followed(before: _Problem, after: _Problem, value: complex, vector: Complex
     right = vector / before.scale
     begin, nan = value, complex(np.nan)
     try:
-        factors = splu(before.at(value * (1.0 + _OFF)))
+        factors: Any = splu(before.at(value * (1.0 + _OFF)))
         left = np.random.default_rng(0).standard_normal(right.size).astype(complex)
         for _ in range(2):
-            left = _unit(factors.solve(before.slope(value).conj().T @ left, "H"))
+            left = _unit(factors.solve(np.asarray(before.slope(value).conj().T @ left), trans="H"))
         for _ in range(_ITERATIONS):
             factors, slope = splu(after.at(value * (1.0 + _OFF))), after.slope(value)
-            right = _unit(factors.solve(slope @ right))
-            left = _unit(factors.solve(slope.conj().T @ left, "H"))
-            step = complex(left.conj() @ (after.at(value) @ right) / (left.conj() @ (slope @ right)))
+            right = _unit(factors.solve(np.asarray(slope @ right)))
+            left = _unit(factors.solve(np.asarray(slope.conj().T @ left), trans="H"))
+            missing, rate = np.asarray(after.at(value) @ right), np.asarray(slope @ right)
+            step = complex(np.vdot(left, missing) / np.vdot(left, rate))
             value -= step
             if not abs(value - begin) < _FARTHEST * abs(begin):
                 return nan

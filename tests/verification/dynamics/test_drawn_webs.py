@@ -1,5 +1,6 @@
 """Web lines drawn at random, with driven, idle and held rollers, against a chain of capstans."""
 
+import re
 from collections.abc import Callable, Sequence
 
 import numpy as np
@@ -9,7 +10,7 @@ import beltdyn as bd
 from beltdyn.errors import ConvergenceError
 from beltdyn.model import Drive
 from tests.lumped.seeds import blocks
-from tests.lumped.web_chain import WEB, Roller, chain, controlled_line, drawn_line
+from tests.lumped.web_chain import WEB, Roller, chain, controlled_line, drawn_line, refused_line
 
 
 @blocks(range(3), 1000, 50)
@@ -52,6 +53,22 @@ def test_every_controlled_line_holds_its_set_value(seeds: Sequence[int], measure
     )
     assert len(refused) <= len(seeds) // 1000, refused
     assert errors[worst] < 0.01, worst
+
+
+@pytest.mark.parametrize("seeds", [range(3), pytest.param(range(3, 200), marks=pytest.mark.slow)], ids=len)
+def test_lines_that_cannot_run_are_refused_for_the_reason_of_the_chain(seeds: range) -> None:
+    """All driven rollers slide: they are named with the ratios of tension that they hold, and that required, to 2 %."""
+    for seed in seeds:
+        drawn = refused_line(seed)
+        with pytest.raises(ConvergenceError) as refusal:
+            bd.steady_state(drawn.drive)
+        names, rest = str(refusal.value).split("the web slips on ")[1].split(", whose ")
+        assert re.findall(r"`([^`]*)`", names) == drawn.sliding, seed
+        stated = re.search(r"allows (\S+) to (\S+) times .* where (\S+) is required", rest)
+        assert stated is not None
+        assert [float(number) for number in stated.groups()] == pytest.approx(
+            [*drawn.allowed, drawn.required], rel=0.02
+        ), seed
 
 
 def line(speed: float, friction: float) -> Drive:

@@ -246,7 +246,7 @@ def test_what_the_friction_law_adds_to_the_damping_of_a_fast_dancer(inertia: flo
     (turning,) = np.flatnonzero(found.dataset.kind.values == "rotational")
     at = found.dataset.isel(mode=turning)
     size = 2.0 * np.pi * float(at.frequency)
-    adhering = newton(equations, 1j * size, tol=1e-10)
+    adhering: complex = newton(equations, 1j * size, tol=1e-10)  # type: ignore[call-overload]
     assert size == pytest.approx(adhering.imag, rel=5e-3)
     damped = float(at.damping_ratio)
     assert damped - float(at.creep_damping) == pytest.approx(-adhering.real / size, abs=0.05 * damped)

@@ -140,3 +140,37 @@ def test_an_overland_conveyor_stops_in_eight_seconds() -> None:
     assert stop + 6.5 < standing[0] < stop + 8.5
     assert any("the belt goes slack" in text for text in run.warnings)
     assert not any("inf" in text or " 0 m apart" in text for text in run.warnings)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize(
+    ("example", "stop", "within"),
+    [("conveyor_1km", 8.0, 0.03), ("conveyor_1km", 20.0, 0.02), ("package_conveyor", 0.5, 0.02)],
+)
+def test_a_conveyor_stops_along_a_speed_profile(example: str, stop: float, within: float) -> None:
+    """With default settings: what the head drum pulls less over nine tenths of the stop is lost momentum.
+
+    The speed at mid-span is the mean of the span but for waves, which take 0.7 s over 1 km.
+    """
+    drive, begin = bd.example(example), 1.0
+    speed = {"conveyor_1km": 8.0, "package_conveyor": 19.0}[example]
+    ends = {"kind": "table", "times": [0.0, begin, begin + stop, 100.0], "values": [speed, speed, 0.0, 0.0]}
+    head = drive.pulleys[0].replace(speed=ends, load=[])
+    settings = {"duration": begin + stop + 2.0, "start": "steady", "output_interval": 5e-3}
+    run = bd.simulate(drive.replace(pulley=[head, drive.pulleys[1]], simulation=settings))
+    assert run.dataset.attrs["status"] == "completed"
+    assert abs(float(run.dataset.pulley_speed.values[-1, 0])) < 1e-6
+    assert float(np.abs(run.dataset.energy_closure).max()) < 1e-3
+    time, tail = run.dataset.time.values, drive.pulleys[1]
+    torque = run.dataset.pulley_torque.values[:, 0]
+    pull = torque * np.sign(torque[0]) / float(drive.radii[0])
+    stretches = [run.prepared.stretch(support) for support in (*run.prepared.supports, *run.prepared.goods)]
+    along = [one.rotating_mass for one in drive.supports] + [one.mass_per_length for one in drive.goods]
+    mass = drive.belt.mass_per_length * run.drive.belt_length + sum(
+        each * stretch.length for each, stretch in zip(along, stretches, strict=True)
+    )
+    mass += (tail.inertia or 0.0) / float(drive.radii[1]) ** 2
+    braked = (time >= begin) & (time <= begin + 0.9 * stop)
+    rim = run.dataset.belt_speed.values.mean(axis=1)
+    lost = mass * float(rim[braked][0] - rim[braked][-1])
+    assert float(np.trapezoid(pull[0] - pull[braked], time[braked])) == pytest.approx(lost, rel=within)

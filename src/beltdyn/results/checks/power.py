@@ -250,6 +250,12 @@ def flutter(evidence: Evidence) -> Iterator[Finding]:
             fault,
             f"Contact forces are then uncertain; a run with simulation.rtol = {prepared.simulation.rtol / 10.0:g} "
             "shows by how much speeds and slip are. Real belts rarely flutter like this.",
-            f"Increase contact.damping from {prepared.contact_damping:.2g} to "
-            f"{DAMPING_RATIO * prepared.critical_damping:.2g} N s/m^2, half of critical.",
+            _steadying(prepared.contact_damping, DAMPING_RATIO * prepared.critical_damping),
         )
+
+
+def _steadying(present: float, usual: float) -> str:
+    """Remedy against flutter of a belt with a contact damping (N s/m^2), where half of critical is the usual one."""
+    if present < usual:
+        return f"Increase contact.damping from {present:.2g} to {beyond(present, usual):.2g} N s/m^2, half of critical."
+    return "Raise the tension or the friction, or reduce the load, so that the belt does not slide there."
