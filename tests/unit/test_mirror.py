@@ -37,7 +37,6 @@ ELSEWHERE = {
     "show/line_sheet.py": "unit/designs/test_line_sheet.py",
     "designs/designs.py": "unit/designs/test_optimize.py",
     "designs/optimization_history.py": "unit/designs/test_optimize.py",
-    "designs/residuals.py": "unit/designs/test_calibrate.py",
     "designs/study_table.py": "unit/designs/test_study.py",
     "designs/proposal.py": "unit/designs/test_selection.py",
     "designs/named_results.py": "unit/designs/test_sensitivity.py",
