@@ -256,6 +256,6 @@ def flutter(evidence: Evidence) -> Iterator[Finding]:
 
 def _steadying(present: float, usual: float) -> str:
     """Remedy against flutter of a belt with a contact damping (N s/m^2), where half of critical is the usual one."""
-    if present < usual:
-        return f"Increase contact.damping from {present:.2g} to {beyond(present, usual):.2g} N s/m^2, half of critical."
+    if present < usual and f"{present:.2g}" != f"{usual:.2g}":
+        return f"Increase contact.damping from {present:.2g} to {usual:.2g} N s/m^2, half of critical."
     return "Raise the tension or the friction, or reduce the load, so that the belt does not slide there."
