@@ -204,7 +204,7 @@ def test_a_belt_begins_to_run_in_other_ways_where_one_fails(first: int, monkeypa
 def test_the_curve_is_followed_from_the_last_solution_without_gross_slip(
     loaded: SteadySearch, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """And then from the last one of all; where it leads nowhere the search stays as it was."""
+    """And then from the last one of all, and from one before; where all lead nowhere the search stays as it was."""
     way = Way(loaded, loaded.setting._replace(load=0.0), loaded.setting)
     begin, placed = loaded.unknowns(), list[Any]()
     way.solutions = [Solution(place, (1.0 - 1e-3 * place) * begin) for place in (0.0, 0.2, 0.4, 0.6)]
@@ -218,10 +218,10 @@ def test_the_curve_is_followed_from_the_last_solution_without_gross_slip(
     slips = np.array([[0.0, 0.0], [0.0, 0.001], [0.0, 0.02], [0.0, 0.3]])
     monkeypatch.setattr(search_module, "gross_slips", lambda passed: slips[: len(passed)] if len(passed) > 2 else slips)
     assert not loaded._turn(way)
-    assert [place for place, *_ in placed] == [0.2, 0.6]
-    for (_, unknowns, _), solution in zip(placed, way.solutions[1::2], strict=True):
+    assert [place for place, *_ in placed] == [0.2, 0.6, 0.0]
+    for (_, unknowns, _), solution in zip(placed, (way.solutions[number] for number in (1, 3, 0)), strict=True):
         np.testing.assert_allclose(unknowns, solution.unknowns, rtol=1e-12)
-    assert [lost for *_, lost in placed] == [True, False]
+    assert [lost for *_, lost in placed] == [True, False, True]
     np.testing.assert_allclose(loaded.unknowns(), begin)
     assert len(loaded._passed) == 2
 

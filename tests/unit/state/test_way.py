@@ -66,7 +66,7 @@ def test_all_that_smooths_changes_by_equal_factors() -> None:
 
 @pytest.mark.parametrize("drive", [two, web], ids=["closed", "web"])
 def test_ways_of_unknowns_are_lengths(drive: Callable[[], Drive]) -> None:
-    """Of nodes alike in their root mean square; of a rim that of the belt, whose speed itself weighs nothing."""
+    """Of nodes alike in their root mean square; of a rim, and of the speed itself, that of the belt."""
     search = unsolved(drive())
     search.constant.frame.speed[0] = -5.0
     way = Way(search, Setting(load=0.0), Setting())
@@ -85,8 +85,9 @@ def test_ways_of_unknowns_are_lengths(drive: Callable[[], Drive]) -> None:
             expected[row.unknown] = row.reach**2 / 5.0 if turns else row.reach
     if content(system).size:
         expected[-2] = system.length.sum()
+    expected[-1] = system.rims.radius.min() / 5.0
     np.testing.assert_allclose(others, expected)
-    assert np.count_nonzero(expected) == border - 1
+    assert np.count_nonzero(expected) == border
 
 
 @pytest.mark.parametrize("change", ["load", "smoothing"])
