@@ -23,6 +23,8 @@ FEWEST_LEVELS = 3
 """Levels from which an order follows."""
 ELEMENTS, TOLERANCE = "elements", "tolerance"
 """Axes of results."""
+INTERRUPTED = "interrupted"
+"""Status of results of an analysis that Ctrl-C has ended."""
 _MESH_KEY = "belt.elements"
 _TOLERANCE_KEYS = {SIMULATE: "simulation.rtol", "sweep": "simulation.rtol", "steady_state": "steady.force_tolerance"}
 """Keys of the tolerance, by the analysis."""
@@ -94,6 +96,8 @@ def convergence(
         If there are fewer than three levels, the analysis has no tolerance, or there is no such result.
     SimulationError
         If no level could be computed.
+    KeyboardInterrupt
+        After Ctrl-C before the first level; later the result has the status "interrupted".
 
     Examples
     --------
@@ -112,17 +116,14 @@ def convergence(
         raise ModelError(f'repeated = "{repeated}" is no analysis. Choose one of {listing(list(ANALYSES))}.')
     keys = {axis: _key(axis, repeated) for axis in sizes}
     results = [name.strip() for name in of.split(",")] if isinstance(of, str) else list(of)
-    studies = {
-        axis: study(
-            ParameterStudy(
-                analysis=repeated, results=results, number=[{"path": keys[axis], "values": levels.tolist()}]
-            ),
-            drive,
-            jobs=1,
-            progress=progress,
+    studies = dict[str, Result]()
+    for axis, levels in sizes.items():
+        plan = ParameterStudy(
+            analysis=repeated, results=results, number=[{"path": keys[axis], "values": levels.tolist()}]
         )
-        for axis, levels in sizes.items()
-    }
+        studies[axis] = study(plan, drive, jobs=1, progress=progress)
+        if studies[axis].status == INTERRUPTED:
+            break
     return _result(drive, repeated, sizes, studies)
 
 
@@ -151,7 +152,10 @@ def _result(drive: Drive, analysis: str, sizes: Mapping[str, NDArray[Any]], stud
     names = list(
         dict.fromkeys(name for table in studies.values() for name in table.dataset.attrs["results"].split("\n"))
     )
+    is_interrupted = any(table.status == INTERRUPTED for table in studies.values())
     if not any(names):
+        if is_interrupted:
+            raise KeyboardInterrupt
         raise SimulationError("\n".join(doubt for table in studies.values() for doubt in table.warnings))
     units = [
         next(table.dataset[name].attrs["units"] for table in studies.values() if name in table.dataset)
@@ -160,18 +164,20 @@ def _result(drive: Drive, analysis: str, sizes: Mapping[str, NDArray[Any]], stud
     values: dict[str, tuple[Variable, Any]] = {"unit": (Variable(_RESULT, "1", "Unit", "str"), units)}
     coordinates: dict[str, tuple[Variable, Any]] = {"result": (Variable(_RESULT, "1", "Result", "str"), names)}
     doubts = list[str]()
-    for axis, levels in sizes.items():
-        table = studies[axis].dataset
+    for axis, axis_study in studies.items():
+        table, levels = axis_study.dataset, sizes[axis]
         missing = np.full(levels.size, np.nan)
         computed = np.array([table[name].values if name in table else missing for name in names], dtype=float)
         steps = 1.0 / levels if axis == ELEMENTS else levels
         variables = _variables(axis)
         values |= dict(zip(variables, zip(variables.values(), _columns(steps, computed), strict=True), strict=True))
         coordinates[axis] = _AXES[axis], levels
-        doubts += [f"{axis}: {doubt}" for doubt in studies[axis].warnings]
+        doubts += [f"{axis}: {doubt}" for doubt in axis_study.warnings]
     result = build_result("convergence", drive, values, coordinates, doubts)
-    result.dataset.attrs |= {"axes": "result", "columns_by": " ".join(sizes)}
+    result.dataset.attrs |= {"axes": "result", "columns_by": " ".join(studies)}
     result.dataset.attrs["title"] = f"Convergence of {drive.title}: {analysis}"
+    if is_interrupted:
+        result.dataset.attrs["status"] = INTERRUPTED
     return result
 
 

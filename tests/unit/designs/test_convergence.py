@@ -12,6 +12,7 @@ from beltdyn.model import Drive
 from beltdyn.results import Result, Variable, build_result
 from beltdyn.show.plot import mesh_convergence, tolerance_convergence
 from beltdyn.show.sheet import sheet_without_limits
+from beltdyn.solvers.run_progress import Progress
 
 ORDER, TOLERANCE_ORDER, LIMIT = 2.5, 0.8, 40.0
 
@@ -69,6 +70,18 @@ def test_a_level_that_fails_leaves_the_others(fine: Drive) -> None:
     assert "the belt slips" in found.warnings[1]
     with pytest.raises(SimulationError, match="the belt slips"):
         bd.convergence(fine.with_({"belt.elements": 13}), of="force", tolerances=[1e-3, 1e-4, 1e-5], repeated="powers")
+
+
+def test_an_interrupted_series_keeps_what_is_computed(fine: Drive) -> None:
+    def interrupt(progress: Progress) -> None:
+        if progress.time >= 2.0:
+            raise KeyboardInterrupt
+
+    options = {"of": "force", "meshes": [20, 30, 50], "tolerances": [1e-2, 1e-3, 1e-4], "repeated": "powers"}
+    found = bd.convergence(fine, progress=interrupt, **options)  # type: ignore[arg-type]
+    assert found.status == "interrupted"
+    assert np.isfinite(found.dataset.mesh_value.values[0]).sum() >= 1
+    assert "tolerance" not in found.dataset.dims
 
 
 def test_tables_and_figures(fine: Drive) -> None:

@@ -43,6 +43,7 @@ OPTIONS: dict[str, dict[str, Any]] = {name: {} for name in ANALYSES} | {
     "campbell": {"speed": "80, 120 rpm", "count": 2},
     "response": {"speed": "80, 120 rpm"},
     "stroke": {"places": "0, 50 mm"},
+    "convergence": {"meshes": "12, 16, 20", "repeated": "equilibrium"},
 }
 """Analysis -> options that make it short."""
 
