@@ -25,7 +25,7 @@ def _belt(prepared: Prepared) -> Iterator[tuple[str, str]]:
     belt, entry = prepared.belt, prepared.belt.entry
     wide = f"{1e3 * belt.width:.4g} mm wide"
     size = f"{wide}, {1e3 * belt.thickness:.3g} mm thick"
-    if prepared.drive.ends:
+    if prepared.ends:
         yield ("web" if prepared.drive.is_web else "belt"), f"{entry.title}, {size}" if entry else size
         return
     if entry is None:

@@ -7,6 +7,7 @@ import numpy as np
 
 from beltdyn.parts.messages import aligned
 from beltdyn.results import Result
+from beltdyn.results.provenance import mesh_facts
 from beltdyn.results.schema import shown_unit
 from beltdyn.show.parts_list import parts_list
 from beltdyn.show.sheet import Facts, Sheet, Table
@@ -24,8 +25,11 @@ _UNITS = {"diameter": ("mm", 1e3), "wrap_angle": ("°", _DEGREES), "width_needed
 def rating_sheet(result: Result) -> Sheet:
     """Give the sheet of a rating."""
     dataset = result.dataset
-    facts = Facts((("verdict", str(dataset.attrs["verdict"])),), "Verdict")
-    parts = (facts, _checks(dataset), *parts_list(result.prepared), _pulleys(dataset), Facts(tuple(_scalars(dataset))))
+    verdict = str(dataset.attrs.get("verdict", ""))  # none in files of earlier versions
+    judged = (Facts((("verdict", verdict),), "Verdict"), _checks(dataset)) if verdict else ()
+    pulleys = (_pulleys(dataset),) if "pulley" in dataset.dims else ()
+    numbers = Facts((*_scalars(dataset), *mesh_facts(dataset.attrs)))
+    parts = (*judged, *parts_list(result.prepared), *pulleys, numbers)
     return Sheet(str(dataset.attrs["title"]), parts)
 
 

@@ -284,7 +284,7 @@ def _pulleys(title: str, summary: Summary, guides: BoolArray) -> Table:
         "slip",
         "elastic\ncreep",
         "wrap\nangle",
-        "sliding\narc",
+        "slip\narc",
     )
     columns = (
         (one.name for one in pulleys),
@@ -303,7 +303,7 @@ def _pulleys(title: str, summary: Summary, guides: BoolArray) -> Table:
     )
     return Table(
         title,
-        (*headings, "tension\nratio", "\nallowed", "safety\nown", "\nall", "hub load\nN"),
+        (*headings, "tension\nratio", "ratio\nmax", "safety\nown", "\nall", "hub\nN"),
         tuple(zip(*columns, strict=True)),
     )
 

@@ -23,7 +23,7 @@ def test_summary(run: Run, capsys: pytest.CaptureFixture[str]) -> None:
     show_result(run)
     output = " ".join(capsys.readouterr().out.split())
     for part in (
-        "driver 114.59 2.438 29.25 0.000% 0.000% 180.0° 0.0° 2.00/43 3.66 3.66 90.00",
+        "driver 114.59 2.438 29.25 0.000% 0.000% 180.0° 0.0° 2.00 43 3.66 3.66 90.00",
         "0.500%",
         "180.0°",
         "29.25 W in, 29.1 W out",

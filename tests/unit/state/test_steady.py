@@ -284,3 +284,16 @@ def test_a_belt_that_no_pulley_touches_is_refused() -> None:
     drive = at_speed_under(held_at(bd.example("unequal_radii"), None), 0, 1e4, 0.0)
     with pytest.raises(ConvergenceError, match=r"lifted off all pulleys.*Reduce the speed"):
         steady_state(drive, force_tolerance=0.2)
+
+
+def test_a_load_that_falls_with_the_speed_runs_under_a_driver_that_slides(loaded: Drive) -> None:
+    """Beyond the grip the belt, and the load with it, keep their speed, whatever that of the driver."""
+    driver, driven = loaded.pulleys
+    fan = driven.replace(torque=None, load=[{"kind": "resistance", "quadratic": 45.0 / 100.0**2}])
+    weak = loaded.replace(pulley=[driver, fan], contact=loaded.contact.replace(friction=0.3))
+    runs = [steady_state(weak.with_({"pulley[driver].speed": speed})) for speed in (200.0, 300.0)]
+    slow, fast = (run.dataset.pulley_speed.values[-1] for run in runs)
+    assert (slow[0], fast[0]) == (200.0, 300.0)
+    assert fast[1] == pytest.approx(slow[1], rel=1e-3)
+    for run in runs:
+        assert any(text.startswith("gross slip") for text in run.warnings)

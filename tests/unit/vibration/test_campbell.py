@@ -98,16 +98,16 @@ def test_file_tables_and_screen(
 
 
 def test_a_speed_that_fails_is_marked_and_others_stay(loaded: Drive) -> None:
-    """With a load that grows with the square of the speed, and a belt that slips.
+    """With a load that grows with the square of the speed, and a belt that its inertia lifts off.
 
     The driven pulley on the creep of the belt, the last mode, is damped by 0.897 at 60 rad/s, by more than 0.9 beyond.
     """
     driver, driven = loaded.pulleys
     heavy = driven.replace(torque=None, load=[{"kind": "resistance", "quadratic": 45.0 / 100.0**2}])
     weak = loaded.replace(pulley=[driver, heavy], contact=loaded.contact.replace(friction=0.3))
-    found = campbell(weak, speed="60, 90, 300 rad/s", count=2)
+    found = campbell(weak, speed="60, 90, 2500 rad/s", count=2)
     assert found.dataset.failure.values[:2].tolist() == ["", ""]
-    assert "the belt slips on `driven`" in str(found.dataset.failure.values[2])
+    assert "no steady running found" in str(found.dataset.failure.values[2])
     assert np.isfinite(found.dataset.frequency.values[:2]).tolist() == [[True, True, True], [True, True, False]]
     assert np.isnan(found.dataset.frequency.values[2]).all()
     assert any(one.startswith(f"at speed {300.0 * RPM:.4g} rpm: no operating point") for one in found.warnings)
