@@ -132,8 +132,8 @@ _OUTPUTS = {
         _ELEMENT, "N", "Variation of the tension within an element", SHORT, core=False, at_rest=True
     ),
     "span_tension": Variable(_SPAN, "N", "Span tension", at_rest=True),
-    "largest_span_tension": Variable(_SPAN, "N", "Largest tension of the span", SHORT, core=False, at_rest=True),
-    "least_span_tension": Variable(_SPAN, "N", "Least tension of the span", SHORT, core=False, at_rest=True),
+    "largest_span_tension": Variable(_SPAN, "N", "Largest tension of the span", core=False, at_rest=True),
+    "least_span_tension": Variable(_SPAN, "N", "Least tension of the span", core=False, at_rest=True),
     "span_tension_at_start": Variable(_SPAN, "N", "Tension at the start of the span", core=False, at_rest=True),
     "span_tension_at_end": Variable(_SPAN, "N", "Tension at the end of the span", core=False, at_rest=True),
     "belt_speed": Variable(_SPAN, "m/s", "Belt speed"),

@@ -1,5 +1,6 @@
 """Convergence of an analysis whose values are formulas of mesh and tolerance."""
 
+import matplotlib.pyplot as plt
 import numpy as np
 import pytest
 
@@ -98,6 +99,7 @@ def test_tables_and_figures(fine: Drive) -> None:
     assert [line.get_label() for line in ax.lines] == ["force, order 0.8"]
     with pytest.raises(ModelError, match=r"is not a result\. Choose one of force, swing"):
         mesh_convergence(found, of="speed")
+    plt.close("all")
 
 
 @pytest.mark.parametrize(

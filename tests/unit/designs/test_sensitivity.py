@@ -233,14 +233,17 @@ def test_a_number_at_its_bound_changes_on_one_side() -> None:
     assert not found.dataset.attrs.get("warnings")
 
 
-@pytest.mark.slow
 def test_a_conveyor_has_no_efficiency_and_its_resistances_change_as_friction_does() -> None:
-    """The coefficient C of DIN 22101, 1 by default, is a factor on the friction coefficient."""
+    """The coefficient C of DIN 22101, 1 by default, is a factor on the friction coefficient.
+
+    Slip safeties are found to 1e-8, and inputs changed by 1e-5: effects of one per cent are exact to 1e-5 of a safety.
+    """
     drive = loads(files("beltdyn").joinpath("examples", "package_conveyor.toml").read_text(encoding="utf-8"))
     found = sensitivity(drive, numbers="support[2].friction, support[2].secondary_factor").dataset
     assert list(found.result.values) == ["least_slip_safety", "largest_tension"]
     friction, factor = (found.effect.sel(number=f"support[2].{name}") for name in ("friction", "secondary_factor"))
-    np.testing.assert_allclose(factor, friction, rtol=1e-3)
+    exact = 1e-5 * found.value.values
+    assert np.all(np.abs(factor - friction) < 1e-3 * np.abs(friction) + exact)
     assert float(friction.sel(result="largest_tension")) > 0.0
 
 
