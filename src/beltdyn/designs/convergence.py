@@ -1,7 +1,7 @@
 """Convergence of results over meshes and tolerances: differences from the finest, observed orders, and limits."""
 
 from collections.abc import Mapping, Sequence
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -28,19 +28,28 @@ INTERRUPTED = "interrupted"
 _MESH_KEY = "belt.elements"
 _TOLERANCE_KEYS = {SIMULATE: "simulation.rtol", "sweep": "simulation.rtol", "steady_state": "steady.force_tolerance"}
 """Keys of the tolerance, by the analysis."""
-_LEVEL_NAMES = {ELEMENTS: "mesh", TOLERANCE: "tolerance"}
-"""What the axes are, in names of variables."""
 
-_RESULT = ("result",)
+
+class _Axis(NamedTuple):
+    """How an axis of levels is named."""
+
+    option: str
+    level: str
+    """In names of variables."""
+    finest: str
+    variable: Variable
+
+
 _AXES = {
-    ELEMENTS: Variable((ELEMENTS,), "1", "Belt elements", "int64"),
-    TOLERANCE: Variable((TOLERANCE,), "1", "Tolerance"),
+    ELEMENTS: _Axis("meshes", "mesh", "finest mesh", Variable((ELEMENTS,), "1", "Belt elements", "int64")),
+    TOLERANCE: _Axis("tolerances", "tolerance", "smallest tolerance", Variable((TOLERANCE,), "1", "Tolerance")),
 }
+_RESULT = ("result",)
 
 
 def _variables(axis: str) -> dict[str, Variable]:
     """Variables along an axis of levels."""
-    level, finest = _LEVEL_NAMES[axis], "finest mesh" if axis == ELEMENTS else "smallest tolerance"
+    _, level, finest, _ = _AXES[axis]
     each = (*_RESULT, axis)
     return {
         f"{level}_value": Variable(each, VARIOUS, "Value"),
@@ -129,14 +138,14 @@ def convergence(
 
 def _levels(axis: str, numbers: Numbers) -> NDArray[Any]:
     """Levels of an axis, the finest last."""
-    name = "meshes" if axis == ELEMENTS else "tolerances"
+    name = _AXES[axis].option
     levels = numbers_in(name, numbers, "", FEWEST_LEVELS)
     if levels.size < FEWEST_LEVELS:
         raise ModelError(f"{name} has {levels.size} levels; an order needs at least {FEWEST_LEVELS}. Give more.")
     if axis == TOLERANCE:
         return levels[::-1]
     if np.any(levels != np.round(levels)):
-        raise ModelError(f"meshes = {numbers!r} must be whole numbers.")
+        raise ModelError(f"{name} = {numbers!r} must be whole numbers.")
     return levels.astype(int)
 
 
@@ -171,7 +180,7 @@ def _result(drive: Drive, analysis: str, sizes: Mapping[str, NDArray[Any]], stud
         steps = 1.0 / levels if axis == ELEMENTS else levels
         variables = _variables(axis)
         values |= dict(zip(variables, zip(variables.values(), _columns(steps, computed), strict=True), strict=True))
-        coordinates[axis] = _AXES[axis], levels
+        coordinates[axis] = _AXES[axis].variable, levels
         doubts += [f"{axis}: {doubt}" for doubt in axis_study.warnings]
     result = build_result("convergence", drive, values, coordinates, doubts)
     result.dataset.attrs |= {"axes": "result", "columns_by": " ".join(studies)}

@@ -1,10 +1,8 @@
-"""What the loads of a drive demand of its belt: powers, pulls, and the tension at rest by the rules of makers."""
+"""What the loads of a drive demand of its belt: the tension at rest by the rules of makers."""
 
-from beltdyn.arrays import FloatArray
-from beltdyn.model.belt_loads import RequiredTension, torque_of_file
+from beltdyn.model.belt_loads import RequiredTension
 from beltdyn.model.drive import Drive
 from beltdyn.model.installation import Installation
-from beltdyn.model.path import Path
 
 
 def required_tension(drive: Drive, installation: Installation) -> RequiredTension | None:
@@ -17,13 +15,3 @@ def required_tension(drive: Drive, installation: Installation) -> RequiredTensio
     if drive.driver is None or held:
         return None
     return drive.belt_loads(drive.driver).required_tension(installation.path)
-
-
-def powers_drawn(drive: Drive, driver: int, path: Path) -> tuple[FloatArray, float]:
-    """Power drawn from the belt by each pulley, W, and belt speed, m/s, at the highest speed of a driver."""
-    return drive.belt_loads(driver).powers_drawn(path)
-
-
-def prescribed_torque(drive: Drive, number: int) -> float:
-    """Torque that the drive file gives a pulley beside its loads, at the end of the run, N m."""
-    return torque_of_file(drive.pulleys[number], drive.simulation.end)

@@ -7,8 +7,8 @@ import numpy as np
 
 from beltdyn.errors import BeltdynError
 from beltdyn.model.alignment import judge_alignment
-from beltdyn.model.belt_loads import MAKERS
-from beltdyn.model.demand import powers_drawn, prescribed_torque, required_tension
+from beltdyn.model.belt_loads import MAKERS, torque_of_file
+from beltdyn.model.demand import required_tension
 from beltdyn.model.drive import Drive
 from beltdyn.model.installation import Installation
 from beltdyn.model.layout import mesh_misfit, teeth_in_mesh
@@ -183,7 +183,7 @@ def _tight_side(drive: Drive, installation: Installation) -> Iterator[Finding]:
     driver = drive.driver
     if driver is None or drive.ends or not drive.layout.given.springs:
         return
-    powers, speed = powers_drawn(drive, driver, installation.path)
+    powers, speed = drive.belt_loads(driver).powers_drawn(installation.path)
     others, step = len(drive.pulleys) - 1, drive.running_sense
     behind = [(driver + step * place) % len(drive.pulleys) for place in range(1, 1 + others)]
     total = float(powers[behind].sum())
@@ -266,7 +266,7 @@ def _slack_teeth(drive: Drive, installation: Installation) -> Iterator[Finding]:
     driver = drive.driver
     if drive.belt.teeth is None or driver is None or drive.moving_tensioners:
         return
-    powers, speed = powers_drawn(drive, driver, installation.path)
+    powers, speed = drive.belt_loads(driver).powers_drawn(installation.path)
     pull = float(powers[powers > 0.0].sum()) / speed if speed > 0.0 else 0.0
     least = REST_SHARE * pull
     if not installation.tension < least:
@@ -297,7 +297,7 @@ def _narrow_teeth(drive: Drive, installation: Installation) -> Iterator[Finding]
     driver, belt = drive.driver, drive.rated_belt
     if driver is None or not isinstance(belt, RatedTeeth):
         return
-    powers, speed = powers_drawn(drive, driver, installation.path)
+    powers, speed = drive.belt_loads(driver).powers_drawn(installation.path)
     if not speed > 0.0:
         return
     powers[driver] = -powers.sum()
@@ -378,11 +378,11 @@ def _driving_loads(drive: Drive, installation: Installation) -> Iterator[Finding
     driver = drive.driver
     if driver is None or drive.pulleys[driver].speed is None or drive.ends or drive.nips:
         return
-    powers = powers_drawn(drive, driver, installation.path)[0]
+    powers = drive.belt_loads(driver).powers_drawn(installation.path)[0]
     if powers.sum() >= 0.0:
         return
     for number in np.flatnonzero(powers < 0.0).tolist():
-        torque = prescribed_torque(drive, number)
+        torque = torque_of_file(drive.pulleys[number], drive.simulation.end)
         if torque:
             yield Finding(
                 f"the torque of {drive.pulleys[number].name}, {torque:.4g} N m, acts in its sense of rotation and "

@@ -9,7 +9,7 @@ from pydantic import Field
 from beltdyn.arrays import FloatArray
 from beltdyn.errors import ConvergenceError, ModelError
 from beltdyn.model import Drive, install, prepare
-from beltdyn.model.demand import powers_drawn, required_tension
+from beltdyn.model.demand import required_tension
 from beltdyn.model.rating import PowerRating, RatedBelt, lower_bound
 from beltdyn.model.toothing import MeshRating, RatedTeeth
 from beltdyn.parts.messages import listing
@@ -173,7 +173,7 @@ def _loads(drive: Drive, progress: Report | None) -> _Loads:
     except ConvergenceError as error:
         if drive.driver is None or drive.moving_tensioners:
             raise
-        taken, speed = powers_drawn(drive, drive.driver, drive.path)
+        taken, speed = drive.belt_loads(drive.driver).powers_drawn(drive.path)
         if not taken.max() > 0.0:
             raise
         powers = -taken
@@ -192,10 +192,10 @@ def _loads(drive: Drive, progress: Report | None) -> _Loads:
         np.array([getattr(one, name) for one in means]) for name in ("speed", "power", "hub_load", "least_safety")
     )
     values: Values = {"hub_load": (Variable(_PULLEY, "N", "Hub load"), hub)}
+    fatigue = fatigue_by_name(run)
     for name, label in (("cord_life", "Life of the cords"), ("rib_life", "Life of the ribs")):
-        life = fatigue_by_name(run).get(name)
-        if life is not None:
-            values[name] = Variable((), "h", label), life
+        if name in fatigue:
+            values[name] = Variable((), "h", label), fatigue[name]
     return _Loads(speeds, powers, run.dataset["pulley_center"].values[-1], float(np.fmin.reduce(safety)), values, [])
 
 

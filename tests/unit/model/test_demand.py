@@ -7,7 +7,7 @@ import pytest
 import beltdyn as bd
 from beltdyn.model import Drive, advise, install, loads
 from beltdyn.model.belt_loads import MAKERS
-from beltdyn.model.demand import powers_drawn, required_tension
+from beltdyn.model.demand import required_tension
 from beltdyn.model.installation import tension_checks
 from beltdyn.show.sheet import Facts
 from beltdyn.theory.rating import TENSION_FORMULAS, least_rest_tension, least_tension
@@ -43,7 +43,7 @@ def drive() -> Drive:
 
 
 def test_the_power_of_the_fan(drive: Drive) -> None:
-    powers, speed = powers_drawn(drive, 0, drive.path)
+    powers, speed = drive.belt_loads(0).powers_drawn(drive.path)
     assert powers[1] == pytest.approx(15e3, rel=1e-3)
     assert speed == pytest.approx(pi * 0.2 * 1450.0 / 60.0)
 

@@ -120,7 +120,7 @@ def _draw(result: Result, level: str, axis: str, of: str | None, ax: Axes | None
     if axis == "tolerance":
         ax.invert_xaxis()
     finest = f"{sizes[-1]:g} elements" if axis == "elements" else f"tolerance {sizes[-1]:g}"
-    ax.set(xlabel="Belt elements" if axis == "elements" else "Tolerance", ylabel=f"Difference from {finest}, relative")
+    ax.set(xlabel=str(dataset[axis].attrs["long_name"]), ylabel=f"Difference from {finest}, relative")
     if len(chosen) > _MOST_LINES:
         note(ax, f"the first {_MOST_LINES} of {len(chosen)} results")
     name_lines(ax)
