@@ -454,9 +454,10 @@ class _Start:
     def __init__(self, row: _Row) -> None:
         self.row, drive = row, row.drive
         self.drives = np.array([one.prescribed or any(load.driven_speed for load in one.load) for one in drive.pulleys])
-        reached, left = (row.before, row.after)[:: int(row.sense)]
-        self.pulls = np.where(self.drives, reached - left, 0.0)
         self.radii = np.abs(row.prepared.rolling_radii)
+        # by torques, since tensions at both ends of an arc also differ by the weight of the belt on it
+        driving = -np.sign(row.at["pulley_speed"].values) * row.at["pulley_torque"].values
+        self.pulls = np.where(self.drives, driving / self.radii, 0.0)
         self.inertia = np.array([one.inertia for one in drive.pulleys]) / self.radii**2
         self.masses = _span_masses(row)
         self.mass = float(np.sum(self.masses) + np.sum(self.inertia[~self.drives]))

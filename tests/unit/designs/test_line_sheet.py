@@ -67,10 +67,10 @@ def test_strands_and_starts_of_a_conveyor_balance(mirrored: bool, weight: float)
     np.testing.assert_allclose(found.draw, speeds - 1.0, atol=1e-6)
     total = found[list(RESISTANCES)].to_dataarray().sum("variable")
     pull = float((found.tension_before - found.tension_after).sel(pulley="head"))
-    assert float(found.running_pull) == pytest.approx(pull)
     np.testing.assert_allclose(found.span_pull, total, atol=0.01 * pull)
     around_tail = BELT * GRAVITY * 2.0 * RADIUS[1]  # which the belt rises there, too
     assert pull == pytest.approx(float(total.sum()) + around_tail, rel=3e-3)
+    assert float(found.running_pull) == pytest.approx(float(total.sum()), rel=1e-2)  # without the weight on arcs
     lift = float((found.slope_resistance + found.goods_resistance).sum())
     assert float(found.holdback_torque) == pytest.approx(lift * RADIUS[0], rel=1e-3)
 

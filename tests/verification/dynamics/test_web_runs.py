@@ -468,7 +468,7 @@ def stopping() -> Run:
     times = np.linspace(*STOP, 81)
     slower = SPEED / RADIUS * (0.75 + 0.25 * np.cos(np.pi * (times - STOP[0]) / (STOP[1] - STOP[0])))
     table = {"kind": "table", "times": [0.0, *times, 10.0], "values": [slower[0], *slower, slower[-1]]}
-    return bd.simulate(rolled(table))
+    return bd.simulate(rolled(table, rtol=1e-5))
 
 
 def test_rolls_with_torques_in_a_stop(stopping: Run) -> None:
@@ -518,12 +518,14 @@ def test_rolls_with_torques_in_a_stop(stopping: Run) -> None:
 
 
 def test_energy_of_a_stop_with_rolls(stopping: Run) -> None:
-    """To 1e-6, with the kinetic energy of the rolls, of which little is lost by the steps."""
+    """To 1e-6, with the kinetic energy of the rolls, of which steps lose little: a fifth of their tolerance at most."""
     found = stopping.dataset
     assert abs(largest_closure(found).error) < 1e-6
     kinetic, speed = found.kinetic_energy.values, found.roll_speed.values
     assert kinetic == pytest.approx((0.5 * found.roll_inertia.values * speed**2).sum(axis=1), rel=0.05)
-    assert abs(found.numerical_loss.values[-1]) < 1e-6 * kinetic[0]
+    lost = np.abs(found.numerical_loss.values) / kinetic[0]
+    assert lost.max() < 0.2 * stopping.drive.simulation.rtol
+    assert lost[-1] < 1e-6
 
 
 def test_modes_of_a_line_between_rolls() -> None:
