@@ -41,7 +41,7 @@ def make(circles: Circles, turned: float = 0.0, shift: tuple[float, float] = (0.
             "poissons_ratio": 0.3,
             "youngs_modulus": 5e8,
             "bending_factor": 0.002,
-            "elements": 180,
+            "elements": 240,
             "crossed": circles is CROSSED,
             "pitch_offset": 0.002,
             "back_offset": 0.003,

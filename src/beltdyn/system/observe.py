@@ -242,10 +242,11 @@ def _nearest_point(system: System, xi: float) -> int:
 def _observe_spans(system: System, samples: Samples, result: Observations, k: int) -> None:
     """Tension of the free belt between two pulleys, its mean, extremes and values at both ends, and its mean speed.
 
-    Going along the belt, free points belong to the span of the pulley that was touched last, if the next one
-    touched is another. On coarse meshes a pulley may be touched between points alone, and a span may have none: then
-    the nearest point counts to the pulley, and the points at its ends to the span. The last span of an open belt is
-    the one before the first pulley; behind the last pulley its end counts as touched.
+    Going along the belt, free curves belong to the span of the pulley that was touched last, if the next one touched
+    is another; where no curve is free as a whole, free points do. A point that comes free thus changes no mean by the
+    swing of the tension within its curve. On coarse meshes a pulley may be touched between points alone, and a span
+    may have none: then the nearest point counts to the pulley, and the points at its ends to the span. The last span
+    of an open belt is the one before the first pulley; behind the last pulley its end counts as touched.
     """
     touched, weight, is_open, spans = samples.touched, samples.weight, samples.is_open, samples.weight.size
     for row in range(touched.size):
@@ -267,7 +268,7 @@ def _observe_spans(system: System, samples: Samples, result: Observations, k: in
             break
     if is_open:
         before, first = spans - 1, -1
-    length = tension = speed = 0.0
+    length = tension = speed = free_length = free_tension = free_speed = 0.0
     start, end, largest, least = np.nan, np.nan, -np.inf, np.inf
     for walk in range(first + 1, first + 1 + count + is_open):
         row = walk % count
@@ -281,11 +282,16 @@ def _observe_spans(system: System, samples: Samples, result: Observations, k: in
                 tension += share * samples.tension[row]
                 speed += share * samples.speed[row]
             if row % points == 0 and _is_free(row, points, samples, result, k):
-                end = _mean_tension(system, row, points, samples)
+                end, share = _mean(system, row, points, samples.tension), system.length[row // (points * curves)]
+                free_length += share
+                free_tension += share * end
+                free_speed += share * _mean(system, row, points, samples.speed)
                 start = end if largest < least else start
                 largest, least = max(largest, end), min(least, end)
             continue
         if before != after:
+            if free_length > 0.0:
+                length, tension, speed = free_length, free_tension, free_speed
             if length == 0.0:
                 last = (row - 1) % count if not is_open else max(row - 1, 0)
                 length, speed = 1.0, 0.5 * (samples.speed[last] + samples.speed[row])
@@ -301,6 +307,7 @@ def _observe_spans(system: System, samples: Samples, result: Observations, k: in
             result.span_tension[k, before] += tension
             result.belt_speed[k, before] += speed
         before, length, tension, speed, largest, least = after, 0.0, 0.0, 0.0, -np.inf, np.inf
+        free_length = free_tension = free_speed = 0.0
     for span in range(spans):
         free = weight[span] > 0.0
         result.span_tension[k, span] = result.span_tension[k, span] / weight[span] if free else np.nan
@@ -319,13 +326,13 @@ def _is_free(first: int, points: int, samples: Samples, result: Observations, k:
 
 
 @kernel(inline=True)
-def _mean_tension(system: System, first: int, points: int, samples: Samples) -> float:
-    """Mean tension of a curve: within coarse elements at the ends of arcs, that of points swings about it."""
-    tension = weight = 0.0
+def _mean(system: System, first: int, points: int, values: FloatArray) -> float:
+    """Mean over a curve: within coarse elements at the ends of arcs, the tension of points swings about it."""
+    total = weight = 0.0
     for point in range(points):
-        tension += system.contact.weights[point] * samples.tension[first + point]
+        total += system.contact.weights[point] * values[first + point]
         weight += system.contact.weights[point]
-    return tension / weight
+    return total / weight
 
 
 @kernel(inline=True)
