@@ -222,8 +222,8 @@ def test_the_tutorial_prints_what_it_says(
     assert told == 1
 
 
-COSTLY_TASKS = {"belt", "design", "python", "resonance", "slip"}
-"""Tasks that optimize, calibrate, simulate over time and compute responses."""
+COSTLY_TASKS = {"belt", "design", "python", "resonance", "slip", "squeal"}
+"""Tasks that optimize, calibrate, simulate over time, and compute responses and squeal."""
 
 
 @pytest.mark.parametrize(

@@ -79,6 +79,25 @@ def _number(value: Any, si: str) -> float | None:
         return None
 
 
+_MEASURED = re.compile(
+    r"(?P<number>(?<![\w.\[])[+-]?\d+(?:\.\d+)?(?:e[+-]?\d+)?) "
+    r"(?P<unit>m\^2|m\^3|m|rad/s|rad|kg m\^2|N/m|Pa)(?![\w/^²³]| [\w/]*[sm]\b(?=[/^²³]))"
+)
+"""A number with an SI unit in a sentence, neither of a product nor of a quotient."""
+_IN_UNIT = re.compile(r", in (?P<unit>m\^2|m\^3|m|rad/s|rad|kg\*m\^2|N/m|Pa)(?=$|[;,.])")
+
+
+def in_units(sentence: str, system: System) -> str:
+    """A message or a hint with its lengths, speeds and angles in the units of the page."""
+
+    def measured(match: re.Match[str]) -> str:
+        unit = unit_in(system, match["unit"].replace("kg m", "kg*m"))
+        return f"{float(match['number']) / unit.size:.{_DIGITS - 2}g} {unit.shown}" if unit.written else match[0]
+
+    sentence = _MEASURED.sub(measured, sentence)
+    return _IN_UNIT.sub(lambda match: f", in {unit_in(system, match['unit']).shown}", sentence)
+
+
 def with_unit(text: str, si: str, system: System) -> str:
     """What was typed as a drive file has it: plain numbers get the unit of the page."""
     unit = unit_in(system, si)
@@ -308,7 +327,7 @@ def _choices(schema: Mapping[str, Any]) -> tuple[str, ...]:
 
 
 def _form(schema: Mapping[str, Any]) -> Form:
-    if _choices(schema):
+    if _choices(schema) and not _takes_numbers(schema):
         return "choice"
     if "discriminator" in schema or "properties" in schema:
         return "group"
@@ -319,10 +338,14 @@ def _form(schema: Mapping[str, Any]) -> Form:
         if option.get("type") == "array":
             entries = option.get("items", {})
             return "groups" if {"$ref", "discriminator", "properties"} & set(entries) else "numbers"
-    types = {option.get("type") for option in options}
-    if types & _NUMERIC:
+    if _takes_numbers(schema):
         return "number"
-    return "flag" if "boolean" in types else "text"
+    return "flag" if any(option.get("type") == "boolean" for option in options) else "text"
+
+
+def _takes_numbers(schema: Mapping[str, Any]) -> bool:
+    """Whether a number is among what may be given, such as beside words for some."""
+    return any(option.get("type") in _NUMERIC for option in (schema, *schema.get("anyOf", ())))
 
 
 def _carried(data: Mapping[str, Any]) -> tuple[str, ...]:

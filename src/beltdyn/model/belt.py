@@ -39,6 +39,7 @@ from beltdyn.model.belt_form import (
     written_as_sold,
 )
 from beltdyn.model.catalogue import Entry, read_catalogue
+from beltdyn.model.friction_state import Friction
 from beltdyn.model.rating import CordFatigue, RatedBelt, RibFatigue, StretchCurve
 from beltdyn.model.toothing import DISCRETE, FEWEST_TEETH, MOST_OFF, MOST_TEETH, RatedTeeth, Toothing
 from beltdyn.parts.kind_fields import LawKeys, NameOf
@@ -169,7 +170,7 @@ class Belt(Part):
         le=pi,
         description="the angle between the flanks of a V-belt or of ribs, in rad; not given for a flat belt",
     )
-    friction: Ratio | None = Field(
+    friction: Friction | None = Field(
         None,
         ge=0,
         description="the coefficient of friction of the belt, without the wedge effect, unless contact gives one",

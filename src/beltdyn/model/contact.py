@@ -11,9 +11,10 @@ from beltdyn.contact.normal import LAWS as NORMAL_LAWS
 from beltdyn.contact.normal import NormalParameters
 from beltdyn.errors import ModelError
 from beltdyn.kinds import Parameter
+from beltdyn.model.friction_state import IN_WORDS, Friction
 from beltdyn.parts.kind_fields import LawKeys, NameOf
 from beltdyn.parts.part import Part
-from beltdyn.parts.quantity import Count, Length, LineDamping, LineStiffness, Ratio
+from beltdyn.parts.quantity import Count, Length, LineDamping, LineStiffness
 
 
 class Contact(Part):
@@ -57,8 +58,11 @@ class Contact(Part):
         "no_pull",
         description="the normal force: never tensile, or as published, which may be tensile where the belt leaves",
     )
-    friction: Ratio | None = Field(
-        None, ge=0, description="the coefficient of friction, without the wedge effect; by default that of the belt"
+    friction: Friction | None = Field(
+        None,
+        ge=0,
+        description="the coefficient of friction, without the wedge effect, or a state of rubber on metal: "
+        f"{IN_WORDS}; by default that of the belt",
     )
     friction_law: Annotated[str, NameOf(FRICTION_LAWS, "relative_creep")] = Field(
         "relative_creep", description="the friction law"

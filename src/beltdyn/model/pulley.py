@@ -20,6 +20,7 @@ from beltdyn.machines.profiles.harmonic import SpeedHarmonics
 from beltdyn.machines.profiles.profile import Profile
 from beltdyn.model.belt import Belt, Side, read_side
 from beltdyn.model.contact import Contact
+from beltdyn.model.friction_state import Friction
 from beltdyn.model.toothing import FEWEST_TEETH, LARGEST_PITCH_ERROR, MOST_TEETH
 from beltdyn.parts.kind_fields import OneOf, key_field
 from beltdyn.parts.part import Part
@@ -177,7 +178,7 @@ class Pulley(Part):
         None, description="the elastic cover of a roller, a group [pulley.cover]; by default none"
     )
     side: Side = Field("inside", description="the side of the belt that touches the pulley; the outside is its back")
-    friction: Ratio | None = Field(
+    friction: Friction | None = Field(
         None,
         ge=0,
         description="the coefficient of friction on this pulley, without the wedge effect; by default that of contact",

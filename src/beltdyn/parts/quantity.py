@@ -2,12 +2,12 @@
 
 import math
 import re
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from functools import lru_cache
 from math import isfinite
 from types import MappingProxyType
-from typing import TYPE_CHECKING, Annotated, SupportsFloat, TypeAlias, get_args
+from typing import TYPE_CHECKING, Annotated, Any, Literal, SupportsFloat, TypeAlias, get_args
 
 import numpy as np
 from pydantic import BeforeValidator, Strict, StringConstraints
@@ -271,17 +271,25 @@ class _Reader:
 
     unit: str
     smallest: float
+    words: tuple[tuple[str, float], ...]
 
     def __call__(self, value: object, /) -> object:
         """A number in SI units."""
         if isinstance(value, bool):
             raise ValueError(f"must be a number{f' in {self.unit}' if self.unit else ''}")
-        number = to_si(value, self.unit) if isinstance(value, str) else value
+        number = self._read(value) if isinstance(value, str) else value
         if isinstance(number, int | float):
             _check_size(number, self.smallest)
             if abs(number) < _DUST:
                 return type(number)(0)
         return number
+
+    def _read(self, text: str) -> float:
+        if (number := dict(self.words).get(text.strip())) is not None:
+            return number
+        if self.words and text.strip().isalpha():
+            raise ValueError(f"must be a number, or one of {', '.join(dict(self.words))}")
+        return to_si(text, self.unit)
 
 
 def unit_of(annotation: object) -> str | None:
@@ -310,9 +318,12 @@ _Toleranced = Annotated[str, StringConstraints(pattern=r"±|\+/?-|%")]
 """A dimensionless number, also with a tolerance, ``"0.31 ± 0.02"``, or in percent, ``"1 %"``."""
 
 
-def quantity(unit: str, smallest: float = 1e-15) -> BeforeValidator:
-    """Annotate a field that takes a number in `unit`, or text with any unit of the same dimension."""
-    return BeforeValidator(_Reader(unit, smallest), json_schema_input_type=float | (str if unit else _Toleranced))
+def quantity(unit: str, smallest: float = 1e-15, words: Mapping[str, float] = MappingProxyType({})) -> BeforeValidator:
+    """Annotate a field that takes a number in `unit`, text with any unit of the same dimension, or a word for one."""
+    shape: Any = float | (str if unit else _Toleranced)
+    if words:
+        shape = shape | Literal[tuple(words)]
+    return BeforeValidator(_Reader(unit, smallest, tuple(words.items())), json_schema_input_type=shape)
 
 
 Coordinate = Annotated[float, quantity("m", smallest=0)]

@@ -263,6 +263,26 @@ def swinging(
     return values[chosen], vectors[:, chosen]
 
 
+_FASTEST = 1.0
+"""Largest growth rate that is looked for, over the largest angular frequency."""
+
+
+def growing_swings(given: Pencil, highest: float) -> tuple[ComplexArray, ComplexArray]:
+    """Eigenvalues that grow and swing up to an angular frequency (rad/s), the fastest first; in columns their vectors.
+
+    They grow by at most `highest`.
+    """
+    if given.size <= _SMALL:
+        values, vectors = all_eigenvalues(given)
+    else:
+        known = _Known(given)
+        known.cover(_Cell(0j, complex(_FASTEST * highest, highest)))
+        values, vectors = known.values, known.vectors
+    chosen = np.flatnonzero((values.real > 0.0) & (values.imag <= highest) & swings(values))
+    chosen = chosen[np.argsort(-values[chosen].real)]
+    return values[chosen], vectors[:, chosen]
+
+
 def _is_continuum(values: ComplexArray) -> bool:
     """Whether heavily damped ones of eigenvalues that swing are too many to be modes."""
     light = int(np.count_nonzero(lightly_damped(values)))
@@ -343,10 +363,19 @@ class _Known:
     def fill(self, high: float, damped: float, goes_on: Callable[[], bool] = lambda: True) -> None:
         """Look for all modes up to a frequency (rad/s), of less than a damping ratio, as long as that goes on."""
         widest = high * damped / sqrt(1.0 - damped**2)
-        cells, self.is_full = [_Cell(complex(-widest, 0.0), complex(0.0, high))], False
+        self.cover(_Cell(complex(-widest, 0.0), complex(0.0, high)), lambda cell: cell.may_hold(damped), goes_on)
+
+    def cover(
+        self,
+        whole: _Cell,
+        wanted: Callable[[_Cell], bool] = lambda _: True,
+        goes_on: Callable[[], bool] = lambda: True,
+    ) -> None:
+        """Look for all eigenvalues in a rectangle, in those parts of it that are wanted, as long as that goes on."""
+        cells, self.is_full = [whole], False
         while cells and goes_on():
             cell = cells.pop()
-            if not cell.may_hold(damped) or any(cell.within(disk) for disk in self.disks):
+            if not wanted(cell) or any(cell.within(disk) for disk in self.disks):
                 continue
             around = [disk.radius for disk in self.disks if disk.holds(np.array([cell.center]))[0]]
             if not around or abs(cell.high - cell.low) < _SLIVER * max(around):

@@ -31,6 +31,7 @@ from beltdyn.vibration.small_motions import (
     require_closed,
     require_mesh_that_stays,
 )
+from beltdyn.vibration.squeal import squeal_of
 
 # Modes of small motions about a state, with sliding and with stuck tensioners, as a result
 
@@ -240,9 +241,10 @@ def modes(
     at: float | str | None = None,
     count: Annotated[Count, Field(ge=1)] = 12,
     force_tolerance: ForceTolerance | None = None,
+    squeal: str | None = None,
     progress: Report | None = None,
 ) -> Result:
-    """Compute the modes of a drive: frequency, damping ratio and shape.
+    """Compute the modes of a drive: frequency, damping ratio and shape; and whether it squeals.
 
     Small vibrations about a steady state: at rest with a belt that sticks to its pulleys, or in steady running with its
     creep and sliding. Pulleys of prescribed speed do not vibrate. For tensioners with dry friction modes are given
@@ -272,13 +274,17 @@ def modes(
     force_tolerance
         Tolerance of contact forces, relative to the largest on each pulley, to which the mesh of steady running is
         refined; by default that of the drive, 0.01.
+    squeal
+        Whether the drive squeals, and from which load: by the friction of the drive, "given", or of a state, "dry",
+        "wet" or "glazed". Self-excited vibrations up to 5 kHz are looked for under multiples of all loads, up to gross
+        slip.
     progress
         Called repeatedly with a `Progress`.
 
     Returns
     -------
     Result
-        Variables along ``mode``.
+        Variables along ``mode``, and along ``squeal_load``, the factor on all loads.
 
     Raises
     ------
@@ -302,7 +308,9 @@ def modes(
         about, drive = drive, drive.drive
     _require_sense(about, speed, pulley, at, count)
     require_closed(drive, web=about == STEADY or (isinstance(about, Run) and runs_steadily(about.dataset)))
-    steeper = None
+    if squeal is not None and about != STEADY:
+        raise ModelError(f'squeal = {squeal!r} requires about = "{STEADY}". Omit about.')
+    steeper, answer = None, None
     if isinstance(about, Run) and not runs_steadily(about.dataset):
         require_mesh_that_stays(about)
         drive, instant = about.drive, instant_of(about, at)
@@ -314,12 +322,15 @@ def modes(
     else:
         drive = drive.with_slides()
         held = drive if speed is None else _at_speed(drive, speed, pulley, at)
+        if squeal is not None:
+            answer = squeal_of(held, squeal, at, force_tolerance, progress)
         with compile_solving_ahead(prepare(held)):
             run = steady_state(held, at=at, force_tolerance=force_tolerance, progress=progress)
         motions, steeper, state = about_steady(run), _steeper(run), _running(run)
     result = modes_about(motions, count, steeper)
     told = {"title": f"Modes of {drive.title}, {state}", "drive_as_given": given}
-    return Result(result.dataset.assign_attrs(told), result.drive)
+    dataset = result.dataset if answer is None else answer.beside(result.dataset)
+    return Result(dataset.assign_attrs(told), result.drive)
 
 
 def _steeper(run: Run) -> SmallMotions | None:

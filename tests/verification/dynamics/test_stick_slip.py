@@ -1,4 +1,4 @@
-"""Verified: stick-slip under friction that falls with the slip velocity, against one mass on a moving belt.
+"""Verified: stick-slip and squeal under friction that falls with the slip velocity, against a mass on a moving belt.
 
 A drum on a torsional spring (k, c, J) is dragged by a belt that a driver with twice its friction moves at the velocity
 v.  The belt slides on the whole drum, by Euler and Eytelwein with mu(v): the drum's vibration has the growth rate
@@ -19,6 +19,8 @@ from scipy.optimize import brentq
 import beltdyn as bd
 from beltdyn.arrays import FloatArray
 from beltdyn.model import Drive
+from beltdyn.points.changed_drive import held_at, with_load
+from beltdyn.vibration.squeal import LEAST_GROWTH, fastest, in_state
 
 INERTIA, STIFFNESS, DAMPING = 0.02, 80.0, 0.02
 DISTANCE, RADIUS, HALF = 0.4, 0.05, 0.00125
@@ -28,10 +30,10 @@ DRIVER = 2.0 * STATIC
 PITCH = RADIUS + HALF
 
 
-def drive(speed: float, **contact: Any) -> Drive:
+def drive(speed: float, damping: float = DAMPING, **contact: Any) -> Drive:
     """The drive with the driver at a speed, rad/s."""
     driver = {"name": "driver", "center": [0.0, 0.0], "radius": RADIUS, "speed": speed}
-    spring = {"kind": "isolator", "stiffness": STIFFNESS, "damping": DAMPING}
+    spring = {"kind": "isolator", "stiffness": STIFFNESS, "damping": damping}
     drum = {"name": "drum", "center": [DISTANCE, 0.0], "radius": RADIUS, "speed": 0.0, "inertia": INERTIA}
     return Drive(
         belt={"profile": "flat-polyamide", "width": "20 mm", "installed_tension": TENSION},
@@ -163,3 +165,78 @@ def test_limit_cycle() -> None:
     run = bd.simulate(drive(2.0, standstill_creep=STUCK).with_(changes)).dataset.isel(time=slice(750, None))
     found = range_and_period(run.pulley_angle.values[:, 1], run.time.values)
     assert found == pytest.approx(range_and_period(*cycle_of_a_mass(2.0 * PITCH)), rel=0.01)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("growth", [2.0, -1.0])
+def test_a_drum_squeals_where_falling_friction_exceeds_its_damping(growth: float) -> None:
+    """The damping with which the closed form grows or decays; growth to 1 % of its part by friction."""
+    own = -DAMPING / (2.0 * INERTIA)
+    damping = DAMPING + 2.0 * INERTIA * (expected_growth(0.1) - growth)
+    slack_belt = {"belt.stretch_damping_time": STRETCH_TIME}
+    found = bd.modes(drive(0.1 / PITCH, damping).with_(slack_belt), count=1, squeal="given").dataset
+    verdict = str(found.squeal.values)
+    if growth < 0.0:
+        assert verdict.startswith("no")
+        return
+    assert verdict.startswith("yes, at 10.")
+    assert str(found.squeal_pulley.values[0]) == "drum"
+    assert float(found.squeal_growth[0]) == pytest.approx(growth, abs=0.01 * (expected_growth(0.1) - own))
+    assert float(found.squeal_frequency[0]) == pytest.approx(np.sqrt(STIFFNESS / INERTIA) / (2.0 * np.pi), rel=2e-3)
+
+
+PULSE = {"kind": "table", "times": [0.0, 0.0005, 0.001, 0.0015, 1.0], "values": [0.0, 0.0, 1.0, 0.0, 0.0]}
+"""A short load, which shakes the belt."""
+
+
+def shaken(loaded: Drive) -> bd.Run:
+    """12 ms after steady running, with steps that resolve squeal of some kHz."""
+    pulse = {"kind": "resistance", "constant": 0.5, "schedule": PULSE}
+    pulleys = [one.replace(load=[*one.load, pulse]) if one.name == "alternator" else one for one in loaded.pulleys]
+    settings = {"start": "steady", "duration": 0.008, "output_interval": 2e-5, "max_step": 1e-5}
+    return bd.simulate(loaded.replace(pulley=pulleys).with_({f"simulation.{key}": of for key, of in settings.items()}))
+
+
+def amplitude(run: bd.Run, start: float, end: float) -> float:
+    """Of the tension in front of the crank at squeal frequencies, N: what a cubic leaves."""
+    part = run.dataset.sel(time=slice(start, end))
+    time, tension = part.time.values, part.span_tension.sel(span="crank-tensioner").values
+    rest = tension - np.polyval(np.polyfit(time - time[0], tension, 3), time - time[0])
+    return float(rest.std())
+
+
+@pytest.mark.slow
+def test_a_run_squeals_as_small_motions_say() -> None:
+    """A wet accessory drive: growth within 8 % from 3 to 4.5 ms, and none below the load from which it squeals."""
+    held = held_at(in_state(bd.example("alternator_drive"), "wet"), None)
+    loud = fastest(bd.steady_state(held))
+    assert loud.squeals
+    run = shaken(held)
+    growth = np.log(amplitude(run, 0.0035, 0.0045) / amplitude(run, 0.0025, 0.0035)) / 1e-3
+    assert growth == pytest.approx(loud.growth, rel=0.08)
+    part = run.dataset.sel(time=slice(0.003, 0.0046))
+    tension = part.span_tension.sel(span="crank-tensioner").values
+    rises = np.diff(np.sign(np.diff(tension)))
+    cycles = np.count_nonzero(rises < 0)
+    assert cycles == pytest.approx(loud.frequency * 1.6e-3, abs=1.0)
+
+    quiet = with_load(held, 0.4)
+    assert not fastest(bd.steady_state(quiet)).growth > 0.0
+    run = shaken(quiet)
+    assert amplitude(run, 0.007, 0.008) < 1.5 * amplitude(run, 0.002, 0.003)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("seed", range(3))
+def test_drawn_masses_on_a_sliding_belt(seed: int) -> None:
+    """Drums drawn at random squeal where the closed form grows by more than the least growth that counts."""
+    draw = np.random.default_rng(seed)
+    velocity, growth = draw.uniform(0.1, 0.8), draw.choice([-1.0, 1.5]) * draw.uniform(0.8, 1.2)
+    damping = DAMPING + 2.0 * INERTIA * (expected_growth(velocity) - growth)
+    found = fastest(
+        bd.steady_state(drive(velocity / PITCH, damping).with_({"belt.stretch_damping_time": STRETCH_TIME}))
+    )
+    counts = growth > LEAST_GROWTH * np.sqrt(STIFFNESS / INERTIA)
+    assert found.squeals == counts
+    if counts:
+        assert (found.pulley, found.growth) == ("drum", pytest.approx(growth, abs=0.05))

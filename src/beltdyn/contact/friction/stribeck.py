@@ -60,13 +60,14 @@ def stribeck(
     return by_normal * normal, by_slip, by_normal, -sign * by_slip * law.creep_ratio * (law.creep_ratio * rim) / creep
 
 
-_KEYS = (
+_KEYS = (  # defaults are those of a wet V-ribbed belt, see `beltdyn.model.friction_state`
     *CREEP_KEYS,
-    Parameter("kinetic_ratio", "", "the kinetic over the static coefficient of friction", example=0.7),
+    Parameter("kinetic_ratio", "", "the kinetic over the static coefficient of friction", default=0.7, example=0.7),
     Parameter(
         "stribeck_velocity",
         "m/s",
         "the slip velocity over which friction falls to its kinetic value by 1/e",
+        default=0.5,
         example=0.5,
     ),
 )

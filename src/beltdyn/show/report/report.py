@@ -214,7 +214,7 @@ def _page(results: Sequence[Result], parts: Parts) -> str:
             compares=len(results) > 1,
             kinds={one.kind for one in results},
             verdict=done(partial(verdict, results), ("open", "No verdict")),
-            lead=done(lambda: "" if len(results) > 1 else headlines(results).removeprefix(f"{names[0]}: "), ""),
+            lead=done(partial(_lead, results, names[0]), ""),
             parts=pages,
             widest=_WIDEST_TABLE,
             numbers=done(partial(compared, results), []),
@@ -231,6 +231,14 @@ def _page(results: Sequence[Result], parts: Parts) -> str:
             script=script() if charts or moving else "",
         )
     )
+
+
+def _lead(results: Sequence[Result], name: str) -> str:
+    """The sentence below the title: the answer of the analysis, or else the operating point; nothing of several."""
+    if len(results) > 1:
+        return ""
+    answer = str(results[0].dataset.attrs.get("answer", ""))
+    return answer or headlines(results).removeprefix(f"{name}: ")
 
 
 def _moving(result: Result, results: int) -> dict[str, Any]:
