@@ -146,12 +146,13 @@ class Squeal(NamedTuple):
 
     def beside(self, dataset: "xr.Dataset") -> "xr.Dataset":
         """A dataset with the answer."""
-        columns = {f"squeal_{name}": [getattr(point, name) for point in self.points] for name in SelfExcited._fields}
-        values: dict[str, ArrayLike] = columns | {
+        values: dict[str, ArrayLike] = {
             "squeal": self.words,
             "squeal_from": np.nan if self.onset is None else self.onset.load,
             "slip_from": self.slips_from,
         }
+        for name in SelfExcited._fields:
+            values[f"squeal_{name}"] = np.array([getattr(point, name) for point in self.points])
         load = {name: (one.dims, values[name], one.attributes) for name, one in COORDINATES.items()}
         made = {name: (one.dims, values[name], one.attributes) for name, one in VARIABLES.items()}
         return dataset.assign_coords(load).assign(made).assign_attrs(answer=f"Squeal: {self.words}")
