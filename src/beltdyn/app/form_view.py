@@ -75,7 +75,7 @@ def _level(one: Field, data: Mapping[str, Any], drive: Drive | None) -> Any:
     """What a profile rises to: the torque on a pulley opposes its rotation."""
     level = _OF_UNITS.get(one.unit, 1.0)
     if one.location[0] == "pulley" and one.location[2] == "torque" and drive is not None:
-        pulley = drive.pulleys[int(one.location[1])]
+        pulley = drive.pulleys[drive.number_of(str(data["pulley"][int(one.location[1])]["name"]))]
         return level if drive.running_sense * pulley.turning * drive.positive_sense < 0 else _OPPOSING
     return level
 

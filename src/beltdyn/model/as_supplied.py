@@ -7,9 +7,11 @@ from typing import Any, Literal
 import numpy as np
 from pydantic import Field, ValidationInfo
 
+from beltdyn.arrays import FloatArray
 from beltdyn.machines.tensioners.rotary import ArmAsSupplied, Sense
 from beltdyn.model.belt import Belt, read_side
 from beltdyn.model.pulley import ON_THE_BELT, Diameter, Pulley
+from beltdyn.model.routing import fits
 from beltdyn.model.toothing import FEWEST_TEETH, LARGEST_PITCH_ERROR, MOST_TEETH
 from beltdyn.parts.messages import listing
 from beltdyn.parts.part import Part
@@ -50,7 +52,40 @@ def as_supplied(data: Any, info: ValidationInfo) -> Any:
         centers = {name: center for _, found in arms if found for name, center in (found,)}
         if centers:
             values["pulley"] = [_with_center(one, centers) for one in values["pulley"]]
+    if isinstance(values.get("pulley"), Sequence) and not any(values.get(key) for key in _OPEN):
+        values["pulley"] = _in_counter_clockwise_order(values["pulley"], values.get("belt"), info)
     return values
+
+
+# Order of pulleys
+
+_OPEN = ("end", "given_ends", "carriage", "unwinder", "nip", "nips")
+"""Keys of drives whose order of pulleys has a beginning, or whose rollers stand beside the belt."""
+
+
+def _in_counter_clockwise_order(pulleys: Sequence[Any], belt: Any, info: ValidationInfo) -> Sequence[Any]:
+    """The pulleys of a closed belt, from the first one on the other way round if they are listed clockwise."""
+    try:
+        centers = np.array([_value(one, "center") for one in pulleys], dtype=float)
+    except (TypeError, ValueError):  # in other units, or told where the pulley is read
+        centers = np.zeros((0, 2))
+    if len(centers) and (centers.ndim != 2 or _twice_the_area(centers) >= 0.0):
+        return pulleys
+    try:
+        made = belt if isinstance(belt, Belt) else Belt.model_validate(belt, context=info.context)
+        listed = [Pulley.model_validate(one, context=info.context) for one in pulleys]
+        clockwise = not made.crossed and _twice_the_area(np.array([one.center for one in listed])) < 0.0
+        if clockwise and not fits(listed, made) and fits([*listed[:1], *listed[:0:-1]], made):
+            return [*pulleys[:1], *pulleys[:0:-1]]
+    except ValueError:  # told where the belt and the pulley are read
+        pass
+    return pulleys
+
+
+def _twice_the_area(points: FloatArray) -> float:
+    """Twice the area of a polygon, positive where its corners, shape (n, 2), are listed counter-clockwise."""
+    x, y = points.T
+    return float(x @ np.roll(y, -1) - y @ np.roll(x, -1))
 
 
 # Senses of rotation

@@ -75,7 +75,9 @@ class Drive(Part):
     author: Title | None = Field(None, description="the author of the calculation, for reports")
     belt: Belt = Field(description="the group [belt]")
     pulleys: tuple[Pulley, ...] = Field(
-        alias="pulley", max_length=1000, description="the groups [[pulley]], in counter-clockwise belt order"
+        alias="pulley",
+        max_length=1000,
+        description="the groups [[pulley]], in belt order, either way round",
     )
     contact: Contact = Field(default_factory=Contact, description="the group [contact]")
     tensioners: tuple[AnyTensioner, ...] = Field((), alias="tensioner", description="the groups [[tensioner]]")

@@ -271,9 +271,9 @@ def _remedy(pulleys: Sequence[Pulley], belt: Belt, ends: Sequence[PathEnd]) -> s
     wishes = [
         wish
         for changes in (_other_lists(tried), _fewer(tried))
-        if (wish := next((wish for wish, changed in changes if _fits(changed, belt, ends)), None))
+        if (wish := next((wish for wish, changed in changes if fits(changed, belt, ends)), None))
     ]
-    if belt.teeth is None and _fits(pulleys, belt.replace(crossed=True), ends):
+    if belt.teeth is None and fits(pulleys, belt.replace(crossed=True), ends):
         wishes.append("set belt.crossed = true if the spans are intended to cross")
     text = ", or ".join(wishes) or "check the order and the sides of the pulleys"
     return text[0].upper() + text[1:]
@@ -304,7 +304,7 @@ def _fewer(pulleys: Sequence[Pulley]) -> Iterator[tuple[str, list[Pulley]]]:
         yield wish, [*pulleys[:index], *pulleys[index + 1 :]]
 
 
-def _fits(pulleys: Sequence[Pulley], belt: Belt, ends: Sequence[PathEnd]) -> bool:
+def fits(pulleys: Sequence[Pulley], belt: Belt, ends: Sequence[PathEnd] = ()) -> bool:
     """Tell whether a belt can run around pulleys that do not overlap."""
     if len(pulleys) < (1 if ends else 2):
         return False

@@ -147,3 +147,25 @@ def test_a_belt_without_length_sets_the_tensioner_to_its_nominal_position() -> N
     assert f"belt of {drive.belt_length:.5g} m" in str(drive)
     stronger = drive.with_({"tensioner[tensioner].preload": "13 N m"})
     assert prepare(stronger).installed_tension == pytest.approx(tension * 13.0 / 11.8)
+
+
+@pytest.mark.parametrize("name", ["accessory_drive", "alternator_drive", "washing_machine", "timing_drive"])
+def test_a_list_in_clockwise_order_is_the_same_drive(name: str) -> None:
+    """Pulleys on both sides of the belt, arms and teeth; the first pulley stays the first.
+
+    A list of which both orders fit, as of `tensioner_stop` with its idler near the middle, is taken as it is.
+    """
+    drive = example(name)
+    first, *others = drive.data["pulley"]
+    turned = Drive.model_validate(drive.data | {"pulley": [first, *others[::-1]]})
+    assert [one.name for one in turned.pulleys] == [one.name for one in drive.pulleys]
+    assert turned.path.length == pytest.approx(drive.path.length, rel=1e-12)
+    assert dumps(turned) == dumps(drive)
+
+
+def test_a_list_that_fits_neither_way_round_is_refused() -> None:
+    centers = [(0.0, 0.0), (1.0, 0.0), (0.0, 1.0), (1.0, 1.0)]
+    pulleys = [{"name": f"p{k}", "center": center, "radius": 0.1, "inertia": 0.01} for k, center in enumerate(centers)]
+    for order in (pulleys, pulleys[::-1]):
+        with pytest.raises(ModelError, match="List them as"):
+            Drive(belt={"profile": "PK", "ribs": 2, "installed_tension": 400.0}, pulley=order)
