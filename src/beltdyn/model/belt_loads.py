@@ -29,6 +29,8 @@ class RequiredTension(NamedTuple):
     """Largest of a pulley with the service factor, N."""
     by_formula: dict[str, float]
     """By each maker's formula, ascending, N."""
+    load: str = ""
+    """What pulls, where it is not a power, in words."""
 
     @property
     def tension(self) -> float:

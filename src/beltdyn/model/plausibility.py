@@ -56,6 +56,7 @@ def judge_plausibility(drive: Drive, installation: Installation) -> Iterator[Fin
     yield from _stretched_teeth(drive, installation)
     yield from _slack_teeth(drive, installation)
     yield from _loose_belt(drive, installation)
+    yield from _loose_axis(drive, installation)
     yield from _narrow_teeth(drive, installation)
     yield from _sliding_nips(drive)
     yield from judge_alignment(drive, installation.path)
@@ -120,8 +121,13 @@ def _flipped(drive: Drive, number: int) -> Drive | None:
 
 
 def with_pitch_diameters(drive: Drive) -> Drive | None:
-    """The drive with its diameters as those of the tension line; None if it is the same, or impossible."""
-    offsets = [drive.belt.offset(one.side) for one in drive.pulleys]
+    """The drive with its diameters as those of the tension line; None if it is the same, impossible or not meant.
+
+    A pulley whose kind of diameter the file names keeps it; with one of them, those on the back have surfaces.
+    """
+    named = any(one.diameter_kind is not None for one in drive.pulleys)
+    kept = [one.diameter_kind is not None or (named and one.side == "outside") for one in drive.pulleys]
+    offsets = [0.0 if fixed else drive.belt.offset(one.side) for one, fixed in zip(drive.pulleys, kept, strict=True)]
     if not any(offsets) or drive.belt.teeth is not None:
         return None
     try:
@@ -275,6 +281,18 @@ def _slack_teeth(drive: Drive, installation: Installation) -> Iterator[Finding]:
         f"the tension at rest is {installation.tension:.4g} N, but the loads pull by {pull:.4g} N.",
         "The slack side loses its tension, teeth are no longer pressed into their grooves, and the belt may jump.",
         f"Raise the tension to at least {beyond(installation.tension, least, 4):.4g} N, {REST_SHARE:.0%} of the pull.",
+    )
+
+
+def _loose_axis(drive: Drive, installation: Installation) -> Iterator[Finding]:
+    """Axes whose moves take the tension of a span."""
+    needed = required_tension(drive, installation) if drive.carriage is not None else None
+    if needed is None or not installation.tension < (1.0 - NOTABLE) * needed.tension:
+        return
+    yield Finding(
+        f"the tension at rest is {installation.tension:.4g} N, but the moves pull by {needed.load}.",
+        "A span becomes slack at an end of the stroke: the carriage is late, and teeth may jump.",
+        f"Raise the tension to at least {beyond(installation.tension, needed.tension, 3):.3g} N, or accelerate less.",
     )
 
 

@@ -123,6 +123,25 @@ def test_what_other_diameters_would_mean() -> None:
     assert other_diameters(two_pulleys({"profile": "SPZ", "ribs": 2, "installed_tension": 300.0})) == ""
 
 
+def test_diameters_whose_kind_is_named_bring_no_hint() -> None:
+    """Flat idlers on the back among them; a pulley without a kind keeps the hint, for itself alone."""
+    kinds: list[dict[str, str]] = [{"diameter_kind": "pitch"}] * 2
+    third = {"name": "idler", "center": ["200 mm", "20 mm"], "diameter": "60 mm", "side": "outside", "inertia": 1e-4}
+    hints = []
+    for count in (2, 1, 0):
+        named = [*kinds[:count], {}, {}][:2]
+        pulleys = [
+            {"name": "driver", "center": [0, 0], "diameter": "120 mm", "speed": 100.0} | named[0],
+            {"name": "driven", "center": ["400 mm", 0], "diameter": "120 mm", "inertia": 0.01} | named[1],
+            third,
+        ]
+        belt = {"profile": "PK", "ribs": 4, "installed_tension": "300 N"}
+        hints.append(other_diameters(Drive(belt=belt, pulley=[pulleys[0], pulleys[2], pulleys[1]])))
+    assert hints[0] == ""
+    assert all(hints[1:])
+    assert hints[1] != hints[2]
+
+
 def test_a_pulley_below_the_smallest_of_the_belt() -> None:
     belt = {"profile": "PJ", "ribs": 5, "installed_tension": 200.0}
     assert told(two_pulleys(belt, "20 mm")) == []
