@@ -29,7 +29,8 @@ from beltdyn.results import Result, derived, export, key_numbers, steady_compari
 from beltdyn.results.export import FORMATS
 from beltdyn.show.plot.figures import FIGURES, Choice, chosen_by_default
 from beltdyn.show.plot.gaps import has_values
-from beltdyn.show.sheet import as_text, sheet
+from beltdyn.show.sheet import sheet
+from beltdyn.show.tables import as_text
 
 Consumer = Callable[[Result, Path], str]
 """``consumer(result, folder) -> fault``: uses a result, with a folder for files; a fault in words, or nothing."""

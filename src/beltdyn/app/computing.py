@@ -16,7 +16,8 @@ from beltdyn.errors import BeltdynError, TimeLimitError
 from beltdyn.kernel import observe_compilation
 from beltdyn.model import Drive, loads
 from beltdyn.results import Run
-from beltdyn.show.sheet import Facts, Table, sheet
+from beltdyn.show.sheet import sheet
+from beltdyn.show.tables import Facts, Table
 from beltdyn.solvers.time_limit import time_limit
 
 # Tell the page when Numba compiles kernels

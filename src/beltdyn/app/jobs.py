@@ -15,7 +15,7 @@ from beltdyn.app.findings import Findings, findings_of
 from beltdyn.designs.processes import SPAWN, heeding, new_event, start_process, start_worker, working
 from beltdyn.errors import Parts, cause_of
 from beltdyn.model import loads
-from beltdyn.show.sheet import Facts, Table
+from beltdyn.show.tables import Facts, Table
 
 if TYPE_CHECKING:
     from beltdyn.app.watching import Glimpse

@@ -18,7 +18,7 @@ from beltdyn.errors import BeltdynError
 from beltdyn.model import estimate_at_rest, prepare
 from beltdyn.parts.text_file import shorten
 from beltdyn.show.rest_sheet import limitations, rest_sheet
-from beltdyn.show.sheet import Facts, Table
+from beltdyn.show.tables import Facts, Table
 
 _WIDTH, _HEIGHT = 400.0, 165.0
 """Size of the chart of tensions, in its own units."""

@@ -17,7 +17,7 @@ from beltdyn.parts.quantity import RPM
 from beltdyn.results import RECORDED, Run, open_run
 from beltdyn.show.plot.style import tension_colors
 from beltdyn.show.report.replay import along_belt
-from beltdyn.show.sheet import Table
+from beltdyn.show.tables import Table
 
 _REFRESH = 0.4
 """Least interval of snapshots, s."""

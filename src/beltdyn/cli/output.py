@@ -21,7 +21,7 @@ from beltdyn.signals import exit_code
 if TYPE_CHECKING:
     from beltdyn.model import Drive
     from beltdyn.results import Result, Run
-    from beltdyn.show.sheet import Facts, Table
+    from beltdyn.show.tables import Facts, Table
 
 
 # A result on the screen: its sheet, and its warnings
@@ -32,7 +32,8 @@ def show_result(result: "Result") -> tuple[BeltdynError, ...]:
 
     Returns the errors of parts that have a fault.
     """
-    from beltdyn.show.sheet import Table, sheet
+    from beltdyn.show.sheet import sheet
+    from beltdyn.show.tables import Table
 
     title, parts, errors = sheet(result)
     if title:
@@ -48,7 +49,7 @@ def show_result(result: "Result") -> tuple[BeltdynError, ...]:
 
 def show_parts(parts: "Sequence[Table | Facts]") -> None:
     """Write the parts of a sheet, with a line between."""
-    from beltdyn.show.sheet import Table
+    from beltdyn.show.tables import Table
 
     for number, part in enumerate(parts):
         if number:

@@ -556,8 +556,8 @@ class _DriveSheet:
             "state_take_up": (Variable(_STATE, "m/rad" if turns else "1", "Take-up, path per travel"), rates),
         }
         if turns:
-            arms = np.array([place - np.array(one.anchor) for place, _ in places])
-            self.variables["state_arm_angle"] = (Variable(_STATE, "rad", "Arm angle"), np.arctan2(*arms.T[::-1]))
+            angles = np.radians(carrier.shown(positions))
+            self.variables["state_arm_angle"] = Variable(_STATE, "rad", "Arm angle, from the x axis"), angles
         for name, (_, position, tension) in rows.items():
             if np.isnan(position):
                 self._notes.append(

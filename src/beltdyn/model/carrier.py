@@ -4,6 +4,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 from beltdyn.arrays import FloatArray
 from beltdyn.kernel import interpreted
@@ -36,6 +37,27 @@ class Carrier:
         """Center of the pulley at a position q (m, rad), and its derivative with respect to q."""
         center = interpreted(type(self.tensioner).center_at)(self.constants, position)
         return np.array([center.x, center.y]), np.array([center.dx, center.dy])
+
+    @property
+    def shown_as(self) -> tuple[str, str]:
+        """What pages call its place, and their unit."""
+        return ("arm angle", "°") if self.tensioner.anchor is not None else ("position", "mm")
+
+    def shown(self, positions: ArrayLike) -> FloatArray:
+        """Places as pages show positions (m, rad): angles of the arm, counter-clockwise from the x axis, °, or mm."""
+        anchor = self.tensioner.anchor
+        if anchor is None:
+            return np.asarray(1e3 * np.asarray(positions, dtype=float))
+        center, rate = self.place(0.0)
+        arm = center - np.array(anchor)
+        sense = np.sign(arm[0] * rate[1] - arm[1] * rate[0])
+        return np.asarray(np.degrees(np.arctan2(arm[1], arm[0]) + sense * np.asarray(positions, dtype=float)))
+
+    def written(self, position: float) -> str:
+        """A place with its unit: the angle of an arm, or the position of a slide."""
+        if self.tensioner.anchor is None:
+            return self.tensioner.written(position)
+        return f"{float(self.shown(position)):.4g}°"
 
     def force(self, position: float) -> float:
         """Force of spring and stops at a position (m, rad): N, or N m for an arm."""

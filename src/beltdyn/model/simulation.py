@@ -19,7 +19,7 @@ from beltdyn.model.toothing import DISCRETE
 from beltdyn.parts.kind_fields import NameOf
 from beltdyn.parts.messages import apart
 from beltdyn.parts.part import Part
-from beltdyn.parts.quantity import Force, Ratio, Time
+from beltdyn.parts.quantity import Force, Length, Ratio, Time
 
 # The state of an earlier run as initial state: its result file, and an instant
 
@@ -172,6 +172,9 @@ class Limits(Part):
     )
     least_jump_margin: Ratio | None = Field(
         None, gt=0, description="the least margin of a tooth to a jump: what presses it on over what pushes it off"
+    )
+    largest_carriage_error: Length | None = Field(
+        None, gt=0, description="the largest error of position of the carriage of an axis at any time, in m"
     )
     largest_utilization: Ratio | None = Field(
         None, gt=0, description="the largest utilization of a pulley: design power over the rated power of the belt"

@@ -59,7 +59,8 @@ def _of_both(units: str, meaning: str) -> _Column:
 
 COLUMNS = {
     "belt_length": _of_both("m", "Belt length"),
-    "position": _Column(("m", "Position, from the given center"), ("rad", "Arm angle, from the given center")),
+    "position": _Column(("m", "Position, from the given center"), ("rad", "Travel, from the given center")),
+    "arm_angle": _of_both("rad", "Arm angle, counter-clockwise from the x axis"),
     "from_free": _Column(("m", "Deflection, from the free spring"), ("rad", "Deflection, from the free arm")),
     "spring_load": _Column(("N", "Spring force"), ("N m", "Spring torque")),
     "leverage": _Column(("1", "Take-up rate, path per travel"), ("m", "Take-up rate, path per rad")),
@@ -270,6 +271,9 @@ class _Sheet:
     def result(self, given: str) -> Result:
         """The sheet; the text is that of the drive as it is given."""
         states = list(self._rows)
+        if self._tensioner.anchor is not None:
+            for row in self._rows.values():
+                row["arm_angle"] = float(np.radians(self._carrier.shown(row.get("position", np.nan))))
         known = {name for row in self._rows.values() for name in row if np.isfinite(row[name])}
         variables: Axes = {
             name: (column.variable(self._tensioner.turns), [row.get(name, np.nan) for row in self._rows.values()])

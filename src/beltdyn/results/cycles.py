@@ -193,6 +193,17 @@ def mean_window(recorded: Recorded, prepared: Prepared) -> Window:
     return Window(time, cycles, shortest.turns * times)
 
 
+_STANDSTILL = 0.02
+"""Largest speed in the averaging window, over that of the run, at which a drive stands: what rings after a move."""
+
+
+def ends_at_standstill(recorded: Recorded, prepared: Prepared) -> bool:
+    """Whether all pulleys stand in the averaging window of a run in which they moved."""
+    speeds = np.abs(np.asarray(recorded["pulley_speed"], dtype=float)).max(axis=1)
+    first = mean_window(recorded, prepared).first
+    return len(speeds) > 1 and bool(speeds[first:].max() < _STANDSTILL * speeds.max())
+
+
 def turn_window(recorded: Recorded, prepared: Prepared) -> Window:
     """Give the shortest window of whole cycles, a turn of the belt if it fits, for running means."""
     time = np.asarray(recorded["time"], dtype=float)

@@ -88,6 +88,15 @@ def _wave(time: FloatArray, values: FloatArray, frequency: float) -> complex:
     return complex(2.0 * np.sum(window * (values - trend) * np.exp(-2j * pi * frequency * time)) / np.sum(window))
 
 
+def real_decay(
+    vibration: Decay, time: FloatArray, step_size: FloatArray, spectral_radius: float
+) -> tuple[Decay, float]:
+    """The vibration as `without_integrator`, and the step (s) that counts, by times and steps of outputs from it on."""
+    during = time <= vibration.until
+    step = float(np.mean(step_size[during] ** 3) ** (1.0 / 3.0))
+    return without_integrator(spectral_radius, vibration, step), step
+
+
 def without_integrator(spectral_radius: float, vibration: Decay, step: float) -> Decay:
     """The vibration that generalized-alpha, with steps of a length (s), shows as another one.
 

@@ -87,6 +87,7 @@ _JUDGED_BY = {
     "largest_hub_load": "`beltdyn sheet`",
     "largest_slip": "`beltdyn sheet`, of a loaded drive",
     "least_slip_safety": "`beltdyn sheet`, of a loaded drive",
+    "largest_carriage_error": "`beltdyn simulate`, of an axis with [carriage]",
 }
 """Key of a limit -> the command that always judges it, and of what."""
 
@@ -100,18 +101,20 @@ _UNBOUNDED = ("largest_utilization",)
 """Keys of numbers that are infinite where a limit is exceeded: outside the rating."""
 Found = tuple[str, float, str, str]
 """Key, value, unit, and where."""
-_HOUR = 3600.0
+_SHOWN = {"h": 1.0 / 3600.0, "µm": 1e6}
+"""Unit of a key number that is not SI -> its factor."""
 
 
 def _limit(limits: Limits, key: str, _value: float, unit: str, _where: str) -> float | None:
     """A limit of the drive file in the unit of its key number."""
     limit: float | None = getattr(limits, key)
-    return limit / _HOUR if limit is not None and unit == "h" else limit
+    return None if limit is None else limit * _SHOWN.get(unit, 1.0)
 
 
 def _of_run(run: Result) -> Iterator[Found]:
     assert isinstance(run, Run)
     run.require_output()
+    carriage = run.drive.carriage
     with run.recorded() as recorded:
         means = pulley_means(recorded, run.prepared)
         hub_load = np.linalg.norm(np.asarray(recorded["hub_force"]), axis=2)
@@ -120,13 +123,18 @@ def _of_run(run: Result) -> Iterator[Found]:
         lasts = runs_steadily(recorded) or len(recorded["time"]) == 1
         loads = list(loads_over_time(recorded, run.prepared))
         time = [""] * len(hub_load) if lasts else [f"at {one:.4g} s" for one in np.asarray(recorded["time"])]
-    over = "" if lasts else "mean at the end"
-    slips = np.array([[one.slip for one in means]])
-    yield _worst("largest_slip", _of_turning(run, slips), "%", [over], pulleys)
+        errors = _SHOWN["µm"] * np.abs(np.asarray(recorded["carriage_error"])) if carriage else None
+    over, slips = "" if lasts else "mean at the end", run.drive.belt.teeth is None
+    if carriage is not None and errors is not None:
+        yield _worst("largest_carriage_error", errors, "µm", time, [carriage.name])
+    if slips:
+        slip = np.array([[one.slip for one in means]])
+        yield _worst("largest_slip", _of_turning(run, slip), "%", [over], pulleys)
     yield _worst("largest_hub_load", hub_load, "N", time, pulleys)
     yield _worst("largest_tension", largest, "N", time, spans)
     yield _worst("least_tension", least, "N", time, spans)
-    yield _worst("least_slip_safety", np.array([[one.least_safety for one in means]]), "1", [over], pulleys)
+    if slips:
+        yield _worst("least_slip_safety", np.array([[one.least_safety for one in means]]), "1", [over], pulleys)
     for key, field in (("largest_tooth_load", "largest"), ("least_jump_margin", "jump_margin")) if loads else ():
         when = [""] * len(loads) if lasts else [f"at {instant:.4g} s" for instant, _ in loads]
         by_name = [{one.name: getattr(one, field) for one in teeth} for _, teeth in loads]
@@ -141,6 +149,8 @@ def _of_turning(result: Result, slips: FloatArray) -> FloatArray:
     return np.where(result.drive.guides, np.nan, np.abs(slips))
 
 
+_OF_SLIP = ("largest_slip", "least_slip_safety")
+"""Keys of numbers that belts without teeth have."""
 _OF_TABLES = {
     "largest_slip": ("pulley_slip", "pulley", "%"),
     "largest_hub_load": ("hub_load", "pulley", "N"),
@@ -160,6 +170,8 @@ def _of_table(
     dataset = result.dataset
     places = _places(dataset)
     for key, (name, of, unit) in variables.items():
+        if key in _OF_SLIP and result.drive.belt.teeth is not None:
+            continue
         if {name, SUBSTITUTES.get(name)} & set(dataset):
             variable = least_safeties(dataset) if name in SLIP_SAFETIES else variable_of(dataset, name)
             values = variable.transpose(..., of).values.reshape(len(places), -1)

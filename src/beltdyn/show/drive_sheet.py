@@ -7,13 +7,15 @@ import numpy as np
 
 from beltdyn.arrays import FloatArray
 from beltdyn.designs.drive_sheet import REST_TENSIONS
+from beltdyn.model.carrier import Carrier
 from beltdyn.parts.messages import aligned, listing
 from beltdyn.parts.quantity import RPM
 from beltdyn.results import Result
 from beltdyn.results.schema import least_safeties, variable_of
 from beltdyn.show.line_sheet import line_sheet
 from beltdyn.show.parts_list import parts_list
-from beltdyn.show.sheet import TENSION_HEADINGS, Facts, Sheet, Table, safeties, safety_text, tension_columns
+from beltdyn.show.sheet import TENSION_HEADINGS, safeties, safety_text, tension_columns
+from beltdyn.show.tables import Facts, Sheet, Table
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -36,12 +38,13 @@ def drive_sheet(result: Result) -> Sheet:
     dataset = result.dataset
     if "tension_before" in dataset:
         return line_sheet(result)
+    carriers = result.prepared.carriers
     parts: list[Table | Facts] = [*parts_list(result.prepared), Facts(tuple(_facts(dataset))), _pulleys(dataset)]
     if "state" in dataset.dims:
         parts.append(_states(dataset))
     if "standard" in dataset.dims:
-        parts.append(_belts(dataset))
-    parts += [_points(dataset), *_span_tensions(dataset), *_hub_loads(dataset), _spans(dataset)]
+        parts.append(_belts(dataset, carriers))
+    parts += [_points(dataset, carriers), *_span_tensions(dataset), *_hub_loads(dataset), _spans(dataset)]
     if "mode" in dataset.dims:
         parts.append(_modes(dataset))
     return Sheet(str(dataset.attrs["title"]), tuple(parts))
@@ -171,7 +174,7 @@ def _states(dataset: "xr.Dataset") -> Table:
     return Table(f"Tensioner of {dataset['tensioner'].values[0]}", headings, tuple(zip(*columns, strict=True)))
 
 
-def _points(dataset: "xr.Dataset") -> Table:
+def _points(dataset: "xr.Dataset", carriers: Sequence[Carrier]) -> Table:
     """A line for each operating point, with the worst of pulleys and spans."""
     whole = float(dataset["duration"].sum())
     driver = int(np.argmin(np.abs(dataset["speed_ratio"].values - 1.0)))
@@ -194,10 +197,8 @@ def _points(dataset: "xr.Dataset") -> Table:
         *("peak hub\nload N", "slip\nsafety", "least, all\ncases"),
     )
     if "tensioner_position" in dataset:
-        one = dataset["tensioner_position"]
-        turns = one.attrs["units"] == "rad"
-        columns.append(aligned(((_DEGREES if turns else 1e3) * one.values[:, 0]).tolist(), 3))
-        headings = (*headings, f"tensioner\n{'°' if turns else 'mm'}")
+        columns.append(aligned(carriers[0].shown(dataset["tensioner_position"].values[:, 0]).tolist(), 4))
+        headings = (*headings, _place(carriers[0]))
     if "utilization" in dataset:
         used = np.fmax.reduce(dataset["utilization"].values, axis=1)
         shares = [f"{_whole(100.0 * one)}%".replace("–%", "–") for one in used]
@@ -254,7 +255,7 @@ def _modes(dataset: "xr.Dataset") -> Table:
     return Table(title, ("", "frequency\nHz", "damping\nratio", "moving"), tuple(zip(*columns, strict=True)))
 
 
-def _belts(dataset: "xr.Dataset") -> Table:
+def _belts(dataset: "xr.Dataset", carriers: Sequence[Carrier]) -> Table:
     """Belts of standard length."""
     columns: list[Sequence[str]] = [
         [f"{1e3 * one:.5g}" for one in dataset["standard"].values],
@@ -263,9 +264,8 @@ def _belts(dataset: "xr.Dataset") -> Table:
     ]
     headings: tuple[str, ...] = ("nominal length\nmm", "longer by\nmm", "tension\nN")
     if "standard_position" in dataset:
-        turns = dataset["standard_position"].attrs["units"] == "rad"
-        columns.append(_or_dash((_DEGREES if turns else 1e3) * dataset["standard_position"].values, 3))
-        headings = (*headings, f"tensioner\n{'°' if turns else 'mm'}")
+        columns.append(_or_dash(carriers[0].shown(dataset["standard_position"].values)))
+        headings = (*headings, _place(carriers[0]))
     if "standard_center_distance" in dataset:
         columns.append(_or_dash(1e3 * dataset["standard_center_distance"].values, 5))
         headings = (*headings, "center distance for the\nsame tension mm")
@@ -273,6 +273,11 @@ def _belts(dataset: "xr.Dataset") -> Table:
         columns.append(_or_dash(1e3 * dataset["standard_take_up"].values, 3))
         headings = (*headings, "take-up for the\nsame tension mm")
     return Table("Belts of standard length", headings, tuple(zip(*columns, strict=True)))
+
+
+def _place(carrier: Carrier) -> str:
+    """Heading of places of a tensioner."""
+    return "\n".join(carrier.shown_as)
 
 
 def _whole(value: float) -> str:

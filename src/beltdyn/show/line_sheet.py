@@ -12,7 +12,8 @@ from beltdyn.parts.quantity import RPM
 from beltdyn.results import Result
 from beltdyn.results.schema import least_safeties, variable_of
 from beltdyn.show.parts_list import parts_list
-from beltdyn.show.sheet import Facts, Sheet, Table, power_unit, safeties
+from beltdyn.show.sheet import power_unit, safeties
+from beltdyn.show.tables import Facts, Sheet, Table
 
 if TYPE_CHECKING:
     import xarray as xr

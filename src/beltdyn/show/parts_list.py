@@ -5,7 +5,7 @@ from math import isclose
 
 from beltdyn.model import Entry, Prepared, Pulley
 from beltdyn.parts.messages import aligned, listing
-from beltdyn.show.sheet import Facts, Pieces, Table
+from beltdyn.show.tables import Facts, Pieces, Table
 
 _SAME_LENGTH = 5e-4
 """Difference of a length from a standard one that rounding on a label explains, m."""

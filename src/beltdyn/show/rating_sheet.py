@@ -10,7 +10,7 @@ from beltdyn.results import Result
 from beltdyn.results.provenance import mesh_facts
 from beltdyn.results.schema import shown_unit
 from beltdyn.show.parts_list import parts_list
-from beltdyn.show.sheet import Facts, Sheet, Table
+from beltdyn.show.tables import Facts, Sheet, Table
 
 if TYPE_CHECKING:
     import xarray as xr

@@ -35,7 +35,8 @@ from beltdyn.model.toothing import RatedTeeth
 from beltdyn.parts.messages import Finding, aligned, listing
 from beltdyn.results.layout import describe_size
 from beltdyn.show.notebook import picture, templates
-from beltdyn.show.sheet import TENSION_HEADINGS, Facts, Sheet, Table, as_text, tension_columns
+from beltdyn.show.sheet import TENSION_HEADINGS, tension_columns
+from beltdyn.show.tables import Facts, Sheet, Table, as_text
 from beltdyn.solvers.run_progress import Report
 from beltdyn.solvers.time_limit import time_limit
 from beltdyn.state.installation import bring_to_rest, is_compiled
@@ -184,6 +185,8 @@ def _least_facts(needed: RequiredTension | None) -> list[tuple[str, str]]:
     if needed is None:
         return []
     by_formula = listing([f"{tension:.4g} N ({name})" for name, tension in needed.by_formula.items()])
+    if needed.load:
+        return [("recommended tension", f"at least {by_formula}, for {needed.load}")]
     return [("least tension", f"{by_formula}, for the pull of {needed.pull:.4g} N with the service factor")]
 
 
@@ -456,16 +459,16 @@ def _spans(drive: Drive, installation: Installation) -> list[tuple[str, ...]]:
 def _tensioners(drive: Drive, installation: Installation) -> list[tuple[str, ...]]:
     rows = list[tuple[str, ...]]()
     others = _others(drive, installation)
-    for tensioner, position, other in zip(
-        drive.moving_tensioners, installation.tensioner_positions.tolist(), others, strict=True
-    ):
+    carriers = prepare(drive).carriers
+    for carrier, position, other in zip(carriers, installation.tensioner_positions.tolist(), others, strict=True):
+        tensioner = carrier.tensioner
         unit = "N m" if tensioner.turns else "N"
         rows.append(
             (
                 tensioner.pulley,
-                tensioner.written(position),
+                f"{carrier.shown_as[0]} {carrier.written(position)}",
                 f"{tensioner.preload - tensioner.rate * position:.4g} {unit}",
-                " to ".join(tensioner.written(stop) for stop in tensioner.stops or ()),
+                " to ".join(carrier.written(stop) for stop in tensioner.stops or ()),
                 other or "none",
             )
         )
@@ -495,9 +498,9 @@ def _others(drive: Drive, installation: Installation) -> list[str]:
     """Other equilibrium positions, one text for each spring-loaded tensioner, empty if there are none."""
     return [
         ", ".join(
-            f"{tensioner.written(balance.position)} ({'stable' if balance.stable else 'unstable'})"
+            f"{carrier.written(balance.position)} ({'stable' if balance.stable else 'unstable'})"
             for balance in balances
             if not balance.here
         )
-        for tensioner, balances in zip(drive.moving_tensioners, tensioner_balances(drive, installation), strict=True)
+        for carrier, balances in zip(prepare(drive).carriers, tensioner_balances(drive, installation), strict=True)
     ]

@@ -5,126 +5,30 @@ import re
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from functools import cache, partial
 from importlib import import_module
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import ArrayLike
 
 from beltdyn.analyses import STUDY
 from beltdyn.arrays import BoolArray, FloatArray
-from beltdyn.errors import BeltdynError, classified
 from beltdyn.parts.messages import aligned
 from beltdyn.parts.quantity import RPM, SHOWN_UNITS
+from beltdyn.results.cycles import ends_at_standstill
+from beltdyn.results.incidents import Jump, jumps_in
 from beltdyn.results.means import PulleySummary
 from beltdyn.results.provenance import Resolution, mesh_facts
 from beltdyn.results.result import Result
 from beltdyn.results.run import Run
 from beltdyn.results.schema import VARIOUS, attribute, in_words, runs_steadily, shown_unit
 from beltdyn.results.summary import FAILURE, Compared, Summary, steady_comparison, summarize
-from beltdyn.results.tooth_loads import extreme_loads
+from beltdyn.results.tooth_loads import ToothLoads, extreme_loads
+from beltdyn.show.axis_sheet import carriage_table, peak_tables
+from beltdyn.show.tables import Facts, Pieces, Sheet, Table, sheet_of
 from beltdyn.show.verdict import limit_rows
 
 if TYPE_CHECKING:
     import xarray as xr
-
-# Parts of a sheet
-
-_GAP = 2
-"""Characters between two columns."""
-_NUMBER = re.compile(r"[<>]?\s*[-+−]?[\d.]|[–-]?$|nan|-?inf")
-
-
-class Table(NamedTuple):
-    """A table whose first column holds names."""
-
-    title: str
-    """What stands above it, or nothing."""
-    headings: tuple[str, ...]
-    """Name and unit of each column, in two lines where a column is narrow."""
-    rows: tuple[tuple[str, ...], ...]
-    """Its rows."""
-
-    def has_words(self, column: int) -> bool:
-        """Whether a column holds words, and not numbers alone."""
-        return any(_NUMBER.match(row[column]) is None for row in self.rows)
-
-    @property
-    def column_widths(self) -> list[int]:
-        """Characters of the widest cell or line of the heading of each column, with the gap to the next one."""
-        lines = (heading.splitlines() for heading in self.headings)
-        cells = zip(*self.rows, strict=True) if self.rows else ((),) * len(self.headings)
-        return [_GAP + max(map(len, (*one, *column)), default=0) for one, column in zip(lines, cells, strict=True)]
-
-    def blocks(self, characters: int) -> "Iterator[Table]":
-        """The table in blocks of columns that are at most so many characters wide, each with the names in front."""
-        widths, first = self.column_widths, 1
-        while first < len(widths):
-            room, last = characters - widths[0] - widths[first], first + 1
-            while last < len(widths) and widths[last] <= room:
-                room, last = room - widths[last], last + 1
-            whole = slice(first, last)
-            rows = tuple((row[0], *row[whole]) for row in self.rows)
-            title = self.title if first == 1 else f"{self.title}, continued".lstrip(", ")
-            yield Table(title, (self.headings[0], *self.headings[whole]), rows)
-            first = last
-
-
-class Facts(NamedTuple):
-    """Names and their values."""
-
-    facts: tuple[tuple[str, str], ...]
-    """Such as ``("efficiency", "96.04%")``."""
-    title: str = ""
-    """What stands above them, or nothing."""
-
-
-class Sheet(NamedTuple):
-    """The tables and facts of a result."""
-
-    title: str
-    """The name of the drive, or what the result is; may be empty."""
-    parts: tuple[Table | Facts, ...]
-    """In the order in which they are read."""
-    errors: tuple[BeltdynError, ...] = ()
-    """Of parts that have a fault, each of which stands among the facts, too."""
-
-
-Pieces = tuple[Table | Facts, ...]
-
-
-def sheet_of(title: str, pieces: Iterable[Callable[[], Pieces]], source: str) -> Sheet:
-    """A sheet of pieces; in place of one that has a fault stands what repeats it."""
-    made, errors = list[Table | Facts](), list[BeltdynError]()
-    for piece in pieces:
-        try:
-            made += piece()
-        except Exception as error:
-            errors.append(classified(error, f"from beltdyn.show.sheet import sheet; sheet({source})"))
-            made.append(Facts((("not shown", str(errors[-1])),)))
-    return Sheet(title, tuple(made), tuple(errors))
-
-
-def as_text(sheet: Sheet) -> str:
-    """A sheet as plain text."""
-    parts = ([sheet.title] if sheet.title else []) + ["\n".join(_lines(part)) for part in sheet.parts]
-    return "\n\n".join(parts)
-
-
-def _lines(part: Table | Facts) -> list[str]:
-    """The lines of a table, names to the left and numbers to the right, or of facts."""
-    title = [part.title] if part.title else []
-    if isinstance(part, Facts):
-        width = max((len(name) for name, _ in part.facts), default=0)
-        return title + [f"{name:{width}}  {fact}" for name, fact in part.facts]
-    headings = [heading.split("\n") for heading in part.headings]
-    deep = max(map(len, headings))
-    rows = [*zip(*([""] * (deep - len(one)) + one for one in headings), strict=True), *part.rows]
-    widths = [max(map(len, column)) for column in zip(*rows, strict=True)]
-    return title + [
-        "  ".join(f"{cell:{'>' if number else '<'}{width}}" for number, (cell, width) in enumerate(cells)).rstrip()
-        for cells in (tuple(zip(row, widths, strict=True)) for row in rows)
-    ]
-
 
 # The sheet of a study: number of points, and range of each input and result
 
@@ -215,15 +119,18 @@ def run_sheet(run: Run) -> Sheet:
     if run.outputs == 0:
         return Sheet("The run ended before its first output.", ())
     summary = cache(partial(summarize, run))
+    with run.recorded() as recorded:
+        stands = ends_at_standstill(recorded, run.prepared)
     pieces: tuple[Callable[[], Pieces], ...] = (
-        lambda: (_pulleys(f"Pulleys{_window(run, summary())}", summary(), run.drive.guides),),
+        lambda: carriage_table(run),
+        lambda: peak_tables(run) if stands else _mean_tables(run, summary()),
         lambda: _teeth(run),
-        lambda: (_spans(run, summary()),),
         lambda: _steady_running(run),
         lambda: (
             Facts(
                 (
-                    *(*_power(summary()), *_tensioners(summary()), *_rolls(run), *_run_up(run)),
+                    *(() if stands else _power(summary())),
+                    *(*_tensioners(run, summary()), *_rolls(run), *_run_up(run)),
                     *(*_mesh_used(run), *_solver(summary())),
                 )
             ),
@@ -232,28 +139,45 @@ def run_sheet(run: Run) -> Sheet:
     return sheet_of(run.drive.name or "", pieces, run.source)
 
 
-def _teeth(run: Run) -> tuple[Table, ...]:
-    """Extremes of the loads of teeth; empty without teeth, or without outputs along the belt."""
+def _mean_tables(run: Run, summary: Summary) -> Pieces:
+    """Means of pulleys and spans over the end of a run."""
+    title, drive = f"Pulleys{_window(run, summary)}", run.drive
+    pulleys = _pulleys(title, summary, drive.guides)
+    if drive.belt.teeth is not None:
+        pulleys = pulleys.without(_OF_FRICTION)
+    return pulleys, _spans(run, summary)
+
+
+def _teeth(run: Run) -> Pieces:
+    """Extremes of the loads of teeth, and whether the belt jumps; empty without teeth, or outputs along the belt."""
     if run.drive.belt.teeth is None:
         return ()
     with run.recorded() as recorded:
         if "contact_pulley" not in recorded:
             return ()
-        found = extreme_loads(recorded, run.prepared)
+        loads = extreme_loads(recorded, run.prepared)
+        jumped = jumps_in(recorded, [pulley.name for pulley in run.prepared.pulleys])
     rows = []
-    for one in found:
+    for one in loads:
         allowed = "–" if math.isnan(one.allowed) else f"{one.allowed:.1f}"
-        rows.append(
-            (
-                one.name,
-                f"{one.in_mesh:.1f}",
-                f"{one.largest:.1f}",
-                allowed,
-                safety_text(one.jump_margin, _LARGEST_MARGIN),
-            )
-        )
+        margin = safety_text(one.jump_margin, _LARGEST_MARGIN)
+        rows.append((one.name, f"{one.in_mesh:.1f}", f"{one.largest:.1f}", allowed, margin))
     headings = ("", "teeth\nin mesh", "largest\nload N", "allowed\nN", "margin\nto jump")
-    return (Table("Teeth", headings, tuple(rows)),) if rows else ()
+    return (Table("Teeth", headings, tuple(rows)), _jumping(jumped, loads)) if rows else ()
+
+
+def _jumping(jumped: Sequence[Jump], loads: Sequence[ToothLoads]) -> Facts:
+    """Whether a belt jumps, in words."""
+    least = min(loads, key=lambda one: one.jump_margin)
+    margin = safety_text(least.jump_margin, _LARGEST_MARGIN)
+    if jumped:
+        often = f", {len(jumped)} times" if len(jumped) > 1 else ""
+        words = f"the belt jumps on {jumped[0].name} at {jumped[0].time:.4g} s{often}"
+    elif least.jump_margin <= 1.0:
+        words = f"none, but teeth lift on {least.name}: margin {margin}"
+    else:
+        words = f"none: the least margin is {margin}, on {least.name}; at 1 a tooth lifts"
+    return Facts((("jumps", words),))
 
 
 def _run_up(run: Run) -> list[tuple[str, str]]:
@@ -306,6 +230,10 @@ def _pulleys(title: str, summary: Summary, guides: BoolArray) -> Table:
         (*headings, "tension\nratio", "ratio\nmax", "safety\nown", "\nall", "hub\nN"),
         tuple(zip(*columns, strict=True)),
     )
+
+
+_OF_FRICTION = ("slip", "elastic\ncreep", "slip\narc", "tension\nratio", "ratio\nmax", "safety\nown", "\nall")
+"""Columns of pulleys that hold a belt by friction."""
 
 
 def power_unit(powers: ArrayLike) -> tuple[str, float]:
@@ -415,14 +343,15 @@ def _givers(summary: Summary) -> str:
     return f" ({parts})" if len(givers) > 1 else ""
 
 
-def _tensioners(summary: Summary) -> list[tuple[str, str]]:
-    """Tensioner positions and their range."""
+def _tensioners(run: Run, summary: Summary) -> list[tuple[str, str]]:
+    """Arm angles, or positions of slides, and their range."""
     facts = []
-    for one in summary.tensioners:
-        size, unit = (math.degrees, "°") if one.rotary else (lambda value: 1e3 * value, " mm")
-        place, lowest, highest = (f"{size(value):z.4g}{unit}" for value in (one.position, one.lowest, one.highest))
-        travel = f" (range {lowest} to {highest})" if one.highest > one.lowest else ""
-        facts.append((f"tensioner of {one.name}", f"{place}{travel}"))
+    for one, carrier in zip(summary.tensioners, run.prepared.carriers, strict=True):
+        (what, unit), (place, *ends) = carrier.shown_as, carrier.shown([one.position, one.lowest, one.highest])
+        unit = unit.replace("mm", " mm")
+        low, high = (f"{end:z.4g}{unit}" for end in sorted(ends))
+        travel = f" (range {low} to {high})" if one.highest > one.lowest else ""
+        facts.append((f"{what} of {one.name}".replace("position of", "tensioner of"), f"{place:z.4g}{unit}{travel}"))
     return facts
 
 
@@ -500,6 +429,7 @@ _AMONG_WARNINGS = frozenset({"failure"})
 OF_KINDS = {
     "sheet": "beltdyn.show.drive_sheet:drive_sheet",
     "rating": "beltdyn.show.rating_sheet:rating_sheet",
+    "stroke": "beltdyn.show.axis_sheet:stroke_sheet",
 }
 """Kind of result -> "MODULE:FUNCTION" that gives its sheet, where it has tables of its own."""
 

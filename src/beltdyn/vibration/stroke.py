@@ -7,8 +7,10 @@ from pydantic import Field
 
 from beltdyn.arrays import FloatArray
 from beltdyn.errors import ModelError
-from beltdyn.model import Drive, Prepared, prepare
+from beltdyn.model import Drive, Prepared, install, prepare
+from beltdyn.model.demand import required_tension
 from beltdyn.model.end import free_stroke
+from beltdyn.model.installation import tension_checks
 from beltdyn.parts.options import RangeCount, takes_options
 from beltdyn.parts.quantity import Count, Numbers, numbers_in
 from beltdyn.results import Result, Variable, build_result
@@ -30,6 +32,9 @@ _EACH = ("place", "mode")
 _VARIABLES = {
     "stiffness": Variable(_PLACE, "N/m", "Stiffness at the carriage, driver held"),
     "frequency": Variable(_PLACE, "Hz", "Natural frequency of the carriage, on its belt"),
+    "damping_ratio": Variable(_PLACE, "1", "Damping ratio, by losses of the belt and viscous friction of the guide"),
+    "decay_rate": Variable(_PLACE, "1/s", "Decay rate, of the amplitude of ringing"),
+    "friction_step": Variable(_PLACE, "m", "Amplitude lost in a period, by dry friction of the guide"),
     "carriage_share": Variable(_PLACE, "1", "Share of the carriage, in the kinetic energy of that mode"),
     "lowest_frequency": Variable(_PLACE, "Hz", "Lowest natural frequency, spans among them"),
     "tension": Variable(_PLACE, "N", "Tension at rest"),
@@ -41,6 +46,15 @@ _OF_SHAPERS = {
     "shaper_frequency": Variable(_SHAPERS, "Hz", "Frequency, for the stroke"),
     "shaper_duration": Variable(_SHAPERS, "s", "Longer moves by"),
     "shaper_residual": Variable(_SHAPERS, "1", "Vibration left, at most"),
+}
+_OF_TENSION = {
+    "recommended_tension": Variable((), "N", "Recommended tension, at least"),
+    "largest_pull": Variable((), "N", "Largest pull of the moves, with vibration and friction"),
+}
+_SPANS = ("span",)
+_OF_SPANS = {
+    "plucked_frequency": Variable(_SPANS, "Hz", "First frequency of a plucked span, at the tension at rest"),
+    "recommended_frequency": Variable(_SPANS, "Hz", "First frequency of a plucked span, at the recommended tension"),
 }
 BELT = "belt"
 """Name of the belt among what moves in a mode."""
@@ -59,9 +73,10 @@ def stroke(
 
     At each place of the carriage the axis is at rest with the same belt; prescribed pulleys are held, others turn, and
     the belt sticks to its pulleys or is held by its teeth. The stiffness is that of all spans, arcs and teeth at the
-    carriage. Of the natural modes that in which the carriage has most of the kinetic energy counts. For it the input
-    shapers ZV, MZV and EI are fitted (`beltdyn.theory.input_shaping`), each at the frequency that leaves least
-    vibration over the stroke.
+    carriage. Of the natural modes that in which the carriage has most of the kinetic energy counts: in it the carriage
+    rings after a move. For it the input shapers ZV, MZV and EI are fitted (`beltdyn.theory.input_shaping`), each at the
+    frequency that leaves least vibration over the stroke; the shortest that leaves at most 5 % fits. The tension that
+    the moves require stands beside that at rest, with the frequencies of plucked spans.
 
     Parameters
     ----------
@@ -123,23 +138,47 @@ def stroke(
         ]
     numbers = np.arange(1, columns["mode_frequency"].shape[1] + 1)
     modes = Variable(("mode",), "1", "Mode", "int64")
-    damping = _damping_ratio(first, float(columns["frequency"].mean()))
-    values["damping_ratio"] = Variable((), "1", "Damping ratio of the carriage by the losses of the belt"), damping
-    values |= _shapers(columns["frequency"], damping)
+    if not carriage.friction:
+        del values["friction_step"]
+    values |= _shapers(columns["frequency"], float(columns["damping_ratio"].mean()))
+    values |= _tensions(drive)
     coordinates: dict[str, tuple[Variable, Any]] = {
         "place": (axis, ways),
         "mode": (modes, numbers),
         "shaper": (Variable(_SHAPERS, "1", "Input shaper", "str"), list(SHAPERS)),
+        "span": (Variable(_SPANS, "1", "Span", "str"), ["-".join(names) for names in drive.spans]),
     }
     result = build_result("stroke", drive, values, coordinates, doubts)
     result.dataset.attrs.update(axes="place", columns_by="mode")
     return result
 
 
-def _damping_ratio(drive: Drive, frequency: float) -> float:
-    """Damping ratio of a vibration of a frequency (Hz) that stretches the belt."""
-    belt = drive.belt
-    return 0.5 * belt.stretch_loss_factor + np.pi * frequency * belt.stretch_damping_time
+def _damping_ratio(drive: Drive, frequency: float, mobility: float) -> float:
+    """Damping ratio of a mode of a frequency (Hz) that stretches the belt.
+
+    `mobility` is the square of the way of the carriage in the mode of unit mass, 1/kg.
+    """
+    belt, carriage = drive.belt, drive.carriage
+    assert carriage is not None
+    by_guide = carriage.damping * mobility / (4.0 * np.pi * frequency)
+    return 0.5 * belt.stretch_loss_factor + np.pi * frequency * belt.stretch_damping_time + by_guide
+
+
+def _tensions(drive: Drive) -> dict[str, tuple[Variable, Any]]:
+    """Values of `_OF_TENSION` and `_OF_SPANS`; the recommended ones are left out without prescribed moves."""
+    installation = install(drive)
+    needed = required_tension(drive, installation)
+    least = None if needed is None else needed.tension
+    checks = {one.state: one for one in tension_checks(drive, installation, least=least)}
+    found: dict[str, tuple[Variable, Any]] = {}
+    if "run in" in checks:
+        found["plucked_frequency"] = _OF_SPANS["plucked_frequency"], checks["run in"].frequencies
+    if needed is not None:
+        found["recommended_tension"] = _OF_TENSION["recommended_tension"], needed.tension
+        found["largest_pull"] = _OF_TENSION["largest_pull"], needed.pull
+        if "least" in checks:
+            found["recommended_frequency"] = _OF_SPANS["recommended_frequency"], checks["least"].frequencies
+    return found
 
 
 def _shapers(frequencies: FloatArray, damping: float) -> dict[str, tuple[Variable, FloatArray]]:
@@ -193,6 +232,9 @@ def _at(rest: Rest, count: int) -> dict[str, Any]:
     shares = mass[last, last] * ways[last] ** 2
     own = int(np.argmax(shares))
     hertz = np.sqrt(np.maximum(squares, 0.0)) / (2.0 * np.pi)
+    carriage = rest.prepared.carriage
+    assert carriage is not None
+    ratio = _damping_ratio(rest.prepared.drive, float(hertz[own]), float(ways[last, own] ** 2))
     names = np.array(_parts(rest, last + 1))
     energies = ways[:, :count] * (mass @ ways[:, :count])
     parts = list(dict.fromkeys(names.tolist()))
@@ -200,6 +242,9 @@ def _at(rest: Rest, count: int) -> dict[str, Any]:
     return {
         "stiffness": 1.0 / compliance,
         "frequency": float(hertz[own]),
+        "damping_ratio": ratio,
+        "decay_rate": 2.0 * np.pi * float(hertz[own]) * ratio,
+        "friction_step": 4.0 * carriage.friction * compliance,
         "carriage_share": float(shares[own]),
         "lowest_frequency": float(hertz[0]),
         "tension": rest.tension,

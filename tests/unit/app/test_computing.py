@@ -10,7 +10,7 @@ from beltdyn.app import computing
 from beltdyn.app.computing import Answer, Asked, Calculator, answer, given_speed
 from beltdyn.model import Drive
 from beltdyn.parts.quantity import RPM
-from beltdyn.show.sheet import Facts, Table
+from beltdyn.show.tables import Facts, Table
 
 HERE = Path()
 

@@ -20,7 +20,7 @@ from beltdyn.app.numbers_view import table_html
 from beltdyn.app.results_view import AnalysisView
 from beltdyn.app.session import Session
 from beltdyn.app.workspace import Workspace
-from beltdyn.show.sheet import Facts, Table
+from beltdyn.show.tables import Facts, Table
 
 
 class Told(Calculator):

@@ -17,6 +17,7 @@ from beltdyn.errors import InternalError, SimulationError
 from beltdyn.results import Result, tables
 from beltdyn.show import sheet
 from beltdyn.show.plot.figures import FIGURES, save
+from beltdyn.show.tables import Pieces
 
 RunMain = Callable[[list[str]], tuple[int, str, str]]
 
@@ -48,7 +49,7 @@ def broken_table(monkeypatch: pytest.MonkeyPatch) -> None:
     def of_names(dataset: Any, dim: str, columns: Any) -> tables.Table:
         return table(dataset, dim, None if dim == "pulley" else columns)  # type: ignore[arg-type]
 
-    def in_sheet(columns: Any, group: Any) -> sheet.Pieces:
+    def in_sheet(columns: Any, group: Any) -> Pieces:
         return shown([None] if columns[0].dims == ("pulley",) else columns, group)  # type: ignore[list-item]
 
     monkeypatch.setattr(tables, "_table_of_names", of_names)

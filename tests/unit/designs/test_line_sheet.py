@@ -12,7 +12,8 @@ from beltdyn.errors import ModelError
 from beltdyn.model import Drive, example, install
 from beltdyn.model.installation import DEFLECTION, tension_checks
 from beltdyn.show.rest_sheet import tensioning
-from beltdyn.show.sheet import as_text, sheet
+from beltdyn.show.sheet import sheet
+from beltdyn.show.tables import as_text
 
 TASKS = Path(__file__).parents[3] / "docs" / "tasks"
 

@@ -9,7 +9,7 @@ from beltdyn.model import Drive, advise, install, loads
 from beltdyn.model.belt_loads import MAKERS
 from beltdyn.model.demand import required_tension
 from beltdyn.model.installation import tension_checks
-from beltdyn.show.sheet import Facts
+from beltdyn.show.tables import Facts
 from beltdyn.theory.rating import TENSION_FORMULAS, least_rest_tension, least_tension
 
 TEXT = """

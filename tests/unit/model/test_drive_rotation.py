@@ -10,7 +10,8 @@ from matplotlib.figure import Figure
 import beltdyn as bd
 from beltdyn.machines import Load
 from beltdyn.model import Drive, OneWayClutch, Pulley, prepare
-from beltdyn.show.sheet import Table, as_text, run_sheet
+from beltdyn.show.sheet import run_sheet
+from beltdyn.show.tables import Table, as_text
 
 OTHER = {"clockwise": "counter-clockwise", "counter-clockwise": "clockwise"}
 PLACES = {"center", "pivot", "direction", "gravity"}

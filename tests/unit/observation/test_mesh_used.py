@@ -13,7 +13,8 @@ from beltdyn.model import Drive, example, prepare
 from beltdyn.results import Result
 from beltdyn.results.provenance import mesh_used
 from beltdyn.results.summary import VALUES
-from beltdyn.show.sheet import Facts, sheet
+from beltdyn.show.sheet import sheet
+from beltdyn.show.tables import Facts
 
 Change = Callable[..., Drive]
 ASKED = (None, *ELEMENTS)

@@ -14,7 +14,8 @@ from beltdyn.errors import ConvergenceError, ModelError
 from beltdyn.model import Drive, example, load
 from beltdyn.points.traction import traction
 from beltdyn.results import open_result
-from beltdyn.show.sheet import Table, sheet
+from beltdyn.show.sheet import sheet
+from beltdyn.show.tables import Table
 from beltdyn.state.steady import steady_state
 from beltdyn.system.meshing import TOOTH_PHASES
 from validation.published.cases import better, loaded_two_pulley

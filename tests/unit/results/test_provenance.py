@@ -12,7 +12,8 @@ from beltdyn.model import Drive
 from beltdyn.results import build_result, provenance
 from beltdyn.results.provenance import STAYING, mesh_facts, mesh_used
 from beltdyn.results.schema import FORMAT
-from beltdyn.show.sheet import Facts, sheet
+from beltdyn.show.sheet import sheet
+from beltdyn.show.tables import Facts
 
 
 def test_a_result_names_its_drive_and_what_computed_it() -> None:

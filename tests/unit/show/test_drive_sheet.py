@@ -7,7 +7,8 @@ import pytest
 
 import beltdyn as bd
 from beltdyn.model import Drive, example
-from beltdyn.show.sheet import Table, as_text, sheet
+from beltdyn.show.sheet import sheet
+from beltdyn.show.tables import Table, as_text
 
 _NUMBER = re.compile(r"(?<![\w.])[-+−]?\d+(?:\.\d+)?(?:e[-+]?\d+)?")
 

@@ -6,7 +6,7 @@ import pytest
 
 from beltdyn.model import example, loads, prepare
 from beltdyn.show.parts_list import parts_list
-from beltdyn.show.sheet import Facts, Table
+from beltdyn.show.tables import Facts, Table
 
 _TWO_PULLEYS = """
 [belt]

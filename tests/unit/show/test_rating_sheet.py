@@ -2,7 +2,8 @@
 
 import beltdyn as bd
 from beltdyn.model import example
-from beltdyn.show.sheet import Facts, Table, as_text, sheet
+from beltdyn.show.sheet import sheet
+from beltdyn.show.tables import Facts, Table, as_text
 
 
 def test_the_verdict_comes_first_and_checks_have_units() -> None:

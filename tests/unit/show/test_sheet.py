@@ -10,7 +10,8 @@ import xarray as xr
 from beltdyn.model import Drive, example
 from beltdyn.results import Result, Run, summarize, tooth_loads
 from beltdyn.results.schema import VARIOUS
-from beltdyn.show.sheet import Facts, Table, _column, _pulleys, sheet
+from beltdyn.show.sheet import _column, _pulleys, sheet
+from beltdyn.show.tables import Facts, Table
 from beltdyn.state.steady import steady_state
 
 
@@ -50,7 +51,7 @@ def test_modes_are_columns_over_the_places(drive: Drive) -> None:
             "place": ("place", [-0.1, 0.1], {"units": "m", "long_name": "Way"}),
             "mode": ("mode", [1, 2], {"units": "1", "long_name": "Mode"}),
         },
-        {"kind": "stroke", "title": "Linear axis over its stroke", "axes": "place", "columns_by": "mode"},
+        {"kind": "campbell", "title": "Linear axis over its stroke", "axes": "place", "columns_by": "mode"},
     )
     assert sheet(Result(dataset, drive)).parts == (
         Table(

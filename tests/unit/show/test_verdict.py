@@ -9,7 +9,8 @@ from beltdyn import equilibrium
 from beltdyn.model import Drive
 from beltdyn.model.drive import drive_of_text
 from beltdyn.results import KeyNumber, Run
-from beltdyn.show.sheet import as_text, sheet
+from beltdyn.show.sheet import sheet
+from beltdyn.show.tables import as_text
 from beltdyn.show.verdict import SideBySide, in_unit, limit_in_words, unjudged_in_words, verdict
 
 

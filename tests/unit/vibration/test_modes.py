@@ -11,7 +11,8 @@ from scipy.sparse import csc_array
 import beltdyn as bd
 from beltdyn.errors import ModelError
 from beltdyn.model import Drive
-from beltdyn.show.sheet import Table, sheet
+from beltdyn.show.sheet import sheet
+from beltdyn.show.tables import Table
 from beltdyn.solvers.eigenvalues import LIGHT, lightly_damped, pencil, swinging
 from beltdyn.vibration.modes import modes
 

@@ -7,6 +7,7 @@ from scipy.linalg import eigh
 import beltdyn as bd
 from beltdyn.arrays import FloatArray
 from beltdyn.errors import ModelError
+from beltdyn.results.free_decay import free_decay
 from beltdyn.theory.input_shaping import SHAPERS, residual_vibration
 
 AXIS = bd.example("printer_axis")
@@ -32,10 +33,15 @@ def test_it_is_stiffer_nearer_to_the_driver_and_swings_faster() -> None:
     assert float(halfway.mode_frequency[0]) == float(halfway.frequency)
     speed = (30.0 / AXIS.belt.mass_per_length) ** 0.5
     assert float(halfway.mode_frequency[1]) == pytest.approx(speed / (2.0 * taken_up), rel=0.01)  # the long way back
-    assert found.damping_ratio == 0.5 * AXIS.belt.stretch_loss_factor
+    assert AXIS.carriage is not None
+    guide = AXIS.carriage.damping * found.carriage_share / (4.0 * np.pi * found.frequency * AXIS.carriage.mass)
+    np.testing.assert_allclose(found.damping_ratio, 0.5 * AXIS.belt.stretch_loss_factor + guide, rtol=1e-3)
+    np.testing.assert_allclose(found.decay_rate, 2.0 * np.pi * found.frequency * found.damping_ratio, rtol=1e-12)
+    np.testing.assert_allclose(found.friction_step, 4.0 * AXIS.carriage.friction / found.stiffness, rtol=1e-9)
+    damping = float(found.damping_ratio.mean())
     for name, frequency, residual in zip(SHAPERS, found.shaper_frequency, found.shaper_residual, strict=True):
-        shaper = SHAPERS[name](float(frequency), float(found.damping_ratio))
-        left = residual_vibration(shaper, found.frequency.values, float(found.damping_ratio))
+        shaper = SHAPERS[name](float(frequency), damping)
+        left = residual_vibration(shaper, found.frequency.values, damping)
         assert left.max() == pytest.approx(float(residual), rel=1e-12)
 
 
@@ -101,7 +107,7 @@ def test_a_carriage_and_an_idler_on_springs() -> None:
         assert float(there.frequency) == float(there.lowest_frequency) == float(there.mode_frequency[0])
         assert float(there.carriage_share) == pytest.approx(MASS * ways[0, 0] ** 2, abs=0.01)
         assert there.mode_part.values.tolist() == ["carriage", "idler", "belt"]
-    assert float(found.damping_ratio) == pytest.approx(np.pi * float(found.frequency.mean()) * DAMPING_TIME)
+    np.testing.assert_allclose(found.damping_ratio, np.pi * found.frequency * DAMPING_TIME)
     assert not found.attrs["warnings"]  # the guide runs along the belt, which keeps its tension
 
 
@@ -118,3 +124,23 @@ def test_it_needs_a_carriage_and_a_held_pulley_and_modes() -> None:
     motor = AXIS.pulleys[0].replace(speed=None, inertia=1e-5, torque={"kind": "constant", "value": 0.01})
     with pytest.raises(ModelError, match="no pulley holds the belt"):
         bd.stroke(AXIS.replace(pulley=[motor, AXIS.pulleys[1]]))
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("guide", [8.0, 25.0])
+def test_the_decay_is_that_of_a_run(guide: float) -> None:
+    """The carriage rings after a move as the mode does, with short steps: frequency to 1 %, decay to 5 %."""
+    assert AXIS.carriage is not None
+    stop = {"kind": "table", "times": [0.0, 0.02, 0.1, 0.102], "values": ["0 rpm", "200 rpm", "200 rpm", "0 rpm"]}
+    axis = AXIS.replace(
+        carriage=AXIS.carriage.replace(friction=0.0, damping=guide),
+        pulley=[AXIS.pulleys[0].replace(speed=stop), AXIS.pulleys[1]],
+        simulation={"duration": 0.4, "max_step": 2e-4, "output_interval": 5e-4},
+    )
+    run = bd.simulate(axis)
+    after = run.dataset.sel(time=slice(0.11, None))
+    decay = free_decay(after.time.values, after.carriage_error.values[:, 0])
+    assert decay is not None
+    found = bd.stroke(axis, places=[float(run.dataset.carriage_position[-1, 0])]).dataset
+    assert decay.frequency == pytest.approx(float(found.frequency[0]), rel=0.01)
+    assert decay.rate == pytest.approx(float(found.decay_rate[0]), rel=0.05)

@@ -12,7 +12,7 @@ from beltdyn.parts.quantity import RPM
 from beltdyn.results.checks.evidence import Evidence, shorter_steps
 from beltdyn.results.cycles import last_change
 from beltdyn.results.energy_balance import OF_TEETH, Balance, largest_closure, largest_numerical_share
-from beltdyn.results.free_decay import free_decay, without_integrator
+from beltdyn.results.free_decay import free_decay, real_decay
 from beltdyn.results.schema import attribute
 
 DAMPING_LIMIT = 0.01
@@ -184,9 +184,8 @@ def damped_vibrations(evidence: Evidence) -> Iterator[Finding]:
     if not found or max(found)[0] < VISIBLE:
         return
     _, decay, (start, end) = max(found)
-    during = since & (evidence.time <= decay.until)
-    step = float(np.mean(np.asarray(recorded["step_size"])[during] ** 3) ** (1.0 / 3.0))
-    real = without_integrator(settings.spectral_radius, decay, step)
+    steps = np.asarray(recorded["step_size"])[since]
+    real, step = real_decay(decay, evidence.time[since], steps, settings.spectral_radius)
     part = abs(decay.rate - real.rate)
     if part > DECAY_LIMIT * decay.rate:
         shorter = step * (_SMALL_PART * decay.rate / part) ** (1.0 / 3.0)

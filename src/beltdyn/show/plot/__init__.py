@@ -3,6 +3,8 @@
 from typing import Any
 
 from beltdyn.show.plot.animation import animate as animate
+from beltdyn.show.plot.axis import carriage_error as carriage_error
+from beltdyn.show.plot.axis import stroke as stroke
 from beltdyn.show.plot.contact_pressure import contact_forces as contact_forces
 from beltdyn.show.plot.contact_pressure import contact_pressure as contact_pressure
 from beltdyn.show.plot.contact_pressure import load_sharing as load_sharing
@@ -59,13 +61,12 @@ from beltdyn.show.plot.style import color as color
 from beltdyn.show.plot.style import dash as dash
 from beltdyn.show.plot.style import label as label
 from beltdyn.show.plot.style import name_lines as name_lines
+from beltdyn.show.plot.vibration import amplitudes as amplitudes
 from beltdyn.show.plot.vibration import animate_modes as animate_modes
 from beltdyn.show.plot.vibration import campbell as campbell
-from beltdyn.show.plot.vibration import carriage_error as carriage_error
 from beltdyn.show.plot.vibration import mode_damping as mode_damping
 from beltdyn.show.plot.vibration import mode_shape as mode_shape
 from beltdyn.show.plot.vibration import response as response
-from beltdyn.show.plot.vibration import stroke as stroke
 from beltdyn.show.plot.waterfall import orders as orders
 from beltdyn.show.plot.waterfall import waterfall as waterfall
 

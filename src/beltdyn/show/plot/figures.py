@@ -19,6 +19,7 @@ from beltdyn.errors import ModelError, Parts
 from beltdyn.kinds import Registry
 from beltdyn.results import Result, Run, derived
 from beltdyn.results.atomic import MARK, atomic_path, is_marked, make_folder, require_replaceable
+from beltdyn.results.cycles import ends_at_standstill
 from beltdyn.results.schema import runs_steadily
 from beltdyn.show.plot.gaps import explain_empty, first_failure, gaps, mark_isolated
 from beltdyn.show.plot.headline import headlines, overlay, write_headline
@@ -82,6 +83,16 @@ def over_time(run: Run) -> bool:
 def over_turns(run: Run) -> bool:
     """Draw a figure over time where the driver turns: at rest there is nothing in it."""
     return over_time(run) and bool(np.abs(run.dataset["pulley_speed"].values[:, run.drive.reference]).max() > _TURNS)
+
+
+def slipping(run: Run) -> bool:
+    """Draw a figure of slip where the driver turns a belt without teeth: with teeth nothing slips."""
+    return over_turns(run) and run.drive.belt.teeth is None
+
+
+def turning_at_the_end(run: Run) -> bool:
+    """Draw a figure of means at the end where the drive turns then."""
+    return over_turns(run) and not ends_at_standstill(run.dataset, run.prepared)
 
 
 def figure(
@@ -208,8 +219,8 @@ def data_uri(figure: Figure, file_format: Literal["svg", "png"] = "svg") -> str:
 
 
 _READING = (
-    *("configuration", "speeds", "span_tensions", "slip", "hub_load_sizes", "hub_loads", "slip_safety", "torques"),
-    *("powers", "losses", "tensioners", "energy", "contact_pressure"),
+    *("carriage_error", "configuration", "speeds", "span_tensions", "slip", "hub_load_sizes", "hub_loads"),
+    *("slip_safety", "torques", "powers", "losses", "tensioners", "energy", "contact_pressure"),
 )
 """Figures of a run in the order in which they are read; others follow."""
 

@@ -1,10 +1,12 @@
 """Headline of a figure: name of the drive and operating point."""
 
+import tomllib
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from itertools import count
 from textwrap import fill
 from typing import Any
 
+import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.colors import to_rgb
 from matplotlib.figure import Figure
@@ -16,7 +18,7 @@ from beltdyn.model import loads
 from beltdyn.parts.quantity import RPM
 from beltdyn.parts.text_file import as_text
 from beltdyn.results import Result, Run, StaticResult, power_balance
-from beltdyn.results.cycles import mean_window
+from beltdyn.results.cycles import ends_at_standstill, mean_window
 from beltdyn.results.schema import runs_steadily
 from beltdyn.show.plot.gaps import gaps
 from beltdyn.show.plot.style import INK, NOTE, dash, name_lines
@@ -75,7 +77,7 @@ def overlay(
     if len(page.axes) == 1 or len(legend) > len(styles) + 1:  # one line is named by the title of its panel
         name_lines(ax, [line for line in legend if line not in styles])
     if not page.legends:
-        page.legend(handles=styles, loc="outside lower center")
+        page.legend(handles=styles, loc="outside upper right", ncols=len(styles))
     return ax
 
 
@@ -99,6 +101,11 @@ def given_keys(result: Result) -> dict[str, Any]:
     return dict(_keys(drive.data))
 
 
+def typed_keys(result: Result) -> dict[str, Any]:
+    """Give the numbers and texts of a drive file with their paths, as they stand in the file."""
+    return dict(_keys(tomllib.loads(result.drive_as_given)))
+
+
 def _keys(data: Any, path: str = "") -> Iterator[tuple[str, Any]]:
     """Numbers and texts of a drive with their paths; what has a name is called by it."""
     if isinstance(data, dict):
@@ -106,7 +113,7 @@ def _keys(data: Any, path: str = "") -> Iterator[tuple[str, Any]]:
             yield from _keys(value, f"{path}.{key}" if path else key)
     elif isinstance(data, list) and any(isinstance(one, dict) for one in data):
         for number, one in enumerate(data, 1):
-            yield from _keys(one, f"{path}[{one.get('name', number)}]")
+            yield from _keys(one, f"{path}[{one.get('name', one.get('pulley', number))}]")
     else:
         yield path, data
 
@@ -218,6 +225,10 @@ def _operating_point(run: Run) -> str:
         power = over.product(recorded, "shaft_torque", "shaft_speed")
         speed = run.drive.positive_sense * RPM * over.mean(recorded, "pulley_speed")
         put_in = power_balance(recorded, over).power_in
+        if ends_at_standstill(recorded, run.prepared):
+            driver = run.drive.reference
+            fastest = RPM * float(np.abs(np.asarray(recorded["pulley_speed"])[:, driver]).max())
+            return f"{run.drive.pulleys[driver].name} up to {_whole(fastest)} rpm, at standstill at the end"
     first = int(power.argmax()) if put_in > 0.0 else 0
     given = f", {_power(put_in)} input" if put_in > 0.0 else ""
     instant = "" if runs_steadily(run.dataset) else " at the end"

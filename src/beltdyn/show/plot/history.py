@@ -415,13 +415,14 @@ def tensioners(run: Run, ax: Axes | None = None) -> Axes:
     if "tensioner_position" not in run.dataset:
         raise ModelError("this drive has no moving tensioner. Choose another figure.")
     position = run.dataset["tensioner_position"]
-    rotary = np.array([one.turns for one in run.drive.moving_tensioners])
-    units = [name for name, there in (("mm", not rotary.all()), ("°", rotary.any())) if there]
-    factors = np.where(rotary, np.degrees(1.0), 1e3)
-    scaled = (position * factors).assign_attrs(position.attrs | {"units": ", ".join(units)})
-    ax = lines(scaled, axes_or_new(ax), pulleys=[carrier.pulley for carrier in run.prepared.carriers])
-    for tensioner, factor, turns in zip(run.drive.moving_tensioners, factors.tolist(), rotary, strict=True):
-        for name, stop in zip(("lower", "upper"), tensioner.stops or (), strict=False):
-            place = f"{factor * stop:.4g}{'°' if turns else ' mm'}"
-            draw_limit(ax, factor * stop, f"{tensioner.pulley}: {name} stop {place}")
+    carriers = run.prepared.carriers
+    shown = np.column_stack([one.shown(position.values[:, number]) for number, one in enumerate(carriers)])
+    names, units = zip(*dict.fromkeys(one.shown_as for one in carriers), strict=True)
+    title = {"arm angle": "Arm angle", "position": "Tensioner position"}
+    about = {"units": ", ".join(units), "long_name": " or ".join(title[name] for name in names).capitalize()}
+    ax = lines(position.copy(data=shown).assign_attrs(about), axes_or_new(ax), pulleys=[one.pulley for one in carriers])
+    for one in carriers:
+        for name, stop in zip(("lower", "upper"), one.tensioner.stops or (), strict=False):
+            place = float(one.shown(stop))
+            draw_limit(ax, place, f"{one.tensioner.pulley}: {name} stop {place:.4g}{one.shown_as[1]}")
     return ax

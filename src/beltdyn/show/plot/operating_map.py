@@ -75,24 +75,29 @@ def tensioner_sheet(result: Result, variable: str = "tension", *, ax: Axes | Non
     names = [one.pulley for one in result.drive.moving_tensioners]
     number = names.index(str(dataset.attrs["pulley"]))
     carrier = result.prepared.carriers[number]
-    scale, of_travel = (np.degrees(1.0), "°") if carrier.tensioner.turns else (1e3, "mm")
     place, size = dataset["position"].values, dataset[variable].values
     on = np.isfinite(size) & np.isfinite(dataset["belt_length"].values)
     if on.any():
         line = np.linspace(place[on].min(), place[on].max(), _POINTS)
         ax.plot(
-            scale * line, [_by_hand(result, number, one, variable) for one in line], color=INK, label="virtual work"
+            carrier.shown(line),
+            [_by_hand(result, number, one, variable) for one in line],
+            color=INK,
+            label="virtual work",
         )
     for kind, (state, at, value) in enumerate(zip(dataset["state"].values, place, size, strict=True)):
         if np.isfinite(value):
-            ax.plot(scale * at, value, "o", color=color(kind), label=str(state))
+            ax.plot(carrier.shown(at), value, "o", color=color(kind), label=str(state))
     if _ENDS[0] in dataset:
         low, high = (size * dataset[name].values / dataset["tension"].values for name in _ENDS)
-        ax.vlines(scale * place, low, high, color=INK, linewidth=2.0, alpha=0.4, label="dry friction")
+        ax.vlines(carrier.shown(place), low, high, color=INK, linewidth=2.0, alpha=0.4, label="dry friction")
     for stop in carrier.tensioner.stops or ():
-        ax.axvline(scale * stop, color=INK, linestyle=dash(2), linewidth=0.8)
-    travel = "Arm angle" if carrier.tensioner.turns else "Position"
-    ax.set(xlabel=f"{travel} from the given center [{of_travel}]", ylabel=f"{dataset[variable].attrs['long_name']} [N]")
+        ax.axvline(float(carrier.shown(stop)), color=INK, linestyle=dash(2), linewidth=0.8)
+    what, unit = carrier.shown_as
+    ax.set(
+        xlabel=f"{what.capitalize()}{' from the given center' * (unit == 'mm')} [{unit}]",
+        ylabel=f"{dataset[variable].attrs['long_name']} [N]",
+    )
     ax.margins(x=0.06)
     ax.set_ylim(bottom=0.0)
     name_lines(ax)
@@ -112,11 +117,14 @@ def _by_hand(result: Result, number: int, position: float, variable: str) -> flo
     return there.tension * (1.0 if variable == "tension" else float(2.0 * np.sin(0.5 * wrap)))
 
 
+_FRICTION_USED = "friction_used"
 _UNITS = (
-    *("span_tension", "hub_load", "pulley_slip", "slip_safety", "tooth_load", "jump_margin"),
-    *("efficiency", "tensioner_position"),
+    *("span_tension", "hub_load", "pulley_slip", _FRICTION_USED, "slip_safety", "tooth_load", "jump_margin"),
+    *("tensioner_position", "efficiency"),
 )
-_PERCENT = ("pulley_slip", "efficiency")
+_PERCENT = ("pulley_slip", "efficiency", _FRICTION_USED)
+_OF_GRIP = ("pulley_slip", _FRICTION_USED, "slip_safety")
+"""What is drawn of belts without teeth."""
 _ALL = 0.99
 """Part of an arc that slides as a whole."""
 _SAFE = 10.0
@@ -127,11 +135,23 @@ _WARNED = {"slip_safety": 1.5, "jump_margin": LIFTS}
 
 def _all_panels(draw: Callable[..., Axes], result: Result, choice: Choice) -> Figure:
     """Lay out a panel for each variable with a value; the first one where there is none."""
-    drawn = [name for name in _UNITS if name in result.dataset]
-    known = [name for name in drawn if result.dataset[name].notnull().any()] or drawn[:1]
+    dataset, toothed = _with_friction_used(result.dataset), result.drive.belt.teeth is not None
+    drawn = [name for name in _UNITS if name in dataset and not (toothed and name in _OF_GRIP)]
+    known = [name for name in drawn if dataset[name].notnull().any()] or drawn[:1]
     page = panels(rows([partial(draw, result, name) for name in known]), sharey=False)
     name_once(page)
     return page
+
+
+def _with_friction_used(dataset: xr.Dataset) -> xr.Dataset:
+    """Operating points with the friction that pulleys need over that which there is, by Euler's formula."""
+    ratios = ("tension_ratio", "allowed_tension_ratio")
+    if not {*ratios} <= set(dataset):
+        return dataset
+    needed, allowed = (np.log(dataset[name].where(dataset[name] > 1.0).values) for name in ratios)
+    used = dataset[ratios[0]].copy(data=needed / allowed)
+    about = {"long_name": "Friction used: required over available", "units": "1"}
+    return dataset.assign({_FRICTION_USED: used.assign_attrs(about)})
 
 
 def _over_both(result: Result) -> bool:
@@ -152,7 +172,7 @@ def _over_slip(result: Result) -> bool:
     return "slip" in result.dataset.dims
 
 
-@figure(lambda result: not _over_slip(result), _all_panels, of=("operating_map", "duty", "traction"))
+@figure(lambda result: not _over_slip(result), _all_panels, of=("operating_map", "duty", "traction"), compares=True)
 def operating_points(result: Result, variable: str = "span_tension", *, ax: Axes | None = None) -> Axes:
     """Draw a variable of operating points over speed, load, torque on teeth, or the rows of a duty table.
 
@@ -164,7 +184,8 @@ def operating_points(result: Result, variable: str = "span_tension", *, ax: Axes
     result : Result
         Of `operating_map`, `duty`, or `traction` of a pulley with teeth.
     variable : str
-        Name of a variable of numbers, such as "hub_load".
+        Name of a variable of numbers, such as "hub_load"; or "friction_used", the friction that each pulley needs over
+        that which there is: at 100 % the whole arc slides.
     ax : Axes, optional
         Where to draw; a new figure by default.
 
@@ -184,7 +205,7 @@ def operating_points(result: Result, variable: str = "span_tension", *, ax: Axes
     >>> bd.plot.operating_points(found, "hub_load").get_ylabel()
     'Hub load [N]'
     """
-    dataset = result.dataset
+    dataset = _with_friction_used(result.dataset)
     axis = str(dataset.attrs["axes"]).split()[0]
     if _over_both(result) and dataset.sizes["speed"] == 1:
         axis = "load"
@@ -200,7 +221,7 @@ def operating_points(result: Result, variable: str = "span_tension", *, ax: Axes
         held = values["speed" if axis == "load" else "load"]
         shown = _in_shown_units(held)
         ax.set_title(f"{held.name} {float(shown):.4g} {shown.attrs['units']}".removesuffix(" 1"))
-    values = _in_shown_units(values)
+    values = _of_tensioners(result, values) if variable == "tensioner_position" else _in_shown_units(values)
     along = _in_shown_units(dataset[axis])
     for number, (name, line) in enumerate(_lines(values, axis)):
         mark = "o" if axis == "row" else None
@@ -208,6 +229,9 @@ def operating_points(result: Result, variable: str = "span_tension", *, ax: Axes
     if variable == "efficiency":
         ax.update_datalim([(0.0, 100.0)], updatex=False)  # what is lost is the distance to it
         ax.autoscale_view(scalex=False)
+    if variable == _FRICTION_USED:
+        ax.axhline(100.0, color=INK, linewidth=0.7)
+        ax.set_ylim(bottom=0.0)
     if variable in _WARNED:
         ax.axhline(_WARNED[variable], color=INK, linewidth=0.7)
         ax.set_ylim(0.0, _top(values))
@@ -353,6 +377,17 @@ def _mark_gross_slip(ax: Axes, dataset: xr.Dataset, torque: FloatArray) -> None:
         ax.plot(*at, "o", color=INK, markersize=8, markerfacecolor="none", linestyle="")
         words = f"{names} slips\nat {at[0]:.4g} N·m"
         ax.annotate(words, at, (-10, 4), textcoords="offset points", ha="right", va="bottom", fontsize=9)
+
+
+def _of_tensioners(result: Result, values: xr.DataArray) -> xr.DataArray:
+    """Arm angles, °, counter-clockwise from the x axis, or positions of slides, mm."""
+    carriers = result.prepared.carriers
+    places = [one.shown(values.sel(tensioner=one.tensioner.pulley).values) for one in carriers]
+    named = dict.fromkeys(one.shown_as for one in carriers)
+    titles = " or ".join({"arm angle": "Arm angle", "position": "Tensioner position"}[what] for what, _ in named)
+    shown = xr.zeros_like(values).transpose(..., "tensioner")
+    shown.values = np.stack(places, axis=-1)
+    return shown.assign_attrs(long_name=titles, units=", ".join(unit for _, unit in named))
 
 
 def _lines(values: xr.DataArray, axis: str) -> list[tuple[str, xr.DataArray]]:

@@ -15,7 +15,7 @@ from beltdyn.results import Balance, Run, derived, summarize
 from beltdyn.results.cycles import mean_window
 from beltdyn.results.incidents import GROSS_SLIP
 from beltdyn.results.summary import means_of
-from beltdyn.show.plot.figures import Choice, figure, over_time, over_turns
+from beltdyn.show.plot.figures import Choice, figure, over_time, over_turns, slipping, turning_at_the_end
 from beltdyn.show.plot.headline import names_of_results
 from beltdyn.show.plot.history import draw_limits, envelope, lines, mark_incidents
 from beltdyn.show.plot.style import (
@@ -60,7 +60,7 @@ def _losses_of_several(runs: Sequence[Run], ax: Axes | None) -> Axes:
     return ax
 
 
-@figure(over_turns, compares=_losses_of_several)
+@figure(turning_at_the_end, compares=_losses_of_several)
 def losses(run: Run, ax: Axes | None = None) -> Axes:
     """Draw the power lost by cause: means over the end of the run, as in the summary.
 
@@ -152,7 +152,7 @@ _TOP: dict[str, Any] = {"ha": "right", "va": "top", "fontsize": 8}
 """Alignment of text in the upper right corner."""
 
 
-@figure(over_turns, compares=True)
+@figure(slipping, compares=True)
 def slip(run: Run, ax: Axes | None = None) -> Axes:
     """Draw the slip of the pulleys against the driver over time, with its elastic creep dotted.
 
@@ -208,7 +208,12 @@ def _after_start(run: Run, latest: float) -> float:
     return float(min(reached + 0.1 * (time[-1] - reached), latest))
 
 
-@figure(over_time, compares=True)
+def _grips_over_time(run: Run) -> bool:
+    """Whether a belt without teeth is held by friction in a run with more than one output."""
+    return over_time(run) and run.drive.belt.teeth is None
+
+
+@figure(_grips_over_time, compares=True)
 def slip_safety(run: Run, ax: Axes | None = None) -> Axes:
     """Draw the factor on all loads at which each pulley reaches gross slip, over time; below 1 the belt slides.
 

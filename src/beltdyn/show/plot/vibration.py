@@ -6,6 +6,7 @@ from pathlib import Path
 from typing import NamedTuple
 
 import numpy as np
+import xarray as xr
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
@@ -15,10 +16,10 @@ from beltdyn.arrays import ComplexArray, FloatArray
 from beltdyn.errors import ModelError
 from beltdyn.parts.messages import suggest
 from beltdyn.parts.quantity import RPM, SHOWN_UNITS
-from beltdyn.results import Result, Run
+from beltdyn.results import Result
 from beltdyn.show.plot.animation import film
 from beltdyn.show.plot.drive_picture import LINE, extent_of, size_of
-from beltdyn.show.plot.figures import Choice, always, figure, over_time
+from beltdyn.show.plot.figures import Choice, always, figure
 from beltdyn.show.plot.style import (
     INK,
     PALE,
@@ -393,6 +394,92 @@ def _shade_beyond_range(ax: Axes, result: Result, speed: FloatArray) -> None:
         label = "_"
 
 
+_OVERVIEW = ("tensioner_position", "span_tension", "hub_load", "friction_used")
+"""What is drawn over speed, with a line for each span, pulley or tensioner."""
+
+
+def _overview(draw: Callable[..., Axes], result: Result, choice: Choice) -> Figure:
+    """Lay out a panel for each kind of result."""
+    known = [name for name in _OVERVIEW if _total(result, name) is not None]
+    page = panels(rows([partial(draw, result, name) for name in known]), sharey=False)
+    name_once(page)
+    return page
+
+
+def _total(result: Result, variable: str) -> xr.DataArray | None:
+    """Sum of the amplitudes of all excitations, or the friction used, in shown units; None if there is none."""
+    dataset, name = result.dataset, f"{variable}{_END}"
+    if variable == "friction_used":
+        if "largest_friction_used" not in dataset or result.drive.belt.teeth is not None:
+            return None
+        values = 100.0 * dataset["largest_friction_used"]
+        return values.assign_attrs(long_name="Friction used, at most", units="%") if values.notnull().any() else None
+    if name not in dataset:
+        return None
+    units = str(dataset[name].attrs["units"])
+    unit, factor = _SHOWN.get(units, (units, 1.0))
+    title = str(dataset[name].attrs["long_name"]).rpartition(",")[0]
+    if variable == "tensioner_position" and unit == "°":
+        title = "Arm angle"
+    total = factor * dataset[name].sum("excitation", skipna=False)
+    return total.assign_attrs(long_name=title, units=unit)
+
+
+@figure(always, _overview, of=("response",), compares=True)
+def amplitudes(result: Result, variable: str = "tensioner_position", *, ax: Axes | None = None) -> Axes:
+    """Draw the amplitudes of all spans, pulleys or tensioners over speed: sums over the excitations, an upper bound.
+
+    Friction used is the largest share of the friction that a pulley needs in a period: from 100 % on its whole arc
+    slides. Shaded speeds are beyond the range of a linear response.
+
+    Parameters
+    ----------
+    result : Result
+        Of `response`.
+    variable : str
+        "tensioner_position" (of an arm, its angle), "friction_used", or another result, such as "hub_load".
+    ax : Axes, optional
+        Where to draw; a new figure by default.
+
+    Returns
+    -------
+    Axes
+        The axes.
+
+    Raises
+    ------
+    ModelError
+        If there is no such variable.
+
+    Examples
+    --------
+    >>> wave = [{"order": 2, "amplitude": 0.02}]
+    >>> wavy = drive.replace(pulley=[drive.pulleys[0].replace(harmonics=wave), drive.pulleys[1]])
+    >>> bd.plot.amplitudes(bd.response(wavy, speed="80, 120 rpm"), "hub_load").get_ylabel()
+    'Amplitude [N]'
+    """
+    total = _total(result, variable)
+    if total is None:
+        _name(result, variable)
+        raise ModelError(f"variable = {variable!r} is not a result of this response. Choose another.")
+    ax, speed = axes_or_new(ax), RPM * result.dataset["speed"].values
+    _shade_beyond_range(ax, result, speed)
+    names = total[total.dims[-1]].values
+    for number, name in enumerate(names):
+        if bool(total[:, number].notnull().any()):
+            named = str(name) if len(names) > 1 else None  # one tensioner is known by the title
+            ax.plot(speed, total[:, number], color=color(number), linestyle=dash(number), label=named)
+    if variable == "friction_used":
+        ax.axhline(100.0, color=INK, linewidth=0.7)
+    unit = str(total.attrs["units"]).replace(" ", "·")
+    ax.set_title(str(total.attrs["long_name"]))
+    quantity = "Share" if variable == "friction_used" else "Amplitude"
+    ax.set(xlabel=label(result.dataset["speed"]).replace("rad/s", "rpm"), ylabel=f"{quantity} [{unit}]")
+    ax.set_ylim(bottom=0.0)
+    name_lines(ax)
+    return ax
+
+
 @figure(always, _all_panels, of=("response",))
 def response(result: Result, variable: str = "span_tension", of: str | int = 0, *, ax: Axes | None = None) -> Axes:
     """Draw the amplitudes of a result over speed, a line for each excitation, and their sum.
@@ -437,7 +524,8 @@ def response(result: Result, variable: str = "span_tension", of: str | int = 0, 
     unit, factor = _SHOWN.get(str(dataset[name].attrs["units"]), (str(dataset[name].attrs["units"]), 1.0))
     linear = factor * dataset[name].values[:, :, place]
     _shade_beyond_range(ax, result, speed)
-    ax.plot(speed, linear.sum(axis=1), color=INK, linewidth=0.9, label="sum of amplitudes")
+    if linear.shape[1] > 1:
+        ax.plot(speed, linear.sum(axis=1), color=INK, linewidth=0.9, label="sum of amplitudes")
     for number, one in enumerate(dataset["excitation"].values):
         ax.plot(speed, linear[:, number], color=color(number), label=str(one))
         for kind, (dashes, mark, _) in _BESIDE.items():
@@ -467,78 +555,3 @@ def _name(result: Result, variable: str) -> str:
     if variable not in known:
         raise ModelError(f"variable = {variable!r} is not a result of a response. {suggest(variable, known)}")
     return f"{variable}{_END}"
-
-
-def _carries_over_time(run: Run) -> bool:
-    return "carriage_error" in run.dataset and over_time(run)
-
-
-@figure(_carries_over_time)
-def carriage_error(run: Run, ax: Axes | None = None) -> Axes:
-    """Draw how far the carriage of a linear axis is ahead of its driver over time, in micrometers.
-
-    The driver's way is that of its angle at the pitch radius; a belt that stretches and plays in its grooves lags.
-
-    Parameters
-    ----------
-    run : Run
-        The run.
-    ax : Axes, optional
-        Where to draw; a new figure by default.
-
-    Returns
-    -------
-    Axes
-        The axes.
-
-    Raises
-    ------
-    ModelError
-        If the drive has no carriage.
-
-    Examples
-    --------
-    >>> short = bd.example("printer_axis").with_({"simulation.duration": 0.02})
-    >>> bd.plot.carriage_error(bd.simulate(short)).get_ylabel()
-    'Carriage ahead of the driver [µm]'
-    """
-    if "carriage_error" not in run.dataset:
-        raise ModelError("this drive has no carriage. Choose another figure.")
-    ax, dataset = axes_or_new(ax), run.dataset
-    ax.plot(dataset["time"].values, 1e6 * dataset["carriage_error"].values[:, 0], color=color(0))
-    ax.set(xlabel="Time [s]", ylabel="Carriage ahead of the driver [µm]")
-    return ax
-
-
-@figure(always, of=("stroke",))
-def stroke(result: Result, ax: Axes | None = None) -> Axes:
-    """Draw stiffness and natural frequency of a linear axis over its stroke.
-
-    Parameters
-    ----------
-    result : Result
-        Of `stroke`.
-    ax : Axes, optional
-        Where to draw; a new figure by default.
-
-    Returns
-    -------
-    Axes
-        The axes of the stiffness; those of the frequency are at the right.
-
-    Examples
-    --------
-    >>> found = bd.stroke(bd.example("printer_axis"), places="0, 80 mm")
-    >>> bd.plot.stroke(found).get_ylabel()
-    'Stiffness [N/mm]'
-    """
-    ax, dataset = axes_or_new(ax), result.dataset
-    way = 1e3 * dataset["place"].values
-    ax.plot(way, 1e-3 * dataset["stiffness"].values, color=color(0), label="stiffness")
-    ax.set(xlabel="Way of the carriage [mm]", ylabel="Stiffness [N/mm]")
-    right = ax.twinx()
-    right.plot(way, dataset["frequency"].values, color=color(1), linestyle=dash(1), label="natural frequency")
-    right.set(ylabel="Natural frequency [Hz]")
-    right.grid(visible=False)
-    name_lines(ax)
-    return ax

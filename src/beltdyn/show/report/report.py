@@ -19,15 +19,17 @@ from beltdyn.parts.messages import show
 from beltdyn.parts.text_file import as_text
 from beltdyn.results import Result, Run, StaticResult
 from beltdyn.results.atomic import MARK, atomic_path, is_marked, require_replaceable
+from beltdyn.results.cycles import ends_at_standstill
 from beltdyn.results.provenance import mesh_facts
 from beltdyn.results.schema import runs_steadily
 from beltdyn.show.notebook import picture
-from beltdyn.show.plot.headline import given_keys, headlines, name_of, names_of_results
+from beltdyn.show.plot.headline import given_keys, headlines, name_of, names_of_results, typed_keys
 from beltdyn.show.plot.style import tension_colors
 from beltdyn.show.report.chart import Shown, charted
 from beltdyn.show.report.replay import motion, swinging
 from beltdyn.show.rest_sheet import Tensioning, alignment_table, tensioning
-from beltdyn.show.sheet import Table, sheet_without_limits
+from beltdyn.show.sheet import sheet_without_limits
+from beltdyn.show.tables import Table, facts_beside, side_by_side
 from beltdyn.show.verdict import compared, in_unit, limit_in_words, unjudged_in_words, verdict
 
 # The charting library of the page (Bokeh, BSD license), taken from its installation, and what it is given
@@ -100,11 +102,12 @@ def analysis_of(result: Result) -> str:
 
 
 def differing_keys(results: Sequence[Result]) -> list[tuple[str, list[str]]]:
-    """Give the keys of drive files in which drives differ, with their values."""
-    given = [given_keys(result) for result in results]
-    keys = dict.fromkeys(key for one in given for key in one)
-    values = {key: [show(one[key]) if key in one else "by default" for one in given] for key in keys}
-    return [(key, row) for key, row in values.items() if len(set(row)) > 1][:_MOST_DIFFERENCES]
+    """Give the keys of drive files in which drives differ, with their values as they stand in the files."""
+    typed, read = [typed_keys(result) for result in results], [given_keys(result) for result in results]
+    keys = dict.fromkeys(key for one in typed for key in one)
+    values = {key: [show(one[key]) if key in one else "by default" for one in typed] for key in keys}
+    same = {key for key in keys if all(key in one for one in read) and len({show(one[key]) for one in read}) == 1}
+    return [(key, row) for key, row in values.items() if len(set(row)) > 1 and key not in same][:_MOST_DIFFERENCES]
 
 
 def _hash(content: bytes) -> str:
@@ -114,6 +117,7 @@ def _hash(content: bytes) -> str:
 _WIDEST_TABLE = 180
 """Characters of a line of a table that is printed across a page of A4 in letters of 5 pt; wider ones are divided."""
 _SHADES = 48
+_LETTERS = 26
 _SAYS_WHO_MADE_IT = f'<meta name="generator" content="{MARK} report">'
 
 
@@ -205,6 +209,12 @@ def _page(results: Sequence[Result], parts: Parts) -> str:
     pages = [
         _part(name, number, one, moving, parts) for number, (name, one) in enumerate(zip(names, results, strict=True))
     ]
+    marks = list(map(_mark, range(len(results))))
+    together, rest = done(lambda: side_by_side([part["tables"] for part in pages], marks), ([], []))
+    facts = done(lambda: facts_beside([part["facts"] for part in pages], marks), None)
+    if len(results) > 1:
+        for part, tables in zip(pages, rest, strict=True):
+            part |= {"tables": tables, "facts": []}
     return (
         environment()
         .get_template("page.html.jinja")
@@ -213,9 +223,14 @@ def _page(results: Sequence[Result], parts: Parts) -> str:
             mark=_SAYS_WHO_MADE_IT,
             compares=len(results) > 1,
             kinds={one.kind for one in results},
+            slips=any(one.drive.belt.teeth is None for one in results),
+            toothed=any(one.drive.belt.teeth is not None for one in results),
+            standing=done(lambda: all(map(_stands, results)), False),
             verdict=done(partial(verdict, results), ("open", "No verdict")),
             lead=done(partial(_lead, results, names[0]), ""),
             parts=pages,
+            marks=marks,
+            together=[*together, *([facts] if facts and facts.rows else [])] if len(results) > 1 else [],
             widest=_WIDEST_TABLE,
             numbers=done(partial(compared, results), []),
             unjudged=done(partial(unjudged_in_words, results), []),
@@ -239,6 +254,19 @@ def _lead(results: Sequence[Result], name: str) -> str:
         return ""
     answer = str(results[0].dataset.attrs.get("answer", ""))
     return answer or headlines(results).removeprefix(f"{name}: ")
+
+
+def _mark(number: int) -> str:
+    """A letter for a result, from A on."""
+    return chr(ord("A") + number) if number < _LETTERS else f"A{number}"
+
+
+def _stands(result: Result) -> bool:
+    """Whether a result is without power: of an axis over its stroke, or a run that ends at standstill."""
+    if not isinstance(result, Run):
+        return result.kind == "stroke"
+    with result.recorded() as recorded:
+        return ends_at_standstill(recorded, result.prepared)
 
 
 def _moving(result: Result, results: int) -> dict[str, Any]:

@@ -23,7 +23,8 @@ from beltdyn.show.plot.figures import FIGURES, Choice, chosen_by_default
 from beltdyn.show.plot.gaps import explain_empty, gaps, mark_isolated
 from beltdyn.show.plot.style import NOTE
 from beltdyn.show.report import write_report
-from beltdyn.show.sheet import as_text, sheet
+from beltdyn.show.sheet import sheet
+from beltdyn.show.tables import as_text
 
 Make = Callable[..., Result]
 

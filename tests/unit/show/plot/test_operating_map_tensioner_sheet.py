@@ -28,16 +28,17 @@ def sheet() -> Result:
 
 
 def test_points_lie_on_the_line_by_hand(sheet: Result) -> None:
-    ax = plot.tensioner_sheet(sheet)
-    assert (ax.get_xlabel(), ax.get_ylabel()) == ("Arm angle from the given center [°]", "Tension [N]")
+    """Over the angle of an arm from (130, 80) to (85, 140) mm, which lengthens the path counter-clockwise."""
+    ax, nominal = plot.tensioner_sheet(sheet), np.degrees(np.arctan2(60.0, -45.0))
+    assert (ax.get_xlabel(), ax.get_ylabel()) == ("Arm angle [°]", "Tension [N]")
     line = ax.lines[0]
-    assert np.asarray(line.get_xdata(), dtype=float)[[0, -1]] == pytest.approx(np.degrees([0.0, 0.1]))
+    assert np.asarray(line.get_xdata(), dtype=float)[[0, -1]] == pytest.approx(nominal + np.degrees([0.0, 0.1]))
     assert np.asarray(line.get_ydata(), dtype=float)[0] == pytest.approx(295.5, abs=0.1)
     (bars,) = (one for one in ax.collections if isinstance(one, LineCollection))
     low, high = np.array(bars.get_segments())[1, :, 1]
     assert (low, high) == pytest.approx((280.0, 380.0))
     stops = [np.asarray(one.get_xdata(), dtype=float)[0] for one in ax.lines[-2:]]
-    assert stops == pytest.approx([-15.0, 25.0])
+    assert stops == pytest.approx([nominal - 15.0, nominal + 25.0])
 
 
 def test_both_panels_are_saved(sheet: Result, tmp_path: Path) -> None:

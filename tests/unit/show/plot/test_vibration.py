@@ -4,6 +4,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+import xarray as xr
 from matplotlib.axes import Axes
 
 import beltdyn as bd
@@ -25,10 +26,9 @@ def found(tmp_path_factory: pytest.TempPathFactory) -> bd.Result:
 
 def test_lines_and_marks(found: bd.Result, ax: Axes) -> None:
     plot.response(found, ax=ax)
-    total, line, marks = ax.lines
+    line, marks = ax.lines  # one excitation is the sum of all
     expected = found.dataset.span_tension_amplitude.values[:, 0, 0]
     np.testing.assert_allclose(np.asarray(line.get_ydata()), expected)
-    np.testing.assert_allclose(np.asarray(total.get_ydata()), expected)
     assert marks.get_marker() == "o"
     np.testing.assert_allclose(np.asarray(marks.get_ydata()), [1.0, 2.0])
     assert ax.get_title("left") == "Span tension, driver-driven"
@@ -51,7 +51,7 @@ def test_speeds_beyond_the_linear_range_are_shaded(found: bd.Result, ax: Axes) -
 
 def test_speeds_in_rpm(found: bd.Result, ax: Axes) -> None:
     plot.response(found, "pulley_speed", "driver", ax=ax)
-    np.testing.assert_allclose(np.asarray(ax.lines[1].get_ydata())[-1], 0.002 * 120.0 * 30.0 / np.pi)
+    np.testing.assert_allclose(np.asarray(ax.lines[0].get_ydata())[-1], 0.002 * 120.0 * 30.0 / np.pi)
     assert ax.get_ylabel() == "Amplitude [rpm]"
 
 
@@ -62,4 +62,21 @@ def test_what_is_not_there(found: bd.Result, variable: str, of: str | int) -> No
 
 
 def test_all_on_a_page(found: bd.Result, tmp_path: Path) -> None:
-    assert [path.name for path in plot.save_all(found, tmp_path)] == ["response.png"]
+    assert [path.name for path in plot.save_all(found, tmp_path)] == ["amplitudes.png", "response.png"]
+
+
+def test_amplitudes_of_all_spans_over_speed(found: bd.Result, ax: Axes) -> None:
+    """Of two excitations that are alike their sum; and the share of friction in per cent."""
+    twice = bd.Result(xr.concat([found.dataset] * 2, "excitation", data_vars="minimal"), found.drive)
+    plot.amplitudes(twice, "span_tension", ax=ax)
+    for line, span in zip(ax.lines, found.dataset.span.values, strict=True):
+        expected = 2.0 * found.dataset.span_tension_amplitude.sel(span=span).values[:, 0]
+        np.testing.assert_allclose(np.asarray(line.get_ydata()), expected)
+        assert line.get_label() == span
+    assert (ax.get_title("left"), ax.get_ylabel()) == ("Span tension", "Amplitude [N]")
+    ax.clear()
+    plot.amplitudes(found, "friction_used", ax=ax)
+    used = found.dataset.largest_friction_used.values
+    np.testing.assert_allclose(np.asarray(ax.lines[0].get_ydata()), 100.0 * used[:, 0])
+    with pytest.raises(ModelError, match="is not a result of a response"):
+        plot.amplitudes(found, "speeds")

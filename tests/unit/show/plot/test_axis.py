@@ -27,5 +27,7 @@ def test_stiffness_and_frequency_are_drawn_over_the_stroke() -> None:
     way, stiffness = np.array(ax.lines[0].get_data())
     assert way == pytest.approx([-50.0, 50.0])
     assert stiffness == pytest.approx(1e-3 * found.dataset.stiffness.values)
-    (right,) = [one for one in ax.figure.axes if one is not ax]
-    assert np.array(right.lines[0].get_ydata()) == pytest.approx(found.dataset.frequency.values)
+    frequencies = bd.plot.stroke(found, "frequency").lines[0].get_ydata()
+    assert np.array(frequencies) == pytest.approx(found.dataset.frequency.values)
+    with pytest.raises(ModelError, match="Choose one of stiffness, frequency"):
+        bd.plot.stroke(found, "mass")
