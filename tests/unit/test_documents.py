@@ -222,7 +222,7 @@ def test_the_tutorial_prints_what_it_says(
     assert told == 1
 
 
-COSTLY_TASKS = {"belt", "design", "python", "resonance", "slip", "squeal"}
+COSTLY_TASKS = {"accessory_drive", "belt", "design", "printer_axis", "python", "resonance", "slip", "squeal"}
 """Tasks that optimize, calibrate, simulate over time, and compute responses and squeal."""
 
 

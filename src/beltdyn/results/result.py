@@ -211,7 +211,7 @@ def build_result(
     def labelled(parts: Mapping[str, tuple[Variable, ArrayLike]]) -> dict[str, tuple[object, ...]]:
         return {name: (variable.dims, values, variable.attributes) for name, (variable, values) in parts.items()}
 
-    origin = provenance(drive.text, f"{drive.title}, {kind}", kind) | own_kinds(drive)
+    origin = provenance(drive.text, f"{drive.title}, {kind.replace('_', ' ')}", kind) | own_kinds(drive)
     if kind in ANALYSES and ANALYSES[kind].stays:
         origin |= mesh_used(drive, STAYING)
     attributes = origin | {"status": "completed", "warnings": "\n".join(warnings)}

@@ -15,6 +15,7 @@ from beltdyn.results.result import Result
 from beltdyn.results.run import Run
 from beltdyn.results.schema import Recorded, names
 from beltdyn.show.tables import Facts, Sheet, Table
+from beltdyn.theory.input_shaping import EI_TOLERANCE, best_shaper
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -63,10 +64,6 @@ def _ringing(run: Run, recorded: Recorded, since: BoolArray) -> tuple[str, str]:
     return size, f"dies away with {real.rate:.2g} 1/s, by half in {math.log(2.0) / real.rate:.2g} s"
 
 
-FITS = 0.05
-"""Vibration left over the stroke with which a shaper fits: that which EI is made for."""
-
-
 def stroke_sheet(result: Result) -> Sheet:
     """Give the sheet of an axis over its stroke: recommended tension, ringing, input shapers, stiffness and modes."""
     dataset = result.dataset
@@ -101,12 +98,11 @@ def _axis_facts(dataset: "xr.Dataset") -> Iterator[tuple[str, str]]:
 def _fitting_shaper(dataset: "xr.Dataset") -> str:
     """The shortest shaper that leaves little, or that which leaves least."""
     names, left = dataset["shaper"].values, dataset["shaper_residual"].values
-    fitting = np.flatnonzero(left <= FITS)
-    number = int(fitting[0]) if fitting.size else int(np.argmin(left))
+    number = best_shaper(left)
     frequency, longer = (float(dataset[name][number]) for name in ("shaper_frequency", "shaper_duration"))
     said = f"{names[number]} at {frequency:.4g} Hz leaves at most {left[number]:.1%} of the vibration over the stroke"
-    if not fitting.size:
-        return f"none leaves {FITS:.0%} or less; {said}. Over a shorter stroke frequencies are nearer together"
+    if left[number] > EI_TOLERANCE:
+        return f"none leaves {EI_TOLERANCE:.0%} or less; {said}. Over a shorter stroke frequencies are nearer together"
     return f"{said}, and makes moves {1e3 * longer:.2g} ms longer"
 
 

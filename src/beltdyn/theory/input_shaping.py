@@ -124,3 +124,17 @@ def fitted_shaper(name: str, frequencies: FloatArray, damping: float, trials: in
     left = [float(residual_vibration(shaper, frequencies, damping).max()) for shaper in shapers]
     best = int(np.argmin(left))
     return float(tried[best]), left[best], shapers[best]
+
+
+def best_shaper(residuals: FloatArray, limit: float = EI_TOLERANCE) -> int:
+    """Number of the shortest shaper that leaves at most a limit, or of that which leaves least.
+
+    Parameters
+    ----------
+    residuals : FloatArray
+        Vibration that each leaves, from the shortest on, shape (n,).
+    limit : float
+        Vibration left with which a shaper fits.
+    """
+    fitting = np.flatnonzero(residuals <= limit)
+    return int(fitting[0]) if fitting.size else int(np.argmin(residuals))

@@ -1,6 +1,6 @@
 """A linear axis over its stroke: stiffness at the carriage, and natural frequency, about rest."""
 
-from typing import Annotated, Any
+from typing import TYPE_CHECKING, Annotated, Any
 
 import numpy as np
 from pydantic import Field
@@ -19,8 +19,11 @@ from beltdyn.solvers.run_progress import Progress, Report
 from beltdyn.state.installation import Rest, on_equal_elements, rest_of
 from beltdyn.state.static import standing
 from beltdyn.system.constant_drive import constant_drive
-from beltdyn.theory.input_shaping import SHAPERS, fitted_shaper
+from beltdyn.theory.input_shaping import SHAPERS, best_shaper, fitted_shaper
 from beltdyn.vibration.small_motions import sticking_rate
+
+if TYPE_CHECKING:
+    import xarray as xr
 
 _INSET = 0.05
 """Part of the free stroke at each end that the default range leaves out: a clamp at a pulley has no span."""
@@ -149,8 +152,21 @@ def stroke(
         "span": (Variable(_SPANS, "1", "Span", "str"), ["-".join(names) for names in drive.spans]),
     }
     result = build_result("stroke", drive, values, coordinates, doubts)
-    result.dataset.attrs.update(axes="place", columns_by="mode")
+    result.dataset.attrs.update(axes="place", columns_by="mode", answer=_answer(result.dataset))
     return result
+
+
+def _answer(dataset: "xr.Dataset") -> str:
+    """Tension, ringing and input shaper in a sentence."""
+    frequencies, left = dataset["frequency"].values, dataset["shaper_residual"].values
+    best, tension = best_shaper(left), float(dataset["tension"].mean())
+    shaper, frequency = str(dataset["shaper"].values[best]), float(dataset["shaper_frequency"][best])
+    has_moves = "recommended_tension" in dataset
+    needed = f"at least {float(dataset['recommended_tension']):.3g} N" if has_moves else "unknown"
+    return (
+        f"Required tension {needed}, {tension:.4g} N at rest; rings at {frequencies.min():.4g} to "
+        f"{frequencies.max():.4g} Hz over the stroke; {shaper} at {frequency:.4g} Hz leaves {left[best]:.1%} of it"
+    )
 
 
 def _damping_ratio(drive: Drive, frequency: float, mobility: float) -> float:

@@ -7,11 +7,11 @@ import pytest
 import beltdyn as bd
 from beltdyn.results import Run
 from beltdyn.results.limits import key_numbers
-from beltdyn.show.axis_sheet import FITS
 from beltdyn.show.plot.figures import chosen_by_default
 from beltdyn.show.report.report import write_report
 from beltdyn.show.sheet import sheet
 from beltdyn.show.tables import Facts, Table
+from beltdyn.theory.input_shaping import EI_TOLERANCE
 
 MOVE = {"kind": "s_curve", "times": [0.01], "angles": ["0.2 turn"], "speed": "5 turn/s", "acceleration": "200 turn/s^2"}
 
@@ -85,9 +85,10 @@ def test_the_shortest_shaper_that_fits_is_named() -> None:
         found = bd.stroke(axis, places=places)
         facts = dict(fact for part in sheet(found).parts if isinstance(part, Facts) for fact in part.facts)
         left = found.dataset.shaper_residual
-        assert (float(left[0]) <= FITS) is fits
+        assert (float(left[0]) <= EI_TOLERANCE) is fits
         name = "ZV" if fits else str(left.shaper.values[left.values.argmin()])
         assert f"{name} at " in facts["input shaper"]
         assert facts["input shaper"].startswith("none") is not fits
+        assert f"{name} at " in found.dataset.attrs["answer"]
         needed = float(found.dataset.recommended_tension)
         assert facts["recommended tension"].startswith(f"at least {needed:.3g} N")

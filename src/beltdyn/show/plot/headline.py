@@ -15,6 +15,7 @@ from matplotlib.patches import Patch
 from matplotlib.text import Text
 
 from beltdyn.model import loads
+from beltdyn.parts.messages import show
 from beltdyn.parts.quantity import RPM
 from beltdyn.parts.text_file import as_text
 from beltdyn.results import Result, Run, StaticResult, power_balance
@@ -87,10 +88,8 @@ def names_of_results(results: Sequence[Result]) -> list[str]:
         names = [name(result) for result in results]
         if all(names) and len(set(names)) == len(names):
             return names
-    given = [given_keys(result) for result in results]
-    keys = list(dict.fromkeys(key for one in given for key in one))
-    differing = [key for key in keys if len({str(one.get(key)) for one in given}) > 1][:_MOST_KEYS]
-    names = [", ".join(f"{key} = {one.get(key, 'by default')}" for key in differing) for one in given]
+    differing = [(key, [value.strip('"') for value in row]) for key, row in differing_keys(results)[:_MOST_KEYS]]
+    names = [", ".join(f"{key} = {row[number]}" for key, row in differing) for number in range(len(results))]
     return names if len(set(names)) == len(names) else [f"result {n}" for n, _ in zip(count(1), results, strict=False)]
 
 
@@ -101,9 +100,19 @@ def given_keys(result: Result) -> dict[str, Any]:
     return dict(_keys(drive.data))
 
 
-def typed_keys(result: Result) -> dict[str, Any]:
-    """Give the numbers and texts of a drive file with their paths, as they stand in the file."""
-    return dict(_keys(tomllib.loads(result.drive_as_given)))
+def differing_keys(results: Sequence[Result]) -> list[tuple[str, list[str]]]:
+    """Give the keys in which drives differ, with their values as they stand in the files.
+
+    Where a file holds all keys, as that of a drive changed in Python does, values are those of the drives.
+    """
+    read = [given_keys(result) for result in results]
+    typed = [dict(_keys(tomllib.loads(result.drive_as_given))) for result in results]
+    if any(keys.keys() <= text.keys() for keys, text in zip(read, typed, strict=True)):
+        typed = read
+    names = dict.fromkeys(key for text in typed for key in text)
+    rows = {key: [show(text[key]) if key in text else "by default" for text in typed] for key in names}
+    same = {key for key in names if all(key in keys for keys in read) and len({show(keys[key]) for keys in read}) == 1}
+    return [(key, row) for key, row in rows.items() if len(set(row)) > 1 and key not in same]
 
 
 def _keys(data: Any, path: str = "") -> Iterator[tuple[str, Any]]:

@@ -15,7 +15,6 @@ from matplotlib.colors import to_hex
 
 from beltdyn.errors import ModelError, Parts
 from beltdyn.model.alignment import is_given
-from beltdyn.parts.messages import show
 from beltdyn.parts.text_file import as_text
 from beltdyn.results import Result, Run, StaticResult
 from beltdyn.results.atomic import MARK, atomic_path, is_marked, require_replaceable
@@ -23,7 +22,7 @@ from beltdyn.results.cycles import ends_at_standstill
 from beltdyn.results.provenance import mesh_facts
 from beltdyn.results.schema import runs_steadily
 from beltdyn.show.notebook import picture
-from beltdyn.show.plot.headline import given_keys, headlines, name_of, names_of_results, typed_keys
+from beltdyn.show.plot.headline import differing_keys, given_keys, headlines, name_of, names_of_results
 from beltdyn.show.plot.style import tension_colors
 from beltdyn.show.report.chart import Shown, charted
 from beltdyn.show.report.replay import motion, swinging
@@ -99,15 +98,6 @@ def analysis_of(result: Result) -> str:
     if isinstance(result, Run) and runs_steadily(result.dataset):
         return "steady"
     return "sweep" if "swept_pulley" in result.dataset.attrs else result.kind.replace("_", " ")
-
-
-def differing_keys(results: Sequence[Result]) -> list[tuple[str, list[str]]]:
-    """Give the keys of drive files in which drives differ, with their values as they stand in the files."""
-    typed, read = [typed_keys(result) for result in results], [given_keys(result) for result in results]
-    keys = dict.fromkeys(key for one in typed for key in one)
-    values = {key: [show(one[key]) if key in one else "by default" for one in typed] for key in keys}
-    same = {key for key in keys if all(key in one for one in read) and len({show(one[key]) for one in read}) == 1}
-    return [(key, row) for key, row in values.items() if len(set(row)) > 1 and key not in same][:_MOST_DIFFERENCES]
 
 
 def _hash(content: bytes) -> str:
@@ -234,7 +224,7 @@ def _page(results: Sequence[Result], parts: Parts) -> str:
             widest=_WIDEST_TABLE,
             numbers=done(partial(compared, results), []),
             unjudged=done(partial(unjudged_in_words, results), []),
-            differences=done(partial(differing_keys, results), []),
+            differences=done(lambda: differing_keys(results)[:_MOST_DIFFERENCES], []),
             names=names,
             figures=drawn,
             faults=list(dict.fromkeys(map(str, parts.errors))),

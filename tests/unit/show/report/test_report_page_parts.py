@@ -5,7 +5,8 @@ from pathlib import Path
 
 from beltdyn.results import Run, open_run
 from beltdyn.results.provenance import mesh_used
-from beltdyn.show.report.report import differing_keys, origin, write_report
+from beltdyn.show.plot.headline import differing_keys
+from beltdyn.show.report.report import origin, write_report
 
 
 def test_the_origin_names_versions_hashes_and_settings(run: Run, tmp_path: Path) -> None:
