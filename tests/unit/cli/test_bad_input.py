@@ -25,6 +25,7 @@ DRIVEN = "center = [0.191441, 0.0]\nradius = 0.08125"
 SPEED = 'speed = { kind = "ramp", start = 0.05, end = 0.6, value = 12.0 }'
 TORQUE = 'torque = { kind = "cosine_ramp", start = 0.05, end = 0.6, value = 0.0 }'
 THIRD = '\n[[pulley]]\nname = "idler"\ninertia = 0.1\n'
+FOURTH = THIRD.replace("idler", "low")
 
 CASES = (
     # keys
@@ -353,10 +354,10 @@ CASES = (
     Case("empty name", 'name = "driven"', 'name = ""', ("pulley[2].name", "letters")),
     Case("name is a number", 'name = "driven"', "name = 2", ("pulley[2].name = 2", "text in quotation marks")),
     Case(
-        "clockwise order",
+        "wrong order either way round",
         "[contact]",
-        f"{THIRD}center = [0, -0.4]\nradius = 0.05\n[contact]",
-        ("not listed in the order", "counter-clockwise", '"driver", "idler", "driven"'),
+        f"{THIRD}center = [0, 0.4]\nradius = 0.05\n{FOURTH}center = [0, -0.4]\nradius = 0.05\n[contact]",
+        ("not listed in the order", "counter-clockwise", '"driver", "low", "driven", "idler"'),
     ),
     Case(
         "pulley inside",

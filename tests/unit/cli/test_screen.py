@@ -45,12 +45,19 @@ def test_the_name_of_a_drive_stands_above(run: Run, capsys: pytest.CaptureFixtur
 def test_tensioners_stand_in_degrees_or_millimetres(
     run: Run, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    tensioners = (TensionerSummary("idler", True, 0.2, 0.1, 0.3), TensionerSummary("driven", False, *3 * (2e-3,)))
+    """An arm by its angle from the x axis: it hangs from its pivot at -90°, and turns so that the path lengthens."""
+    tensioners = (TensionerSummary("driver", True, 0.2, 0.1, 0.3), TensionerSummary("driven", False, *3 * (2e-3,)))
     summary = replace(summarize(run), tensioners=tensioners)
     monkeypatch.setattr("beltdyn.show.sheet.summarize", lambda _: summary)
-    show_result(run)
+    x, y = run.drive.pulleys[0].center
+    arm = {"kind": "rotary", "pulley": "driver", "pivot": (x, y + 1.0), "preload": 1.0, "rate": 1e3, "inertia": 1.0}
+    slide = {"kind": "sliding", "pulley": "driven", "direction": [1, 0], "mass": 1.0, "preload": 60.0, "rate": 1e4}
+    show_result(Run(run.dataset, run.drive.replace(tensioner=[arm, slide])))
     output = " ".join(capsys.readouterr().out.split())
-    assert "tensioner of idler 11.46° (range 5.73° to 17.19°) tensioner of driven 2 mm mesh errors" in output
+    sense = -1.0 if run.drive.pulleys[1].center[0] > x else 1.0
+    place, *ends = (np.degrees(sense * angle) - 90.0 for angle in (0.2, 0.1, 0.3))
+    low, high = sorted(ends)
+    assert f"arm angle of driver {place:.4g}° (range {low:.4g}° to {high:.4g}°) tensioner of driven 2 mm" in output
 
 
 def test_summary_of_a_static_equilibrium(make_run: Callable[..., Run], capsys: pytest.CaptureFixture[str]) -> None:

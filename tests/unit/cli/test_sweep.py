@@ -91,7 +91,7 @@ def test_figures_of_several_files(run_main: RunMain, refuse: Refuse, result_file
     [
         (
             ["--figures", "slips"],
-            "figure 'slips' is unknown. Choose from configuration, contact_forces",
+            "figure 'slips' is unknown. Choose from configuration, carriage_error, contact_forces",
         ),
         (["--figures", "slip,"], "figure '' is unknown"),
         (["--pulley", "idler"], "pulley = 'idler' is not in this drive. Choose one of driver, driven."),
