@@ -274,7 +274,7 @@ def test_strict_run(
     code: int,
     error: str,
 ) -> None:
-    run.__dict__["warnings"] = warnings  # where a cached property keeps its value
+    monkeypatch.setitem(run.__dict__, "warnings", warnings)  # where a cached property keeps its value
     end_as(monkeypatch, run)
     found, output, message = run_main(["simulate", str(drive_file), *words])
     assert found == code
