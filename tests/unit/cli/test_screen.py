@@ -139,7 +139,7 @@ def test_seven_pulleys_fit_one_screen(
     )
     span = replace(summary.spans[0], name="power steering pump-air conditioning", tension=1234.5)
     full = replace(summary, pulleys=(pulley,) * 7, spans=(span,) * 7)
-    run.__dict__["warnings"] = ["a warning."] * 7  # where a cached property keeps its value
+    monkeypatch.setitem(run.__dict__, "warnings", ["a warning."] * 7)  # where a cached property keeps its value
     monkeypatch.setitem(run.drive.__dict__, "guides", np.zeros(7, bool))
     monkeypatch.setattr("beltdyn.show.sheet.summarize", lambda _: full)
     monkeypatch.setenv("COLUMNS", "100")
