@@ -17,7 +17,7 @@ class ContactLaw(NamedTuple):
     follow_zone: bool
     """Integrate over the contact zone of an element only; False is the published rule, over the whole element."""
     arm_to_rim: bool = False
-    """Whether the moment arm of friction is R; False is the published rule, R - d."""
+    """Whether the moment arm of friction is that of slip; False is the published rule, R - d."""
 
 
 class PulleyState(NamedTuple):
@@ -43,6 +43,8 @@ class PulleyState(NamedTuple):
     """Damping over stiffness of contact against that of the law."""
     rim_ratio: float = 1.0
     """Radius at which the tension line rolls off over that of the surface."""
+    cord: float = 0.0
+    """Whether slip is taken at the radius of the cord, which sinks into the belt's rubber: 1, else 0."""
     hertz: float = 0.0
     """Penetration of a solid roller over the square of its line force, 2 R / (b E*)^2, m^3/N^2."""
     lasting: float = 0.0

@@ -26,7 +26,10 @@ class Approach(NamedTuple):
     lever: float
     """Arm p . n of a force along t about the shaft, m; rho of a smooth circle."""
     rim: float
-    """The same of the surface below the point, p . n + d, m; R of a smooth circle, times `PulleyState.rim_ratio`."""
+    """The arm with which slip is taken: that of the surface below the point, p . n + d, m; R of a smooth circle,
+    times `PulleyState.rim_ratio`; less d where it is taken at the cord."""
+    sinking: float
+    """By how much `rim` falls with the penetration: `PulleyState.cord`."""
     offset: float
     """Arm p . t of a force along n about the shaft, m; zero of a smooth circle."""
     turn: float
@@ -46,11 +49,13 @@ def approach(x: float, y: float, velocity_x: float, velocity_y: float, pulley: P
     """
     dx, dy = x - pulley.center_x, y - pulley.center_y
     vx, vy = velocity_x - pulley.velocity_x, velocity_y - pulley.velocity_y
-    return _approach(pulley.surface, dx, dy, vx, vy, pulley.speed, pulley.rim_ratio)
+    return _approach(pulley.surface, dx, dy, vx, vy, pulley.speed, pulley.rim_ratio, pulley.cord)
 
 
 @kernel(inline=True)
-def _to_circle(surface: Any, dx: float, dy: float, vx: float, vy: float, speed: float, rim_ratio: float) -> Approach:
+def _to_circle(
+    surface: Any, dx: float, dy: float, vx: float, vy: float, speed: float, rim_ratio: float, cord: float
+) -> Approach:
     """A smooth circle, whose angle does not matter."""
     distance = sqrt(dx * dx + dy * dy)
     nx, ny = dx / distance, dy / distance
@@ -60,7 +65,8 @@ def _to_circle(surface: Any, dx: float, dy: float, vx: float, vy: float, speed: 
         normal_y=ny,
         curvature=1.0 / distance,
         lever=distance,
-        rim=surface.radius * rim_ratio,
+        rim=surface.radius * rim_ratio - cord * (surface.radius - distance),
+        sinking=cord,
         offset=0.0,
         turn=0.0,
         radial=nx * vx + ny * vy,
@@ -69,7 +75,9 @@ def _to_circle(surface: Any, dx: float, dy: float, vx: float, vy: float, speed: 
 
 
 @kernel
-def _to_shape(surface: Any, dx: float, dy: float, vx: float, vy: float, speed: float, rim_ratio: float) -> Approach:
+def _to_shape(
+    surface: Any, dx: float, dy: float, vx: float, vy: float, speed: float, rim_ratio: float, cord: float
+) -> Approach:
     """A surface that turns with its pulley."""
     gap = shaped_gap(surface, dx, dy)
     nx, ny = gap.normal_x, gap.normal_y
@@ -80,7 +88,8 @@ def _to_shape(surface: Any, dx: float, dy: float, vx: float, vy: float, speed: f
         normal_y=ny,
         curvature=gap.curvature,
         lever=lever,
-        rim=lever + gap.penetration,
+        rim=lever + (1.0 - cord) * gap.penetration,
+        sinking=cord,
         offset=offset,
         turn=1.0 - gap.curvature * lever,
         radial=nx * vx + ny * vy + speed * offset,
@@ -106,10 +115,13 @@ def tooth_approach(x: float, y: float, velocity_x: float, velocity_y: float, pul
     """Position and motion of the middle of a tooth against its seat, about the shaft; see `approach`."""
     dx, dy = x - pulley.center_x, y - pulley.center_y
     vx, vy = velocity_x - pulley.velocity_x, velocity_y - pulley.velocity_y
-    return _to_circle(Round(_seat(pulley.surface)), dx, dy, vx, vy, pulley.speed, pulley.rim_ratio)
+    return _to_circle(Round(_seat(pulley.surface)), dx, dy, vx, vy, pulley.speed, pulley.rim_ratio, 0.0)
 
 
 @kernel
 def slip_velocity(point: Approach, pulley: PulleyState) -> float:
-    """Slip velocity v_t = t . dr/dt - omega R (Eq. 22), m/s; published with R, not with the radius of the point."""
+    """Slip velocity v_t = t . dr/dt - omega a, m/s: with R as published (Eq. 22), or with the radius of the cord.
+
+    Rubber that sticks to the rim follows its rotation, and the cord above it has no slip at the speed omega rho.
+    """
     return point.circumferential - pulley.speed * point.rim

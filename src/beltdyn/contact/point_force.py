@@ -11,6 +11,7 @@ and change n by t db, t by -n db, p_n by dr_n + p_t db, p_t by dr_t - p_n db, an
     d by -dr_n - p_t d(theta),
     w by dv_n + v_t db + omega (dr_t - p_n db) + p_t d(omega),
     the slip velocity by dv_t - w db + omega p_t d(theta) - a d(omega), and the speed of the rim by R d(omega),
+    with slip at the cord, where a = p_n, also by -omega (dr_n + p_t d(theta)),
 
 from which the variations of f_n n + (f_t + f_r) t and of the moment f_n p_t - arm f_t follow.  Rolling resistance f_r
 goes by the velocity v_t against the shaft, which changes by dv_t - v_n db.  On a smooth circle kappa p_n = 1 and
@@ -33,10 +34,10 @@ from beltdyn.kernel import kernel
 def moment_arm(point: Approach, law: ContactLaw) -> tuple[float, float]:
     """Arm of friction about the pulley's shaft, m, and its change with the distance of the point.
 
-    On a smooth circle the arm is R - d as published (Eq. 23), the distance of the point; or R, with which slip is taken
-    (Eq. 22), so that friction can only lose energy: f_t v_t in place of f_t (v_t + omega d).
+    On a smooth circle the arm is R - d as published (Eq. 23), the distance of the point; or that with which slip is
+    taken (Eq. 22), so that friction can only lose energy: f_t v_t in place of f_t (v_t + omega d).
     """
-    return (point.rim, 0.0) if law.arm_to_rim else (point.lever, 1.0)
+    return (point.rim, point.sinking) if law.arm_to_rim else (point.lever, 1.0)
 
 
 @kernel
@@ -225,7 +226,7 @@ def point_tangent(
     swing = here.circumferential * here.curvature + speed * here.turn
     sweep = -by_position * force.normal.by_rate * swing
     drag = by_velocity - here.radial * tilt
-    friction_n = force.by_normal * sink
+    friction_n = force.by_normal * sink - force.by_slip * by_position * speed * here.sinking
     friction_t = force.by_normal * sweep + force.by_slip * drag
     rolling = force.rolling
     roll = rolling.by_normal * sweep + rolling.by_velocity * (drag + speed * here.offset * tilt)
@@ -255,7 +256,7 @@ def point_turn(here: Approach, force: PointForce, speed: float, by_angle: float,
     tilt, lift = here.turn * by_angle, here.offset * by_angle
     rate = (here.circumferential - speed * here.lever) * tilt + here.offset * by_speed
     normal = -force.normal.by_penetration * lift - force.normal.by_rate * rate
-    along += force.by_slip * (speed * lift - here.radial * tilt) + force.by_normal * normal
+    along += force.by_slip * ((1.0 - here.sinking) * speed * lift - here.radial * tilt) + force.by_normal * normal
     arm = here.offset * tilt - (1.0 - force.arm_slope) * lift
     moment = normal * here.offset - force.normal.force * here.lever * tilt - along * force.arm - force.friction * arm
     rolling = force.rolling

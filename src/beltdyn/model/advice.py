@@ -32,6 +32,8 @@ _ADDED, _AT, _POWER = 0.14, 3.0, 1.75
 """Share of slip added by friction with three creep lengths on an arc, and its decay with their number."""
 _ARM = 0.005
 """Largest penetration over the radius if friction acts at the belt's point."""
+_SINKING = 1e-4
+"""Penetration over the radius above which slip at the cord depends on the stiffness of contact."""
 
 
 def judge_contact(drive: Drive, installation: Installation, *, soft: bool = False) -> Iterator[Finding]:
@@ -44,6 +46,7 @@ def judge_contact(drive: Drive, installation: Installation, *, soft: bool = Fals
     yield from _damping(drive)
     yield from _friction(drive, chosen, installation)
     yield from _moment_arm(drive, installation)
+    yield from _slip_radius(drive, installation)
 
 
 def _without_numbers(contact: Contact) -> Contact:
@@ -138,6 +141,18 @@ def _moment_arm(drive: Drive, installation: Installation) -> Iterator[Finding]:
             f"Friction torques are too small by that share, and friction may generate power: losses are wrong by up "
             f"to {share:.1%} of the power.",
             'Set contact.moment_arm = "rim", or increase contact.stiffness.',
+        )
+
+
+def _slip_radius(drive: Drive, installation: Installation) -> Iterator[Finding]:
+    contact, share = drive.contact, float(np.max(installation.penetrations / drive.radii))
+    rubber = drive.belt.contact_stiffness or contact.stiffness or contact.allowed_penetration
+    if contact.slip_radius == "cord" and rubber is None and share > _SINKING:
+        yield Finding(
+            f'contact.slip_radius = "cord", but the stiffness of the rubber under the cord is unknown: contact of the '
+            f"numerical stiffness {drive.contact_stiffness:.2g} N/m^2 lets it sink by {share:.2%} of a radius.",
+            f"Slip is wrong by up to {share:.2%}.",
+            'Give belt.contact_stiffness, or set contact.slip_radius = "rim".',
         )
 
 

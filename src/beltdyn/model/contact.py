@@ -72,6 +72,11 @@ class Contact(Part):
         description="the moment arm of friction about the shaft: the effective radius, for which friction never "
         "generates energy, or the distance of the belt point, as published",
     )
+    slip_radius: Literal["rim", "cord"] = Field(
+        "rim",
+        description="the radius with which slip is taken: the effective radius of the pulley, as published, or that of "
+        "the cord, which sinks into the belt's rubber, so that slip grows with the tension over the radius",
+    )
     sampling: Literal["distributed", "nodal"] = Field(
         "distributed",
         description="the sampling of contact: distributed along the element, or, for comparison, at its nodes only",

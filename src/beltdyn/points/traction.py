@@ -60,7 +60,7 @@ _EXPECTED = frozenset({gross_slip.__name__, near_gross_slip.__name__, lifted_tee
 _VARIABLES = {
     "torque": Variable(("slip",), "N m", "Torque"),
     "elastic": Variable(("slip",), "1", "Elastic creep"),
-    "added": Variable(("slip",), "1", "Added by bending and the friction law"),
+    "added": Variable(("slip",), "1", "Added by sinking, bending and the friction law"),
     "slid": Variable(("slip",), "1", "Sliding of whole arcs"),
     "sliding_share": Variable(("slip",), "1", "Sliding share of the arc"),
     "capstan_torque": Variable(("slip",), "N m", "Capstan limit (Euler)"),
@@ -302,7 +302,7 @@ def _over_slip(arrays: Mapping[str, NDArray[Any]], number: int, sense: float) ->
     found = {
         "torque": torque,
         "elastic": arrays["elastic_creep"][:, number],
-        "added": arrays["bending"][:, number] + arrays["regularization"][:, number],
+        "added": np.add.reduce([arrays[part][:, number] for part in ("radial", "bending", "regularization")]),
         "slid": arrays["sliding"][:, number],
         "sliding_share": arrays["sliding_arc"][:, number] / arrays["wrap_angle"][:, number],
         "capstan_torque": np.abs(torque) * arrays["slip_safety"][:, number],

@@ -83,6 +83,8 @@ class PulleySummary:
     speeds along the belt; NaN when the driver stands still."""
     elastic_creep: float
     """Part of the slip due to elastic creep, as with Coulomb friction."""
+    radial: float
+    """Part of the slip due to the sinking of the cord into the belt's rubber; zero with slip taken at the rim."""
     bending: float
     """Part of the slip due to the stretch lost in bending and its hysteresis before contact."""
     regularization: float

@@ -19,6 +19,7 @@ import numpy as np
 
 from beltdyn.arrays import BoolArray, FloatArray, IntArray
 from beltdyn.model import Prepared
+from beltdyn.model.nip import foundations
 from beltdyn.model.path import span_directions
 from beltdyn.results.mechanics import (
     UNLOADED,
@@ -61,6 +62,8 @@ class SlipParts(NamedTuple):
     """The sum of the others."""
     elastic_creep: FloatArray
     """By the stretch of the spans that reach the two pulleys."""
+    radial: FloatArray
+    """By the sinking of the cord into the belt's rubber, where slip is taken at its radius."""
     bending: FloatArray
     """By what bending and its hysteresis take from the stretch until the belt touches, beyond the rolling radii."""
     regularization: FloatArray
@@ -83,6 +86,9 @@ def slip_parts(
     a part of that already. A law of friction that starts at zero lets the belt creep where it touches, and on, while it
     bends.
 
+    Where slip is taken at the cord, a pulley turns faster by w/R, the sinking w = (T - m v^2) / kR over its radius.
+    Friction that holds the belt while it still sinks takes a part of that off again.
+
     The tension T is that where the belt reaches the pulley.
     """
     law = prepared.belt.stretch_parameters
@@ -97,7 +103,18 @@ def slip_parts(
     creeps = ~(prepared.toothed & prepared.toothed[driver])
     elastic = np.where(runs[..., None], creeps * (1.0 - reached / reached[..., driver, None]), np.nan)
     bending = np.where(runs[..., None], creeps * (lost - lost[..., driver, None]), np.nan)
-    return SlipParts(total, elastic, bending, total - elastic - bending - sliding, sliding)
+    sinking = _sinking(reaching, rim, prepared)
+    radial = np.where(runs[..., None], creeps * (sinking[..., driver, None] - sinking), np.nan)
+    return SlipParts(total, elastic, radial, bending, total - elastic - radial - bending - sliding, sliding)
+
+
+def _sinking(reaching: FloatArray, rim: FloatArray, prepared: Prepared) -> FloatArray:
+    """Sinking of the cord over the radius of a pulley; zero where slip is taken at the rim."""
+    if prepared.contact.slip_radius == "rim":
+        return np.zeros_like(reaching)
+    stiffness = prepared.contact_stiffness * foundations(prepared.pulleys, prepared.belt, prepared.contact_stiffness)
+    pressing = np.maximum(reaching - prepared.belt.mass_per_length * rim**2, 0.0)
+    return np.asarray(~prepared.toothed * pressing / (stiffness * prepared.radii**2))
 
 
 def _entry_loss(reaching: FloatArray, prepared: Prepared) -> FloatArray:

@@ -30,6 +30,7 @@ PULLEY = record(
     damping="f8",  # damping over stiffness of contact against that of the law
     lossy="i8",  # whether the damper stands for hysteresis of covers and belt
     rim_ratio="f8",  # radius at which the tension line rolls off over the effective radius
+    cord="f8",  # 1 where slip is taken at the radius of the cord, else 0
     hertz="f8",  # penetration of solid rollers of a nip over the square of the line force, m^3/N^2
     lasting="f8",  # compression of the belt that stays behind a nip, m
     unloading="f8",  # stiffness of contact where the belt leaves a nip over that where it is pressed

@@ -169,6 +169,7 @@ def belt_system(
     shafts = pulley_arrays(pulleys, radii, frictions, resistances, machines.tensioners)
     if contact is not None:
         shafts["foundation"] = foundations(pulleys, belt, contact.given("stiffness"))
+        shafts["cord"] = [contact.slip_radius == "cord" and pulley.teeth is None for pulley in pulleys]
     if path is not None and path.nips:
         shafts["rim_ratio"] = rim_ratios(path.nips, pulleys, radii)
         shafts["damping"] = damping_ratios(path, pulleys, belt, contact)

@@ -57,6 +57,7 @@ def pulley_state(system: System, pulley: int, position: FloatArray, velocity: Fl
         item.foundation,
         item.damping,
         item.rim_ratio,
+        item.cord,
         item.hertz,
         item.lasting,
         item.unloading,

@@ -62,11 +62,13 @@ def answer(*arguments: Any) -> FloatArray:
     return np.append(work.force.ravel(), totals.moment)
 
 
-@pytest.fixture(params=["circle", "eccentric"])
+@pytest.fixture(params=[("circle", 0.0), ("eccentric", 0.0), ("circle", 1.0), ("eccentric", 1.0)])
 def any_pulley(
     request: pytest.FixtureRequest, pulley: PulleyState, eccentric: Callable[[float], PulleyState]
 ) -> PulleyState:
-    return pulley if request.param == "circle" else eccentric(0.9)
+    """Either surface, with slip at the rim or at the cord."""
+    surface, cord = request.param
+    return (pulley if surface == "circle" else eccentric(0.9))._replace(cord=cord)
 
 
 @pytest.mark.parametrize("follow_zone", [True, False], ids=["zone", "whole"])
@@ -145,7 +147,7 @@ def test_tangent_of_a_belt_that_flows_through_the_curve(
     assert work.moment_by_flow == pytest.approx(by_flow[-1], rel=1e-6)
 
 
-@pytest.mark.parametrize("arm_to_rim", [False, True], ids=["point", "rim"])
+@pytest.mark.parametrize(("arm_to_rim", "cord"), [(False, 0.0), (True, 0.0), (True, 1.0)], ids=["point", "rim", "cord"])
 @pytest.mark.parametrize("follow_zone", [True, False], ids=["zone", "whole"])
 @pytest.mark.parametrize(("by_angle", "by_speed"), [(1.0, 0.0), (0.0, 1.0), (1.0, 300.0)])
 def test_derivative_with_respect_to_the_turning_of_a_shaped_pulley(
@@ -153,15 +155,20 @@ def test_derivative_with_respect_to_the_turning_of_a_shaped_pulley(
     law: ContactLaw,
     follow_zone: bool,
     arm_to_rim: bool,
+    cord: float,
     by_angle: float,
     by_speed: float,
 ) -> None:
-    pulley, angle, step = eccentric(0.9), 0.9, 1e-7
+    def turned(angle: float, speed: float) -> PulleyState:
+        return eccentric(angle)._replace(speed=speed, cord=cord)
+
+    angle, step = 0.9, 1e-7
+    pulley = turned(angle, eccentric(angle).speed)
     vectors, rates = sunk(pulley, 3)
     law, basis = law._replace(follow_zone=follow_zone, arm_to_rim=arm_to_rim), np.eye(4)
     work, _ = act(vectors, rates, basis, pulley, law, by_angle, by_speed)
     there, back = (
-        answer(vectors, rates, basis, eccentric(angle + s * by_angle)._replace(speed=pulley.speed + s * by_speed), law)
+        answer(vectors, rates, basis, turned(angle + s * by_angle, pulley.speed + s * by_speed), law)
         for s in (step, -step)
     )
     expected = (there - back) / (2.0 * step)

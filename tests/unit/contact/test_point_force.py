@@ -22,6 +22,12 @@ CASES = {
 }
 
 
+@pytest.fixture(params=[0.0, 1.0], ids=["at the rim", "at the cord"])
+def pulley(request: pytest.FixtureRequest, pulley: PulleyState) -> PulleyState:
+    """With slip at either radius."""
+    return pulley._replace(cord=request.param)
+
+
 @pytest.fixture(params=list(CASES.values()), ids=list(CASES))
 def state(request: pytest.FixtureRequest, pulley: PulleyState, place: Place) -> FloatArray:
     """Position and velocity of a point, shape (4,)."""
@@ -98,7 +104,7 @@ def test_tangent_with_respect_to_the_speed_of_the_pulley(
 ) -> None:
     here = point(state, pulley)
     force = point_force(here, pulley, every_law)
-    by_speed = force.by_speed - force.by_slip * pulley.surface.radius
+    by_speed = force.by_speed - force.by_slip * here.rim
     faster, slower = (act(state, pulley._replace(speed=pulley.speed + s), every_law) for s in (1e-5, -1e-5))
     expected = np.array([-here.normal_y, here.normal_x, -force.arm]) * by_speed
     np.testing.assert_allclose(

@@ -27,13 +27,15 @@ def test_is_the_moment_of_the_reaction(
 
 
 @pytest.mark.parametrize("velocity", [(0.0, 0.0), (2.0, -1.0), (-0.5, 0.6), (-0.02, 0.01)])
-def test_with_the_arm_to_the_rim_friction_never_gives_energy(
-    pulley: PulleyState, law: ContactLaw, place: Place, velocity: tuple[float, float]
+@pytest.mark.parametrize("cord", [0.0, 1.0])
+def test_with_the_arm_of_slip_friction_never_gives_energy(
+    pulley: PulleyState, law: ContactLaw, place: Place, velocity: tuple[float, float], cord: float
 ) -> None:
+    pulley = pulley._replace(cord=cord)
     here = approach(*place(pulley, 2e-3, 1.0), *velocity, pulley)
     force = point_force(here, pulley, law._replace(arm_to_rim=True))
     moment = force.moment
-    assert moment == -pulley.surface.radius * force.friction
+    assert moment == pytest.approx(-(pulley.surface.radius - cord * 2e-3) * force.friction)
     assert force.friction * here.circumferential + moment * pulley.speed <= 0.0
 
 

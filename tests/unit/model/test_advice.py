@@ -84,6 +84,15 @@ def test_friction_at_the_point_of_a_belt_that_sinks_in(drive: Drive) -> None:
     assert [text.split(" ")[0] for text in found(soft)] == ["contact.stiffness", "contact.moment_arm"]
 
 
+def test_slip_at_a_cord_on_rubber_of_unknown_stiffness(drive: Drive) -> None:
+    """Said where contact has a numerical stiffness, and not where the belt or the user gives one."""
+    light = drive.with_({"belt.contact_stiffness": None, "contact.stiffness": None, "contact.slip_radius": "cord"})
+    (text,) = found(light)
+    assert 'Give belt.contact_stiffness, or set contact.slip_radius = "rim"' in text
+    assert found(light.with_({"contact.slip_radius": "rim"})) == []
+    assert found(light.with_({"contact.stiffness": light.contact_stiffness})) == []
+
+
 def test_soft_contact_is_told_once(drive: Drive) -> None:
     """Where `check` tells how far the belt sinks in, nothing is added."""
     soft = contact(drive, stiffness=1e-4)

@@ -22,11 +22,13 @@ BELT: Any = SimpleNamespace(
     bending_stiffness=1e-3,
     axial_stiffness=STIFFNESS,
     bending_loss_factor=0.1,
+    mass_per_length=0.1,
 )
 DRIVE: Any = SimpleNamespace(
     belt=BELT,
     belt_length=LENGTH,
-    pulleys=[SimpleNamespace()] * 3,
+    pulleys=[SimpleNamespace(cover=None)] * 3,
+    contact=SimpleNamespace(slip_radius="rim"),
     toothed=np.zeros(3, dtype=bool),
     reference=0,
     radii=RADII,
@@ -48,10 +50,11 @@ def slip_parts(
 
 def test_slip_is_what_the_rims_lose_and_its_parts_make_it_up() -> None:
     gross = np.array([-0.02, 0.01, 0.0])
-    total, elastic, bending, added, sliding = slip_parts(RIM, TENSION, gross, 1.0, DRIVE)
+    total, elastic, radial, bending, added, sliding = slip_parts(RIM, TENSION, gross, 1.0, DRIVE)
     np.testing.assert_allclose(total, [0.0, 0.01, 0.005], rtol=1e-12)
     np.testing.assert_allclose(sliding, [0.0, 0.003, 0.002], rtol=1e-12)
     np.testing.assert_allclose(elastic + bending + added + sliding, total, rtol=0, atol=1e-15)
+    assert not radial.any()
 
 
 def test_slip_is_told_against_the_driver_wherever_it_is_listed() -> None:
@@ -101,6 +104,18 @@ def test_every_instant_counts_for_itself() -> None:
         alone = slip_parts(rims[index], tensions[index], NOTHING, 1.0, DRIVE)
         for one, all_of_them in zip(alone, together, strict=True):
             np.testing.assert_array_equal(one, all_of_them[index])
+
+
+def test_a_cord_sinks_by_the_tension_that_presses_over_stiffness_and_radius() -> None:
+    """Over the radius once more; the driver, which the tight span reaches, turns faster for it."""
+    cord: Any = SimpleNamespace(**vars(DRIVE) | {"contact": SimpleNamespace(slip_radius="cord")})
+    parts = slip_parts(RIM, TENSION, NOTHING, 1.0, cord)
+    sinking = (np.array([90.0, 30.0, 50.0]) - 0.1 * RIM**2) / 1e9 / RADII**2
+    np.testing.assert_allclose(parts.radial, sinking[0] - sinking, rtol=1e-12)
+    assert parts.radial[1] > 0.0
+    np.testing.assert_allclose(sum(parts[1:]), parts.slip, rtol=0, atol=1e-15)
+    toothed: Any = SimpleNamespace(**vars(cord) | {"toothed": np.ones(3, dtype=bool)})
+    assert not slip_parts(RIM, TENSION, NOTHING, 1.0, toothed).radial.any()
 
 
 def test_bending_is_by_the_stretch_that_is_lost_before_the_belt_touches() -> None:

@@ -197,7 +197,8 @@ def slips(run: Run, start: float | None = None, end: float | None = None, *, tur
         elastic_creep_i = 1 - g(T_i) / g(T_d)
 
     with the stretches g of the spans that reach the two pulleys, (T_d - T_i) / E A at small strain, is the creep
-    of a belt without bending stiffness under Coulomb friction (Reynolds 1874, Grashof 1883). ``bending`` is due to the
+    of a belt without bending stiffness under Coulomb friction (Reynolds 1874, Grashof 1883). ``radial`` is due to the
+    sinking of the cord, with ``contact.slip_radius = "cord"``. ``bending`` is due to the
     stretch lost in bending and its hysteresis at the inlet (`theory.creep.entry_strain`), and
     ``regularization``, the rest, to the slope of the friction law. Sliding has no bound, as on an overloaded pulley.
 
@@ -213,8 +214,8 @@ def slips(run: Run, start: float | None = None, end: float | None = None, *, tur
     Returns
     -------
     xarray.Dataset
-        ``slip``, ``creep``, ``elastic_creep``, ``bending``, ``regularization`` and ``sliding`` in %, over time and
-        pulley; NaN while the driver stands still.
+        ``slip``, ``creep``, ``elastic_creep``, ``radial``, ``bending``, ``regularization`` and ``sliding`` in %, over
+        time and pulley; NaN while the driver stands still.
 
     Examples
     --------
@@ -235,6 +236,7 @@ def slips(run: Run, start: float | None = None, end: float | None = None, *, tur
         "slip": (parts.slip, "Slip"),
         "creep": (parts.slip - parts.sliding, "Creep"),
         "elastic_creep": (parts.elastic_creep, "Elastic creep"),
+        "radial": (parts.radial, "Slip due to the sinking of the cord"),
         "bending": (parts.bending, "Slip due to bending"),
         "regularization": (parts.regularization, "Slip due to the friction law slope"),
         "sliding": (parts.sliding, "Sliding"),
