@@ -49,13 +49,11 @@ def approach(x: float, y: float, velocity_x: float, velocity_y: float, pulley: P
     """
     dx, dy = x - pulley.center_x, y - pulley.center_y
     vx, vy = velocity_x - pulley.velocity_x, velocity_y - pulley.velocity_y
-    return _approach(pulley.surface, dx, dy, vx, vy, pulley.speed, pulley.rim_ratio, pulley.cord)
+    return _approach(pulley.surface, dx, dy, vx, vy, pulley)
 
 
 @kernel(inline=True)
-def _to_circle(
-    surface: Any, dx: float, dy: float, vx: float, vy: float, speed: float, rim_ratio: float, cord: float
-) -> Approach:
+def _to_circle(surface: Any, dx: float, dy: float, vx: float, vy: float, pulley: PulleyState) -> Approach:
     """A smooth circle, whose angle does not matter."""
     distance = sqrt(dx * dx + dy * dy)
     nx, ny = dx / distance, dy / distance
@@ -65,8 +63,8 @@ def _to_circle(
         normal_y=ny,
         curvature=1.0 / distance,
         lever=distance,
-        rim=surface.radius * rim_ratio - cord * (surface.radius - distance),
-        sinking=cord,
+        rim=surface.radius * pulley.rim_ratio - pulley.cord * (surface.radius - distance),
+        sinking=pulley.cord,
         offset=0.0,
         turn=0.0,
         radial=nx * vx + ny * vy,
@@ -75,9 +73,7 @@ def _to_circle(
 
 
 @kernel
-def _to_shape(
-    surface: Any, dx: float, dy: float, vx: float, vy: float, speed: float, rim_ratio: float, cord: float
-) -> Approach:
+def _to_shape(surface: Any, dx: float, dy: float, vx: float, vy: float, pulley: PulleyState) -> Approach:
     """A surface that turns with its pulley."""
     gap = shaped_gap(surface, dx, dy)
     nx, ny = gap.normal_x, gap.normal_y
@@ -88,11 +84,11 @@ def _to_shape(
         normal_y=ny,
         curvature=gap.curvature,
         lever=lever,
-        rim=lever + (1.0 - cord) * gap.penetration,
-        sinking=cord,
+        rim=lever + (1.0 - pulley.cord) * gap.penetration,
+        sinking=pulley.cord,
         offset=offset,
         turn=1.0 - gap.curvature * lever,
-        radial=nx * vx + ny * vy + speed * offset,
+        radial=nx * vx + ny * vy + pulley.speed * offset,
         circumferential=nx * vy - ny * vx,
     )
 
@@ -115,7 +111,7 @@ def tooth_approach(x: float, y: float, velocity_x: float, velocity_y: float, pul
     """Position and motion of the middle of a tooth against its seat, about the shaft; see `approach`."""
     dx, dy = x - pulley.center_x, y - pulley.center_y
     vx, vy = velocity_x - pulley.velocity_x, velocity_y - pulley.velocity_y
-    return _to_circle(Round(_seat(pulley.surface)), dx, dy, vx, vy, pulley.speed, pulley.rim_ratio, 0.0)
+    return _to_circle(Round(_seat(pulley.surface)), dx, dy, vx, vy, pulley)
 
 
 @kernel

@@ -32,8 +32,6 @@ _ADDED, _AT, _POWER = 0.14, 3.0, 1.75
 """Share of slip added by friction with three creep lengths on an arc, and its decay with their number."""
 _ARM = 0.005
 """Largest penetration over the radius if friction acts at the belt's point."""
-_SINKING = 1e-4
-"""Penetration over the radius above which slip at the cord depends on the stiffness of contact."""
 
 
 def judge_contact(drive: Drive, installation: Installation, *, soft: bool = False) -> Iterator[Finding]:
@@ -147,7 +145,7 @@ def _moment_arm(drive: Drive, installation: Installation) -> Iterator[Finding]:
 def _slip_radius(drive: Drive, installation: Installation) -> Iterator[Finding]:
     contact, share = drive.contact, float(np.max(installation.penetrations / drive.radii))
     rubber = drive.belt.contact_stiffness or contact.stiffness or contact.allowed_penetration
-    if contact.slip_radius == "cord" and rubber is None and share > _SINKING:
+    if contact.slip_radius == "cord" and rubber is None:
         yield Finding(
             f'contact.slip_radius = "cord", but the stiffness of the rubber under the cord is unknown: contact of the '
             f"numerical stiffness {drive.contact_stiffness:.2g} N/m^2 lets it sink by {share:.2%} of a radius.",

@@ -86,7 +86,8 @@ def test_friction_at_the_point_of_a_belt_that_sinks_in(drive: Drive) -> None:
 
 def test_slip_at_a_cord_on_rubber_of_unknown_stiffness(drive: Drive) -> None:
     """Said where contact has a numerical stiffness, and not where the belt or the user gives one."""
-    light = drive.with_({"belt.contact_stiffness": None, "contact.stiffness": None, "contact.slip_radius": "cord"})
+    unknown = {"belt.contact_stiffness": None, "belt.compression_loss_factor": 0.0, "contact.stiffness": None}
+    light = drive.with_(unknown | {"contact.slip_radius": "cord"})
     (text,) = found(light)
     assert 'Give belt.contact_stiffness, or set contact.slip_radius = "rim"' in text
     assert found(light.with_({"contact.slip_radius": "rim"})) == []
