@@ -24,7 +24,7 @@ EXAMPLES = [
     if example.examples and example.name.startswith(name)
 ]
 COSTLY = (
-    *("transmission_error", "stroke", "carriage_error"),
+    *("transmission_error", "stroke", "carriage_error", "plot.squeal.squeal"),
     *("calibrate.calibrate", "write_report", "line_tensions", "sheet_tensions", "sheet_slip_safety"),
 )
 """Examples of toothed belts, for which kernels are compiled, and of analyses that have quick tests of their own."""

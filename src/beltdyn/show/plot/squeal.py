@@ -36,6 +36,12 @@ def squeal(result: Result, ax: Axes | None = None) -> Axes:
     ------
     ModelError
         If the result has no answer to squeal.
+
+    Examples
+    --------
+    >>> wet = bd.modes(bd.example("alternator_drive"), squeal="wet")
+    >>> bd.plot.squeal(wet).get_xlabel()
+    'Load, factor on all loads of the drive'
     """
     if not _was_asked(result):
         raise ModelError('this result does not say whether the belt squeals. Compute `modes` with squeal = "wet".')
