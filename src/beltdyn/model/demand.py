@@ -15,7 +15,6 @@ def required_tension(drive: Drive, installation: Installation) -> RequiredTensio
     """
     if drive.carriage is not None:
         return axis_tension(drive, installation.path, installation.tension)
-    held = bool(drive.moving_tensioners) or bool(drive.ends) or drive.carriage is not None
-    if drive.driver is None or held:
+    if drive.driver is None or drive.moving_tensioners or drive.ends:
         return None
     return drive.belt_loads(drive.driver).required_tension(installation.path)

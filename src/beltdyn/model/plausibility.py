@@ -289,16 +289,18 @@ def _loose_axis(drive: Drive, installation: Installation) -> Iterator[Finding]:
     needed = required_tension(drive, installation) if drive.carriage is not None else None
     if needed is None or not installation.tension < (1.0 - NOTABLE) * needed.tension:
         return
+    jumps = "the belt may slip" if drive.belt.teeth is None else "teeth may jump"
     yield Finding(
         f"the tension at rest is {installation.tension:.4g} N, but the moves pull by {needed.load}.",
-        "A span becomes slack at an end of the stroke: the carriage is late, and teeth may jump.",
+        f"A span becomes slack at an end of the stroke: the carriage is late, and {jumps}.",
         f"Raise the tension to at least {beyond(installation.tension, needed.tension, 3):.3g} N, or accelerate less.",
     )
 
 
 def _loose_belt(drive: Drive, installation: Installation) -> Iterator[Finding]:
     """V- and V-ribbed belts between fixed centers with less tension than their load needs by the rules of makers."""
-    needed = None if drive.belt.teeth else required_tension(drive, installation)
+    other = drive.belt.teeth is not None or drive.carriage is not None
+    needed = None if other else required_tension(drive, installation)
     if needed is None or not installation.tension < (1.0 - NOTABLE) * needed.tension:
         return
     low, high = needed.by_formula.values()

@@ -112,6 +112,28 @@ def test_a_loose_axis_is_told_and_a_tight_one_is_not() -> None:
     assert not any("moves pull" in one for one in advise(tight, install(tight)))
 
 
+def test_a_loose_axis_without_teeth_is_told_by_its_own_rule_alone() -> None:
+    """Rules of makers are for V-belts under power; a smooth belt is no exception."""
+    toothed = axis(moving(1e4))
+    stiffness = {"axial_stiffness": 1e5, "bending_stiffness": 1e-3, "mass_per_length": 1e-2}
+    smooth = Drive(
+        belt={"width": 6e-3, "thickness": 1e-3, "installed_tension": 20.0} | stiffness,
+        carriage={"center": [0.15, RADIUS], "direction": [-1, 0], "length": 0.03, "mass": MASS},
+        pulley=[
+            {"name": "motor", "center": [0.0, 0.0], "radius": RADIUS, "speed": moving(1e4)},
+            {"name": "idler", "center": [0.3, 0.0], "radius": RADIUS, "inertia": 1e-7},
+        ],
+        tensioner=[{"kind": "fixed", "pulley": "idler", "direction": [1, 0]}],
+        contact={"friction": 0.5},
+        simulation={"duration": 0.4},
+    )
+    (told,) = [one for one in advise(smooth, install(smooth)) if "the tension at rest is" in one]
+    assert "moves pull" in told
+    assert "the belt may slip" in told
+    loose = toothed.with_({"belt.installed_tension": 5.0})
+    assert any("teeth may jump" in one for one in advise(loose, install(loose)))
+
+
 def test_an_axis_with_a_motor_has_no_prescribed_moves() -> None:
     drive = axis(moving(200.0))
     motor = drive.pulleys[0].replace(speed=None, inertia=1e-5, torque=0.01)
