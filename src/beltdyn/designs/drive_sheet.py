@@ -556,8 +556,8 @@ class _DriveSheet:
             "state_take_up": (Variable(_STATE, "m/rad" if turns else "1", "Take-up, path per travel"), rates),
         }
         if turns:
-            angles = np.radians(carrier.shown(positions))
-            self.variables["state_arm_angle"] = Variable(_STATE, "rad", "Arm angle, from the x axis"), angles
+            angle = Variable(_STATE, "rad", "Arm angle, from the x axis")
+            self.variables["state_arm_angle"] = angle, carrier.angle(positions)
         for name, (_, position, tension) in rows.items():
             if np.isnan(position):
                 self._notes.append(

@@ -9,11 +9,13 @@ from math import pi, sqrt
 from typing import NamedTuple
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 from beltdyn.arrays import FloatArray
+from beltdyn.model.belt import Belt
 from beltdyn.model.belt_loads import RequiredTension
 from beltdyn.model.drive import Drive
-from beltdyn.model.end import carriage_rate, range_of
+from beltdyn.model.end import Carriage, carriage_rate, range_of
 from beltdyn.model.path import Path
 
 OF_AXES = "axis, with a tenth of the pull in the slack span"
@@ -62,8 +64,7 @@ def axis_tension(drive: Drive, path: Path, tension: float) -> RequiredTension | 
     frequencies = np.sqrt(stiffness / mass) / (2.0 * pi)
     share = lengths.max(axis=0) / total  # of the force, on the shorter way
     moves = _moves(drive, path, driver, float(frequencies.max()))
-    damping = 0.5 * belt.stretch_loss_factor + pi * frequencies * belt.stretch_damping_time
-    damping += carriage.damping / (4.0 * pi * frequencies * mass)
+    damping = damping_ratio(belt, carriage, frequencies, 1.0 / mass)
     pulls = [
         _largest(mass * moves.acceleration - moves.force, moves, carriage.friction, carriage.damping, frequency, ratio)
         for frequency, ratio in zip(frequencies.tolist(), np.minimum(damping, 0.9).tolist(), strict=True)
@@ -75,6 +76,16 @@ def axis_tension(drive: Drive, path: Path, tension: float) -> RequiredTension | 
     words = f"{pull:.4g} N: {mass:.4g} kg at up to {np.abs(moves.acceleration).max():.4g} m/s²"
     words += f", with its vibration{' and friction' * bool(carriage.friction or carriage.damping)}"
     return RequiredTension(pull, {OF_AXES: needed}, words)
+
+
+def damping_ratio(belt: Belt, carriage: Carriage, frequency: ArrayLike, mobility: float) -> FloatArray:
+    """Damping ratio of a carriage that vibrates on its belt at a frequency (Hz), by losses of belt and guide.
+
+    `mobility` is the square of its way in the mode of unit mass, 1/kg.
+    """
+    hertz = np.asarray(frequency, dtype=float)
+    by_belt = 0.5 * belt.stretch_loss_factor + pi * hertz * belt.stretch_damping_time
+    return np.asarray(by_belt + carriage.damping * mobility / (4.0 * pi * hertz))
 
 
 def _ways_to_driver(path: Path, driver: int) -> FloatArray:

@@ -43,15 +43,18 @@ class Carrier:
         """What pages call its place, and their unit."""
         return ("arm angle", "°") if self.tensioner.anchor is not None else ("position", "mm")
 
-    def shown(self, positions: ArrayLike) -> FloatArray:
-        """Places as pages show positions (m, rad): angles of the arm, counter-clockwise from the x axis, °, or mm."""
-        anchor = self.tensioner.anchor
-        if anchor is None:
-            return np.asarray(1e3 * np.asarray(positions, dtype=float))
+    def angle(self, positions: ArrayLike) -> FloatArray:
+        """Angles of the arm at its positions, counter-clockwise from the x axis, rad."""
         center, rate = self.place(0.0)
-        arm = center - np.array(anchor)
+        arm = center - np.array(self.tensioner.anchor)
         sense = np.sign(arm[0] * rate[1] - arm[1] * rate[0])
-        return np.asarray(np.degrees(np.arctan2(arm[1], arm[0]) + sense * np.asarray(positions, dtype=float)))
+        return np.asarray(np.arctan2(arm[1], arm[0]) + sense * np.asarray(positions, dtype=float))
+
+    def shown(self, positions: ArrayLike) -> FloatArray:
+        """Places as pages show positions (m, rad): angles of the arm, °, or mm."""
+        if self.tensioner.anchor is None:
+            return np.asarray(1e3 * np.asarray(positions, dtype=float))
+        return np.asarray(np.degrees(self.angle(positions)))
 
     def written(self, position: float) -> str:
         """A place with its unit: the angle of an arm, or the position of a slide."""

@@ -273,7 +273,7 @@ class _Sheet:
         states = list(self._rows)
         if self._tensioner.anchor is not None:
             for row in self._rows.values():
-                row["arm_angle"] = float(np.radians(self._carrier.shown(row.get("position", np.nan))))
+                row["arm_angle"] = float(self._carrier.angle(row.get("position", np.nan)))
         known = {name for row in self._rows.values() for name in row if np.isfinite(row[name])}
         variables: Axes = {
             name: (column.variable(self._tensioner.turns), [row.get(name, np.nan) for row in self._rows.values()])

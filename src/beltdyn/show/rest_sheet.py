@@ -2,6 +2,7 @@
 
 import math
 from bisect import bisect_left
+from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
 from typing import NamedTuple
 
@@ -24,6 +25,7 @@ from beltdyn.model import (
 )
 from beltdyn.model.alignment import is_given
 from beltdyn.model.belt_loads import RequiredTension
+from beltdyn.model.carrier import Carrier
 from beltdyn.model.carrying import swinging_lengths
 from beltdyn.model.demand import required_tension
 from beltdyn.model.hysteresis import bending_resistance, compression_losses
@@ -458,8 +460,8 @@ def _spans(drive: Drive, installation: Installation) -> list[tuple[str, ...]]:
 
 def _tensioners(drive: Drive, installation: Installation) -> list[tuple[str, ...]]:
     rows = list[tuple[str, ...]]()
-    others = _others(drive, installation)
     carriers = prepare(drive).carriers
+    others = _others(drive, installation, carriers)
     for carrier, position, other in zip(carriers, installation.tensioner_positions.tolist(), others, strict=True):
         tensioner = carrier.tensioner
         unit = "N m" if tensioner.turns else "N"
@@ -494,7 +496,7 @@ def alignment_table(given: Drive, path: Path) -> Table:
     return Table(title, tuple(headings), tuple(zip(names, *columns, strict=True)))
 
 
-def _others(drive: Drive, installation: Installation) -> list[str]:
+def _others(drive: Drive, installation: Installation, carriers: Sequence[Carrier]) -> list[str]:
     """Other equilibrium positions, one text for each spring-loaded tensioner, empty if there are none."""
     return [
         ", ".join(
@@ -502,5 +504,5 @@ def _others(drive: Drive, installation: Installation) -> list[str]:
             for balance in balances
             if not balance.here
         )
-        for carrier, balances in zip(prepare(drive).carriers, tensioner_balances(drive, installation), strict=True)
+        for carrier, balances in zip(carriers, tensioner_balances(drive, installation), strict=True)
     ]

@@ -8,6 +8,7 @@ from pydantic import Field
 from beltdyn.arrays import FloatArray
 from beltdyn.errors import ModelError
 from beltdyn.model import Drive, Prepared, install, prepare
+from beltdyn.model.axis_tension import damping_ratio
 from beltdyn.model.demand import required_tension
 from beltdyn.model.end import free_stroke
 from beltdyn.model.installation import tension_checks
@@ -169,17 +170,6 @@ def _answer(dataset: "xr.Dataset") -> str:
     )
 
 
-def _damping_ratio(drive: Drive, frequency: float, mobility: float) -> float:
-    """Damping ratio of a mode of a frequency (Hz) that stretches the belt.
-
-    `mobility` is the square of the way of the carriage in the mode of unit mass, 1/kg.
-    """
-    belt, carriage = drive.belt, drive.carriage
-    assert carriage is not None
-    by_guide = carriage.damping * mobility / (4.0 * np.pi * frequency)
-    return 0.5 * belt.stretch_loss_factor + np.pi * frequency * belt.stretch_damping_time + by_guide
-
-
 def _tensions(drive: Drive) -> dict[str, tuple[Variable, Any]]:
     """Values of `_OF_TENSION` and `_OF_SPANS`; the recommended ones are left out without prescribed moves."""
     installation = install(drive)
@@ -250,7 +240,7 @@ def _at(rest: Rest, count: int) -> dict[str, Any]:
     hertz = np.sqrt(np.maximum(squares, 0.0)) / (2.0 * np.pi)
     carriage = rest.prepared.carriage
     assert carriage is not None
-    ratio = _damping_ratio(rest.prepared.drive, float(hertz[own]), float(ways[last, own] ** 2))
+    ratio = float(damping_ratio(rest.prepared.belt, carriage, hertz[own], float(ways[last, own] ** 2)))
     names = np.array(_parts(rest, last + 1))
     energies = ways[:, :count] * (mass @ ways[:, :count])
     parts = list(dict.fromkeys(names.tolist()))

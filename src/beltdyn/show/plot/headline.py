@@ -230,14 +230,14 @@ def _range(run: Run) -> str:
 def _operating_point(run: Run) -> str:
     """Mean speed of the pulley with the largest power, and the power input; at the end of a run over time."""
     with run.recorded() as recorded:
-        over = mean_window(recorded, run.prepared)
-        power = over.product(recorded, "shaft_torque", "shaft_speed")
-        speed = run.drive.positive_sense * RPM * over.mean(recorded, "pulley_speed")
-        put_in = power_balance(recorded, over).power_in
         if ends_at_standstill(recorded, run.prepared):
             driver = run.drive.reference
             fastest = RPM * float(np.abs(np.asarray(recorded["pulley_speed"])[:, driver]).max())
             return f"{run.drive.pulleys[driver].name} up to {_whole(fastest)} rpm, at standstill at the end"
+        over = mean_window(recorded, run.prepared)
+        power = over.product(recorded, "shaft_torque", "shaft_speed")
+        speed = run.drive.positive_sense * RPM * over.mean(recorded, "pulley_speed")
+        put_in = power_balance(recorded, over).power_in
     first = int(power.argmax()) if put_in > 0.0 else 0
     given = f", {_power(put_in)} input" if put_in > 0.0 else ""
     instant = "" if runs_steadily(run.dataset) else " at the end"

@@ -8,6 +8,7 @@ import xarray as xr
 from matplotlib.axes import Axes
 
 from beltdyn.errors import ModelError
+from beltdyn.model.carrier import Carrier
 from beltdyn.parts.quantity import RPM
 from beltdyn.results import Run, derived
 from beltdyn.results.energy_balance import largest_closure, losses_of
@@ -382,6 +383,15 @@ def _moves_over_time(run: Run) -> bool:
     return over_time(run) and "tensioner_position" in run.dataset
 
 
+def tensioner_places(positions: xr.DataArray, carriers: Sequence[Carrier]) -> xr.DataArray:
+    """Positions of tensioners, along the last dimension, as they are shown: arm angles, °, or slides, mm."""
+    values = [one.shown(positions.values[..., number]) for number, one in enumerate(carriers)]
+    names, units = zip(*dict.fromkeys(one.shown_as for one in carriers), strict=True)
+    titles = {"arm angle": "Arm angle", "position": "Tensioner position"}
+    about = {"units": ", ".join(units), "long_name": " or ".join(titles[name] for name in names).capitalize()}
+    return positions.copy(data=np.stack(values, axis=-1)).assign_attrs(about)
+
+
 @figure(_moves_over_time, compares=True)
 def tensioners(run: Run, ax: Axes | None = None) -> Axes:
     """Draw the positions of the tensioners over time: mm along a line, degrees of an arm.
@@ -416,11 +426,7 @@ def tensioners(run: Run, ax: Axes | None = None) -> Axes:
         raise ModelError("this drive has no moving tensioner. Choose another figure.")
     position = run.dataset["tensioner_position"]
     carriers = run.prepared.carriers
-    shown = np.column_stack([one.shown(position.values[:, number]) for number, one in enumerate(carriers)])
-    names, units = zip(*dict.fromkeys(one.shown_as for one in carriers), strict=True)
-    title = {"arm angle": "Arm angle", "position": "Tensioner position"}
-    about = {"units": ", ".join(units), "long_name": " or ".join(title[name] for name in names).capitalize()}
-    ax = lines(position.copy(data=shown).assign_attrs(about), axes_or_new(ax), pulleys=[one.pulley for one in carriers])
+    ax = lines(tensioner_places(position, carriers), axes_or_new(ax), pulleys=[one.pulley for one in carriers])
     for one in carriers:
         for name, stop in zip(("lower", "upper"), one.tensioner.stops or (), strict=False):
             place = float(one.shown(stop))

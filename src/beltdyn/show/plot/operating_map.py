@@ -16,6 +16,7 @@ from beltdyn.parts.quantity import SHOWN_UNITS
 from beltdyn.results import Result
 from beltdyn.results.checks.machines import LIFTS
 from beltdyn.show.plot.figures import Choice, always, figure
+from beltdyn.show.plot.history import tensioner_places
 from beltdyn.show.plot.style import (
     INK,
     axes_or_new,
@@ -221,7 +222,10 @@ def operating_points(result: Result, variable: str = "span_tension", *, ax: Axes
         held = values["speed" if axis == "load" else "load"]
         shown = _in_shown_units(held)
         ax.set_title(f"{held.name} {float(shown):.4g} {shown.attrs['units']}".removesuffix(" 1"))
-    values = _of_tensioners(result, values) if variable == "tensioner_position" else _in_shown_units(values)
+    if variable == "tensioner_position":
+        values = tensioner_places(values.transpose(..., "tensioner"), result.prepared.carriers)
+    else:
+        values = _in_shown_units(values)
     along = _in_shown_units(dataset[axis])
     for number, (name, line) in enumerate(_lines(values, axis)):
         mark = "o" if axis == "row" else None
@@ -377,17 +381,6 @@ def _mark_gross_slip(ax: Axes, dataset: xr.Dataset, torque: FloatArray) -> None:
         ax.plot(*at, "o", color=INK, markersize=8, markerfacecolor="none", linestyle="")
         words = f"{names} slips\nat {at[0]:.4g} N·m"
         ax.annotate(words, at, (-10, 4), textcoords="offset points", ha="right", va="bottom", fontsize=9)
-
-
-def _of_tensioners(result: Result, values: xr.DataArray) -> xr.DataArray:
-    """Arm angles, °, counter-clockwise from the x axis, or positions of slides, mm."""
-    carriers = result.prepared.carriers
-    places = [one.shown(values.sel(tensioner=one.tensioner.pulley).values) for one in carriers]
-    named = dict.fromkeys(one.shown_as for one in carriers)
-    titles = " or ".join({"arm angle": "Arm angle", "position": "Tensioner position"}[what] for what, _ in named)
-    shown = xr.zeros_like(values).transpose(..., "tensioner")
-    shown.values = np.stack(places, axis=-1)
-    return shown.assign_attrs(long_name=titles, units=", ".join(unit for _, unit in named))
 
 
 def _lines(values: xr.DataArray, axis: str) -> list[tuple[str, xr.DataArray]]:
