@@ -35,14 +35,17 @@ class _Place(NamedTuple):
     """Of contact, N/m^2."""
     tensioner: dict[str, Any]
     weights: FloatArray
-    """Of the pulleys, N, shape (pulleys, 2)."""
+    """Of the pulleys, that of a slide with its pulley, N, shape (pulleys, 2)."""
 
     @classmethod
     def of(cls, drive: dict[str, Any]) -> "_Place":
         pulleys, springs = drive["pulley"], drive.get("tensioner") or [{}]
         radii = [one["radius"] if one["side"] == "inside" else -one["radius"] for one in pulleys]
         centers = np.array([one["center"] for one in pulleys])
-        weights = np.array([[one["mass"]] for one in pulleys]) * np.array(drive["gravity"])
+        masses = [
+            one["mass"] + (springs[0].get("pulley") == one["name"]) * springs[0].get("mass", 0.0) for one in pulleys
+        ]
+        weights = np.outer(masses, drive["gravity"])
         return cls(centers, np.array(radii), drive["belt"], drive["contact"].get("stiffness"), springs[0], weights)
 
     @property
@@ -319,6 +322,22 @@ def _unbalanced(place: _Place, _: list[int], __: re.Match[str]) -> bool:
     return all(np.any(_left(travel.at(q).lines.route)) for q in travel.balances())
 
 
+def _pushed_out(place: _Place, _: list[int], __: re.Match[str]) -> bool:
+    """On the side to which spring and belt push the pulley is no stable balance in which the belt touches all."""
+    travel = _Travel.of(place)
+    pushed = np.sign(travel.excess(0.0, place.lines.pull))
+    return all(np.any(_left(travel.at(q).lines.route)) for q in travel.balances() if q * pushed > 0.0)
+
+
+def _too_heavy(place: _Place, named: list[int], said: re.Match[str]) -> bool:
+    """The weight pulls the pulley from the belt with that force, and with more than the spring pushes."""
+    travel = _Travel.of(place)
+    small, preload = 1e-4 * travel.step, place.tensioner["preload"]
+    weight = preload - 0.5 * (travel.force(small) + travel.force(-small))
+    weight_told, pushed = (float(text) for text in said.groups())
+    return named == [travel.pulley] and weight > pushed and bool(np.isclose(weight_told, weight, rtol=_ALIKE))
+
+
 def _slack(place: _Place, _: list[int], __: re.Match[str]) -> bool:
     """Where the spring has lost its force, the belt that has its tension farther away is longer than the path."""
     travel, given = _Travel.of(place), place.tensioner
@@ -343,12 +362,18 @@ def _leaves(place: _Place, named: list[int], _: re.Match[str]) -> bool:
     """Where the belt has its tension, the lines of force about the others pass beside the pulley.
 
     On a pulley of small wrap beside a span of few layers the belt bends more than at a point, and at most as on an arc.
+    A layer at the far end of a span holds the belt off its line by exp(-l / layer) of what it does there.
     """
-    there = _where_balanced(place)
+    there, pulley = _where_balanced(place), named[-1]
     lines, arcs = there.lines, place.bending / (2.0 * there.lines.pull * place.radii)
-    arcs[named[-1]] = 0.0
-    bounds = lines.route, Route.around(there.centers, place.radii + arcs)
-    return any(bool(_left(route)[named[-1]]) for route in bounds)
+    layer, count = np.sqrt(place.bending / lines.pull), place.radii.size
+    lifted = arcs.copy()
+    arcs[pulley], lifted[pulley] = 0.0, 0.0
+    for neighbor, span in ((pulley - 1, pulley - 1), ((pulley + 1) % count, pulley)):
+        lift = 2.0 * layer * np.sin(0.5 * lines.angles[neighbor]) * np.sign(place.radii[neighbor])
+        lifted[pulley] -= lift * np.exp(-lines.route.spans[span] / layer)
+    bounds = lines.route, *(Route.around(there.centers, place.radii + bent) for bent in (arcs, lifted))
+    return any(bool(_left(route)[pulley]) for route in bounds)
 
 
 def _where_balanced(place: _Place) -> _Place:
@@ -368,7 +393,8 @@ def _lifts_off(place: _Place, named: list[int], said: re.Match[str]) -> bool:
 
 _REASONS: dict[str, Callable[[_Place, list[int], re.Match[str]], bool]] = {
     r"equilibrium of the tensioner of .* is unstable": _unbalanced,
-    r"the tensioners are in equilibrium only where no belt can run": _unbalanced,
+    rf"the weight of the tensioner of .*? with {_NUMBER} N.*, its spring pushes with {_NUMBER} N": _too_heavy,
+    r"push the tensioners to where no belt can run": _pushed_out,
     r"reaches the end of its travel without balancing": _unbalanced,
     r"pushes the tensioner of .* back without losing": _unbalanced,
     r"the tensioner force gives \S+ N with a belt length of": _unbalanced,

@@ -105,6 +105,9 @@ def _remedied(given: dict[str, Any], reason: str) -> dict[str, Any] | None:
     tighter = re.search(r"still has (\S+) N, by its", reason)
     lower = re.search(r"at (\S+) N the belt leaves|the tensioner force gives (\S+) N at any belt length", reason)
     finer = re.search(r"with (\d+) elements: at rest the tension jumps .* Increase belt.elements", reason)
+    stronger = re.search(r"Give it preload = (\S+) N", reason)
+    if stronger:
+        return given | {"tensioner": [given["tensioner"][0] | {"preload": float(stronger[1])}]}
     if harder:
         return given | {"contact": given["contact"] | {"stiffness": 1.5 * float(harder[1])}}
     if tighter and float(tighter[1]) > given["belt"]["installed_tension"]:

@@ -9,7 +9,7 @@ from beltdyn.contact.friction import LAWS
 from beltdyn.model.contact import Contact
 from beltdyn.model.defaults import CREEP_LENGTHS, DAMPING_RATIO
 from beltdyn.model.drive import Drive
-from beltdyn.model.heavy_strands import slack_strands
+from beltdyn.model.heavy_parts import slack_strands
 from beltdyn.model.installation import Installation
 from beltdyn.model.plausibility import judge_plausibility
 from beltdyn.model.prepared import Prepared, prepare, tensioner_balances

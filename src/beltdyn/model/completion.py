@@ -192,6 +192,6 @@ def _check_place(given: Given, pulleys: tuple[Pulley, ...], path: Path) -> None:
         given.path_around(moved)
     except ValueError as error:
         raise ValueError(
-            f"the tensioners are in equilibrium only where no belt can run: {error}. Change the preload or the belt "
+            f"springs and belt push the tensioners to where no belt can run: {error}. Change the preload or the belt "
             "length, or give stops"
         ) from error

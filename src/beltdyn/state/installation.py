@@ -13,7 +13,7 @@ from beltdyn.arrays import FloatArray
 from beltdyn.errors import ConvergenceError
 from beltdyn.model import Drive, Installation
 from beltdyn.model import Path as BeltPath
-from beltdyn.model.heavy_strands import naming_heavy_strands
+from beltdyn.model.heavy_parts import naming_heavy_parts
 from beltdyn.model.prepared import Prepared, prepare
 from beltdyn.observation.compilation import compile_for_rest, rest_is_compiled
 from beltdyn.parts.messages import beyond, listing
@@ -108,7 +108,7 @@ def rest_of(prepared: Prepared, progress: Report | None = None) -> Rest:
     _tell(prepared, progress, "compiling")
     compile_for_rest(system, laid(system, prepared.path))
     _tell(prepared, progress, "equilibrium")
-    with naming_heavy_strands(prepared):
+    with naming_heavy_parts(prepared):
         (rest, tighter), wanted = begin(prepared, _at_rest), prepared.installed_tension
         if wanted is not None:
             rest = Tightening(prepared, wanted, lambda ahead, _: _at_rest(ahead), rest, tighter).run()

@@ -8,7 +8,7 @@ import numpy as np
 from beltdyn.arrays import FloatArray
 from beltdyn.errors import ConvergenceError, ModelError
 from beltdyn.model import Drive, Prepared
-from beltdyn.model.heavy_strands import naming_heavy_strands
+from beltdyn.model.heavy_parts import naming_heavy_parts
 from beltdyn.model.resolution import Arc, Laid
 from beltdyn.observation.compilation import ahead, compile_observing
 from beltdyn.solvers.time_limit import spend_time
@@ -110,7 +110,7 @@ def bring_to_stand(prepared: Prepared, elements: int | None = None) -> Standing:
     """
     require_passing(prepared.drive)
     fineness, wanted = first_fineness(prepared), prepared.installed_tension
-    with naming_heavy_strands(prepared):
+    with naming_heavy_parts(prepared):
         rest, tighter = begin(prepared, partial(_on_some_mesh, elements=elements, fineness=fineness))
         if wanted is not None:
             rest = _at_tension(prepared, wanted, (rest, tighter), refined=elements is None)

@@ -11,7 +11,7 @@ from beltdyn.arrays import FloatArray
 from beltdyn.errors import ConvergenceError, ModelError
 from beltdyn.machines.loads.trim import Trim
 from beltdyn.model import Drive, Prepared, prepare
-from beltdyn.model.heavy_strands import naming_heavy_strands
+from beltdyn.model.heavy_parts import naming_heavy_parts
 from beltdyn.observation.recording import Recording
 from beltdyn.parts.messages import listing
 from beltdyn.parts.options import ForceTolerance, takes_options
@@ -284,7 +284,7 @@ def _from_rest(
     def rule(standing: Standing) -> MeshRule:
         return MeshRule(0.0, elements=elements) if elements else MeshRule(standing.layer, standing.fineness)
 
-    with naming_heavy_strands(prepared):
+    with naming_heavy_parts(prepared):
         found = steady_from_rest(rest, instant, rule, force_tolerance, bands=bands)
     return _Found(found.search, found.band, found.errors, found.rule, time.perf_counter() - begun)
 

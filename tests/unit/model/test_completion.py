@@ -64,7 +64,7 @@ def test_allowed_penetration_is_that_on_the_smallest_pulley(make_drive: MakeDriv
             "flat",
             {"length": 3.9},
             [SLIDING | {"rate": 0.0}],
-            ("only where no belt can run", '"fan" to "motor"', "give stops"),
+            ("push the tensioners to where no belt can run", '"fan" to "motor"', "give stops"),
         ),
         ("flat", {"length": 2.5}, [SLIDING | {"preload": 1e-3, "rate": 0.0}], ("pushes the tensioner", "preload")),
         ("flat", {"length": 2.5}, [SLIDING | {"preload": -50.0, "rate": 0.0}], ("pushes the tensioner", "preload")),

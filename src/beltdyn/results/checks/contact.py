@@ -6,7 +6,7 @@ from collections.abc import Iterator
 import numpy as np
 
 from beltdyn.arrays import FloatArray
-from beltdyn.model.heavy_strands import slack_strands
+from beltdyn.model.heavy_parts import slack_strands
 from beltdyn.parts.messages import NOTABLE, Finding, beyond, listing
 from beltdyn.results.checks.evidence import Evidence
 from beltdyn.results.mechanics import SpanTension, across

@@ -1,4 +1,4 @@
-"""Strands that are heavier than their tension."""
+"""Strands that are heavier than their tension, and tensioners that are heavier than their springs hold."""
 
 import numpy as np
 import pytest
@@ -6,7 +6,7 @@ import pytest
 import beltdyn as bd
 from beltdyn.errors import ConvergenceError
 from beltdyn.model import advise, install, prepare
-from beltdyn.model.heavy_strands import least_strand_tensions, naming_heavy_strands, slack_strands
+from beltdyn.model.heavy_parts import heavy_tensioner, least_strand_tensions, naming_heavy_parts, slack_strands
 
 G = 9.81
 
@@ -78,7 +78,34 @@ def test_slack_strands_are_named_with_what_they_need() -> None:
 def test_failures_name_them(tension: float) -> None:
     with (
         pytest.raises(ConvergenceError, match=r"^no equilibrium\.") as failure,
-        naming_heavy_strands(prepare(conveyor(tension))),
+        naming_heavy_parts(prepare(conveyor(tension))),
     ):
         raise ConvergenceError("no equilibrium.")
     assert ("which needs 490.5 N" in str(failure.value)) == (tension < 490.0)
+
+
+@pytest.mark.parametrize(("mass", "falls"), [(2.0, False), (4.0, True)])
+def test_a_tensioner_that_its_weight_pulls_from_the_belt_is_named_with_its_preload(mass: float, falls: bool) -> None:
+    """An idler on the lower strand pushes up with 27 N and the weight of a slide and a pulley of 0.5 kg hangs on it."""
+    pulleys = [
+        {"name": "driver", "center": [0.0, 0.0], "radius": 0.05, "speed": 10.0},
+        {"name": "driven", "center": [0.5, 0.0], "radius": 0.05, "inertia": 1e-3},
+        {"name": "idler", "center": [0.25, -0.06], "radius": 0.03, "side": "outside", "inertia": 1e-4, "mass": 0.5},
+    ]
+    slide = {"kind": "sliding", "pulley": "idler", "direction": [0.0, 1.0], "preload": 27.0, "rate": 0.0, "mass": mass}
+    belt = {
+        "installed_tension": 100.0,
+        "width": 0.02,
+        "thickness": 0.002,
+        "axial_stiffness": 1e5,
+        "bending_stiffness": 0.01,
+        "mass_per_length": 0.05,
+        "friction": 0.5,
+    }
+    drive = bd.Drive(gravity=[0.0, -G], belt=belt, pulley=pulleys, tensioner=[slide], simulation={"duration": 1.0})
+    found = heavy_tensioner(prepare(drive))
+    assert (found is not None) == falls
+    if found is not None:
+        assert f"with {4.5 * G:.2f} N" in found.fault
+        assert "its spring pushes with 27 N" in found.fault
+        assert "preload = 71.2 N" in found.remedy

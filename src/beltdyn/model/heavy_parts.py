@@ -1,4 +1,4 @@
-"""Strands that are heavier than their tension, which hang slack: the least tension that each needs."""
+"""Strands that are heavier than their tension, and tensioners that are heavier than their springs hold."""
 
 from collections.abc import Iterator
 from contextlib import contextmanager
@@ -68,14 +68,37 @@ def slack_strands(prepared: Prepared, path: Path, tension: FloatArray) -> Findin
     )
 
 
+def heavy_tensioner(prepared: Prepared) -> Finding | None:
+    """A tensioner whose weight overcomes its spring, with the preload that it needs."""
+    gravity = np.array(prepared.gravity, dtype=float)
+    for carrier, position in zip(prepared.carriers, prepared.installation.tensioner_positions.tolist(), strict=True):
+        tensioner, pushes = carrier.tensioner, carrier.force(position)
+        mass = tensioner.weighing_mass(prepared.pulleys[carrier.pulley].mass)
+        pulls = -mass * float(gravity @ carrier.place(position)[1])
+        if carrier.presses or not pulls > max(pushes, 0.0):
+            continue
+        unit, needed = "N m" if tensioner.turns else "N", beyond(tensioner.preload, tensioner.preload + pulls, 3)
+        return Finding(
+            f'the weight of the tensioner of "{tensioner.pulley}" pulls it from the belt with {plain(pulls)} {unit}; '
+            f"where the belt has its tension, its spring pushes with {plain(pushes)} {unit}.",
+            "The belt hangs slack, or no equilibrium is found.",
+            f"Give it preload = {plain(needed)} {unit}, or turn it so that its weight tightens the belt.",
+        )
+    return None
+
+
 @contextmanager
-def naming_heavy_strands(prepared: Prepared) -> Iterator[None]:
-    """Add strands that hang slack at rest to the message where a search for equilibrium or steady running fails."""
+def naming_heavy_parts(prepared: Prepared) -> Iterator[None]:
+    """Add what is too heavy at rest to the message where a search for equilibrium or steady running fails."""
     try:
         yield
     except ConvergenceError as error:
         at_rest = prepared.installation
-        finding = slack_strands(prepared, at_rest.path, at_rest.span_tensions)
-        if finding is None or finding.fault in str(error):
+        findings = slack_strands(prepared, at_rest.path, at_rest.span_tensions), heavy_tensioner(prepared)
+        text = str(error)
+        for finding in findings:
+            if finding is not None and finding.fault not in text:
+                text += f" At rest {finding.fault} {finding.remedy}"
+        if text == str(error):
             raise
-        raise ConvergenceError(f"{error} At rest {finding.fault} {finding.remedy}") from error
+        raise ConvergenceError(text) from error
