@@ -50,8 +50,15 @@ def pytest_collection_finish() -> None:
     gc.enable()
 
 
+def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item]) -> None:
+    if config.getoption("--curves", None) is not None:
+        others = [item for item in items if "curve" not in getattr(item, "fixturenames", ())]
+        config.hook.pytest_deselected(items=others)
+        items[:] = [item for item in items if item not in others]
+
+
 def pytest_addoption(parser: pytest.Parser) -> None:
-    parser.addoption("--curves", metavar="FILE", help="write the curves of docs/verification to a JSON file")
+    parser.addoption("--curves", metavar="FILE", help="run only what draws docs/verification; curves to a JSON file")
     parser.addoption("--compiled", action="store_true", help="compile the kernels of points, elements and machines too")
 
 

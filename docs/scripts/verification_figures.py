@@ -2,8 +2,8 @@
 
     python docs/scripts/verification_figures.py [CURVES]
 
-runs all verification tests, slow ones too, and those of tolerance, ripple and the published drive (a quarter of an
-hour), or takes a file that `pytest --curves FILE` has written, and draws docs/_static/verification/*.svg.
+runs the verification tests that draw curves, slow ones too, and those of tolerance, ripple and the published drive (a
+quarter of an hour), or takes a file that `pytest --curves FILE` has written, and draws docs/_static/verification/*.svg.
 """
 
 import json
