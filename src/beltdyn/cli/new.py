@@ -30,6 +30,10 @@ def new(
         washing_machine.
     """
     if example is None:
+        from beltdyn.model.toml import example_texts
+
+        if file is not None and file.name in example_texts():
+            raise ModelError(f"{file} is the name of an example. Type `beltdyn new -e {file}` for it, or {file}.toml.")
         name, text = "drive", files("beltdyn.cli").joinpath("new_drive.toml").read_text(encoding="utf-8")
     else:
         from beltdyn.model.toml import example_text

@@ -54,6 +54,11 @@ class KeyNumber:
         return self.key.startswith("largest")
 
     @property
+    def is_outside_rating(self) -> bool:
+        """Whether it is a utilization outside the rating."""
+        return self.key in _UNBOUNDED and np.isinf(self.value)
+
+    @property
     def passes(self) -> bool | None:
         """Whether the value is within its limit; None without a limit or a value."""
         if self.limit is None or np.isnan(self.value):

@@ -92,8 +92,9 @@ def limit_rows(result: Result) -> list[tuple[str, ...]]:
     numbers = key_numbers(result)
     for number in numbers:
         if number.limit is not None and number.passes is not None:
-            value = in_unit(number.value, number.unit)
-            rows.append((number.name, value, number.where, limit_in_words(number), _MARKS[number.passes]))
+            rows.append(
+                (number.name, value_in_words(number), number.where, limit_in_words(number), _MARKS[number.passes])
+            )
     unjudged = _unjudged([result], [numbers])
     return rows + [(name, "–", "", "", f"not judged here, but by {what}") for name, what in unjudged.items()]
 
@@ -104,7 +105,7 @@ _MARKS = {True: "met", False: "broken"}
 def _broken(number: KeyNumber) -> str:
     """A key number that is beyond its limit."""
     assert number.limit is not None
-    return f"{number.name} {in_unit(number.value, number.unit)} (limit {in_unit(number.limit, number.unit)})"
+    return f"{number.name} {value_in_words(number)} (limit {in_unit(number.limit, number.unit)})"
 
 
 def _incidents(result: Result) -> tuple[Incident, ...]:
@@ -113,6 +114,11 @@ def _incidents(result: Result) -> tuple[Incident, ...]:
         return ()
     with result.recorded() as recorded:
         return incidents(recorded, result.prepared)
+
+
+def value_in_words(number: KeyNumber) -> str:
+    """Write the value of a key number."""
+    return "outside the rating" if number.is_outside_rating else in_unit(number.value, number.unit)
 
 
 def limit_in_words(number: KeyNumber | None) -> str:

@@ -36,6 +36,14 @@ def test_unknown_example_lists_the_names(refuse: Callable[[list[str]], str]) -> 
     assert f"example 'tractor' does not exist. Choose one of {', '.join(EXAMPLES)}." in " ".join(message.split())
 
 
+def test_a_file_with_the_name_of_an_example_is_asked_about(
+    tmp_path: Path, refuse: Callable[[list[str]], str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    assert "`beltdyn new -e conveyor`" in refuse(["new", "conveyor"])
+    assert not list(tmp_path.iterdir())
+
+
 def test_an_existing_file_is_kept(tmp_path: Path, refuse: Callable[[list[str]], str]) -> None:
     file = tmp_path / "drive.toml"
     file.write_text("mine", encoding="utf-8")

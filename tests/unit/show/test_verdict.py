@@ -1,6 +1,7 @@
 """What is said of limits and differences."""
 
 from collections.abc import Callable
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -11,7 +12,7 @@ from beltdyn.model.drive import drive_of_text
 from beltdyn.results import KeyNumber, Run
 from beltdyn.show.sheet import sheet
 from beltdyn.show.tables import as_text
-from beltdyn.show.verdict import SideBySide, in_unit, limit_in_words, unjudged_in_words, verdict
+from beltdyn.show.verdict import SideBySide, in_unit, limit_in_words, unjudged_in_words, value_in_words, verdict
 
 
 def number(value: float, limit: float | None = None) -> KeyNumber:
@@ -120,6 +121,13 @@ def test_a_result_that_does_not_know_a_number_does_not_differ() -> None:
 )
 def test_numbers_have_units(value: float, unit: str, words: str) -> None:
     assert in_unit(value, unit) == words
+
+
+def test_a_belt_outside_its_rating_is_said_to_be() -> None:
+    outside = KeyNumber("largest_utilization", np.inf, "%", "motor", 1.0)
+    assert value_in_words(outside) == "outside the rating"
+    assert value_in_words(replace(outside, value=1.2)) == "120 %"
+    assert not outside.passes
 
 
 def test_limits_in_words() -> None:

@@ -29,7 +29,7 @@ from beltdyn.show.report.replay import motion, swinging
 from beltdyn.show.rest_sheet import Tensioning, alignment_table, tensioning
 from beltdyn.show.sheet import sheet_without_limits
 from beltdyn.show.tables import Table, facts_beside, side_by_side
-from beltdyn.show.verdict import compared, in_unit, limit_in_words, unjudged_in_words, verdict
+from beltdyn.show.verdict import compared, limit_in_words, unjudged_in_words, value_in_words, verdict
 
 # The charting library of the page (Bokeh, BSD license), taken from its installation, and what it is given
 
@@ -184,7 +184,7 @@ def environment() -> Environment:
         trim_blocks=True,
         lstrip_blocks=True,
     )
-    made.filters |= {"in_unit": in_unit, "limit_of": limit_in_words}
+    made.filters |= {"value_of": value_in_words, "limit_of": limit_in_words}
     return made
 
 
@@ -247,8 +247,9 @@ def _lead(results: Sequence[Result], name: str) -> str:
 
 
 def _mark(number: int) -> str:
-    """A letter for a result, from A on."""
-    return chr(ord("A") + number) if number < _LETTERS else f"A{number}"
+    """Letters for a result, from A to Z and on from AA."""
+    rest, letter = divmod(number, _LETTERS)
+    return (_mark(rest - 1) if rest else "") + chr(ord("A") + letter)
 
 
 def _stands(result: Result) -> bool:
