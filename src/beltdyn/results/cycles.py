@@ -198,10 +198,10 @@ _STANDSTILL = 0.02
 
 
 def ends_at_standstill(recorded: Recorded, prepared: Prepared) -> bool:
-    """Whether all pulleys stand in the averaging window of a run in which they moved."""
+    """Whether all pulleys stand in the later half of the averaging window of a run in which they moved."""
     speeds = np.abs(np.asarray(recorded["pulley_speed"], dtype=float)).max(axis=1)
-    first = mean_window(recorded, prepared).first
-    return len(speeds) > 1 and bool(speeds[first:].max() < _STANDSTILL * speeds.max())
+    later = (mean_window(recorded, prepared).first + len(speeds)) // 2
+    return len(speeds) > 1 and bool(speeds[later:].max() < _STANDSTILL * speeds.max())
 
 
 def turn_window(recorded: Recorded, prepared: Prepared) -> Window:

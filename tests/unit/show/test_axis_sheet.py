@@ -16,13 +16,17 @@ from beltdyn.theory.input_shaping import EI_TOLERANCE
 MOVE = {"kind": "s_curve", "times": [0.01], "angles": ["0.2 turn"], "speed": "5 turn/s", "acceleration": "200 turn/s^2"}
 
 
-@pytest.fixture(scope="module")
-def run() -> Run:
-    """The axis of a printer moves by 8 mm in 70 ms, and stands for 50 ms."""
+def moved(duration: float) -> Run:
+    """The axis of a printer, which moves by 8 mm from 10 to 80 ms, and then stands."""
     axis = bd.example("printer_axis")
     motor = axis.pulleys[0].replace(speed=MOVE | {"jerk": "20000 turn/s^3"})
-    settings = {"duration": 0.12, "rtol": 1e-3, "output_interval": 1e-3}
+    settings = {"duration": duration, "rtol": 1e-3, "output_interval": 1e-3}
     return bd.simulate(axis.replace(pulley=[motor, axis.pulleys[1]], simulation=settings))
+
+
+@pytest.fixture(scope="module")
+def run() -> Run:
+    return moved(0.12)
 
 
 def tables(run: Run) -> dict[str, Table]:
@@ -56,6 +60,12 @@ def test_means_of_a_standstill_give_way_to_peaks(run: Run) -> None:
     assert float(peaks.rows[0][1]) == pytest.approx(300.0, rel=1e-3)
     least = min(float(row[1]) for row in spans.rows)
     assert least == pytest.approx(float(run.dataset.least_span_tension.min()), rel=1e-3)
+
+
+def test_a_move_may_end_within_the_averaging_window() -> None:
+    run = moved(0.086)
+    assert "Pulleys, largest of the run" in tables(run)
+    assert "losses" not in chosen_by_default([run])
 
 
 def test_jumps_have_a_verdict(run: Run) -> None:
