@@ -65,7 +65,7 @@ def test_a_function_that_fails_gives_no_number_and_says_why() -> None:
         assert np.isnan(twice(address, 0.0, 5.0, 0.0))
 
 
-def test_an_interruption_in_a_function_that_python_runs_comes_back() -> None:
+def test_an_interruption_in_a_function_that_python_runs_comes_back(signal_defaults: None) -> None:
     """It cannot pass through machine code, which would go on with a force of zero."""
     begun: list[float] = []
     armed: list[bool] = []
