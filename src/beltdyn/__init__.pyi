@@ -51,6 +51,7 @@ from .show import plot
 from .show.report import interactive, write_report
 from .show.rest_sheet import check
 from .state.equilibrium import equilibrium
+from .state.release import release
 from .state.steady import steady_state
 from .transient.simulate import simulate
 from .transient.simulator import Simulator
@@ -104,6 +105,7 @@ __all__ = [
     "plot",
     "rating",
     "read_catalogue",
+    "release",
     "response",
     "results",
     "select",

@@ -83,6 +83,7 @@ for _analysis in (
     Analysis("beltdyn.transient.simulate:simulate", "Simulate drives over time."),
     Analysis("beltdyn.transient.sweep:sweep", "Simulate a run-up through a range of speeds."),
     Analysis("beltdyn.state.equilibrium:equilibrium", "Find the static equilibrium of a drive."),
+    Analysis("beltdyn.state.release:release", "Compute the shape of the belt released from its pulleys."),
     Analysis("beltdyn.state.steady:steady_state", "Compute the steady running of a drive."),
     Analysis("beltdyn.points.operating_points:operating_map", "Compute operating points over speed and load.", True),
     Analysis("beltdyn.points.traction:traction", "Compute the traction curve of a pulley: slip or tooth loads.", True),

@@ -4,26 +4,23 @@ from collections.abc import Mapping
 from functools import cache
 
 import numpy as np
-from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from scipy.spatial import cKDTree
 
-from beltdyn.arrays import FloatArray
+import beltdyn as bd
 from beltdyn.model import Drive, install
-from beltdyn.results.mechanics import centerline
-from beltdyn.show.plot.style import INK, PALE, color, new_figure
-from beltdyn.state.static import Equilibrium
+from beltdyn.show.plot.released_belt import shape_of
+from beltdyn.show.plot.style import INK, PALE, new_figure
 from validation.paper.picture import picture
 from validation.paper.runs import Runs
 from validation.paper.statement import Finding, Number, Section, Statement, Verdict, verdict
 from validation.published import two_pulley
-from validation.published.released_belt import closed, on_pulleys, release, released_belt
+from validation.published.released_belt import released_belt
 
 _PAPER_ITERATIONS = 55
 _PAPER_UNKNOWNS = 60
 _ROUND = 1e-3
 _INVISIBLE = 5e-3
-_POINTS = 33
 _FINE = 40
 
 
@@ -46,21 +43,17 @@ def section(_: Runs) -> Section:
 
 
 @cache
-def _found(elements: int, plain: bool) -> Equilibrium:
-    belt = released_belt(elements)
-    return release(belt, on_pulleys(closed(belt)), "newton" if plain else "globalized")
+def _found(elements: int, plain: bool) -> bd.Result:
+    return bd.release(released_belt(elements), method="newton" if plain else "globalized")
 
 
-def _curve(nodes: FloatArray) -> FloatArray:
-    """Points on the centerline, ends of elements included, shape (k, 2), m."""
-    belt = released_belt(len(nodes))
-    return centerline(belt.element_kind, nodes, np.full(len(nodes), belt.given_length / len(nodes)), _POINTS).reshape(
-        -1, 2
-    )
+def _last(found: bd.Result) -> int:
+    """Number of the last iteration."""
+    return int(found.dataset["iterations"])
 
 
 def _unknowns() -> Statement:
-    count = on_pulleys(closed(released_belt())).position.size
+    count = _found(10, True).dataset["nodal_coordinates"][0].size
     return Statement(
         name="released-belt-unknowns",
         title="10 elements have 60 degrees of freedom",
@@ -78,8 +71,7 @@ def _start() -> Statement:
         """Largest distance from the path, m, and over the width of the figure."""
         path = two_pulley().path
         dense = path.position(np.linspace(0.0, path.length, 20001))
-        nodes = on_pulleys(closed(released_belt(elements))).nodes(closed(released_belt(elements)))
-        distance = float(np.max(cKDTree(dense).query(_curve(nodes))[0]))
+        distance = float(np.max(cKDTree(dense).query(shape_of(_found(elements, True), 0))[0]))
         return distance, distance / float(np.ptp(dense[:, 0]))
 
     def finding(settings: str, elements: int) -> Finding:
@@ -104,13 +96,14 @@ def _start() -> Statement:
 
 
 def _roundness(elements: int, plain: bool) -> tuple[Finding, float]:
-    nodes = _found(elements, plain).iterates[-1]
-    center = nodes[:, :2].mean(axis=0)
-    at_nodes, along = (np.linalg.norm(points - center, axis=1) for points in (nodes[:, :2], _curve(nodes)))
+    found = _found(elements, plain)
+    nodes, curve = found.dataset["node_position"].values[-1], shape_of(found, _last(found))[:-1]
+    center = nodes.mean(axis=0)
+    at_nodes, along = (np.linalg.norm(points - center, axis=1) for points in (nodes, curve))
     spread = float(np.ptp(along) / along.mean())
     numbers = [
         Number("mean radius", float(along.mean()), "m", digits=6),
-        Number("length / 2π", released_belt().given_length / (2.0 * np.pi), "m", digits=6),
+        Number("length / 2π", released_belt().belt_length / (2.0 * np.pi), "m", digits=6),
         Number("spread of the radii of nodes / radius", float(np.ptp(at_nodes) / along.mean())),
         Number("spread of all radii, between nodes too / radius", spread),
     ]
@@ -141,8 +134,8 @@ def _circle() -> Statement:
 def _iterations() -> Statement:
     found = {plain: _found(10, plain) for plain in (True, False)}
     plain = found[True]
-    visible = next(k for k, nodes in enumerate(plain.iterates) if largest_step(plain, k) < 1e-6)
-    same = plain.iterations == _PAPER_ITERATIONS
+    visible = next(k for k in range(_last(plain) + 1) if largest_distance(plain, k) < 1e-6)
+    same = _last(plain) == _PAPER_ITERATIONS
     return Statement(
         name="iterations",
         title="Newton's method takes 55 iterations",
@@ -155,7 +148,7 @@ def _iterations() -> Statement:
             Finding(
                 "plain Newton",
                 [
-                    Number("iterations to 10⁻¹¹", plain.iterations),
+                    Number("iterations to 10⁻¹¹", _last(plain)),
                     Number("iterations until no node is further than 1 µm from its end", visible),
                     Number("of the paper", _PAPER_ITERATIONS),
                 ],
@@ -163,7 +156,7 @@ def _iterations() -> Statement:
             ),
             Finding(
                 "globalized Newton",
-                [Number("iterations to 10⁻¹¹", found[False].iterations)],
+                [Number("iterations to 10⁻¹¹", _last(found[False]))],
                 Verdict.OPEN,
             ),
         ],
@@ -172,9 +165,10 @@ def _iterations() -> Statement:
     )
 
 
-def largest_step(found: Equilibrium, iteration: int) -> float:
-    """Largest distance of a node from its place in equilibrium, m."""
-    return float(np.max(np.abs(found.iterates[iteration:, :, :2] - found.iterates[-1][:, :2])))
+def largest_distance(found: bd.Result, iteration: int) -> float:
+    """Largest distance of a node from its place in equilibrium, from an iteration on, m."""
+    places = found.dataset["node_position"].values
+    return float(np.max(np.abs(places[iteration:] - places[-1])))
 
 
 @picture("Fig. 4: the belt in its initial configuration. A is fixed in x and y, B in y; thin lines are the pulleys.")
@@ -191,23 +185,15 @@ def _draw_sketch() -> Figure:
             edgecolor=INK,
             linewidth=0.7,
         )
-    nodes = _found(10, True).iterates[0]
-    _draw_belt(ax, nodes, 0)
+    bd.plot.iterations(_found(10, True), [0], ax=ax)
+    nodes = _found(10, True).dataset["node_position"].values[0]
     x = nodes[:, 0]
     for name, node, side in (("A", int(np.argmin(x)), -1), ("B", int(np.argmax(x)), 1)):
         ax.annotate(
-            name, nodes[node, :2], (9 * side, 0), textcoords="offset points", ha="center", va="center", weight="bold"
+            name, nodes[node], (12 * side, 0), textcoords="offset points", ha="center", va="center", weight="bold"
         )
     ax.margins(0.08)
-    ax.set_aspect("equal")
-    ax.set(xlabel="x [m]", ylabel="y [m]")
     return figure
-
-
-def _draw_belt(ax: Axes, nodes: FloatArray, number: int) -> None:
-    curve = _curve(nodes)
-    ax.plot(*np.vstack([curve, curve[:1]]).T, color=color(number))
-    ax.plot(*nodes[:, :2].T, "o", color=color(number), markersize=3.5)
 
 
 @picture(
@@ -215,17 +201,6 @@ def _draw_belt(ax: Axes, nodes: FloatArray, number: int) -> None:
     "The paper does not say which iterations it shows between the first and the last."
 )
 def _draw_iterates() -> Figure:
-    found = _found(10, True)
-    figure = new_figure((6.4, 6.0))
-    shown = np.linspace(0, found.iterations, 4).round().astype(int)
-    panels = figure.subplots(2, 2, sharex=True, sharey=True).ravel()
-    for number, (ax, iteration) in enumerate(zip(panels, shown, strict=True)):
-        _draw_belt(ax, found.iterates[iteration], number)
-        ax.set_aspect("equal")
-        ax.set_title("start" if iteration == 0 else f"iteration {iteration}")
-        ax.label_outer()
-    for ax in panels[2:]:
-        ax.set_xlabel("x [m]")
-    for ax in panels[::2]:
-        ax.set_ylabel("y [m]")
+    figure = new_figure((6.4, 5.6))
+    bd.plot.iterations(_found(10, True), ax=figure.add_subplot())
     return figure

@@ -50,6 +50,8 @@ from beltdyn.show.plot.pulleys import losses as losses
 from beltdyn.show.plot.pulleys import powers as powers
 from beltdyn.show.plot.pulleys import slip as slip
 from beltdyn.show.plot.pulleys import slip_safety as slip_safety
+from beltdyn.show.plot.released_belt import iteration_steps as iteration_steps
+from beltdyn.show.plot.released_belt import iterations as iterations
 from beltdyn.show.plot.squeal import squeal as squeal
 from beltdyn.show.plot.study_effects import parallel_coordinates as parallel_coordinates
 from beltdyn.show.plot.study_effects import study_contour as study_contour
