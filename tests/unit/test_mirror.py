@@ -35,6 +35,8 @@ ELSEWHERE = {
     "system/observations.py": "unit/system/test_observe.py",
     "solvers/engine.py": "unit/solvers/test_alpha_advance.py",
     "show/line_sheet.py": "unit/designs/test_line_sheet.py",
+    "designs/line_belt.py": "unit/designs/test_line_sheet.py",
+    "designs/line_motions.py": "unit/designs/test_line_sheet.py",
     "designs/designs.py": "unit/designs/test_optimize.py",
     "designs/optimization_history.py": "unit/designs/test_optimize.py",
     "designs/study_table.py": "unit/designs/test_study.py",

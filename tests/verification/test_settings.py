@@ -30,7 +30,10 @@ SAME = 1e-9
 """Relative difference of results up to which they count as the same; a search ends at 1e-9 of a radius."""
 
 TEXTS = r"name|description|project|author|.*\.source"
-JUDGED = r"limits\..*|duty.*|.*\.(cord_fatigue|rib_fatigue)\..*|belt\.(largest_tension|smallest_diameter|temperature)"
+JUDGED = (
+    r"limits\..*|duty.*|.*\.(cord_fatigue|rib_fatigue)\..*|belt\.(largest_tension|smallest_diameter|temperature)|"
+    + (r"belt\.(strength|permanent_elongation|thermal_expansion|temperature_range)|.*\.travel")
+)
 SOLD = r"belt\.(measuring_force|poissons_ratio)|.*\.(diameter_kind|sense)"
 OUT_OF_PLANE = r".*\.(axial_offset|tilt)|belt\.largest_fleeting_angle"
 ABSENT = r"belt\.compression_set|.*\.(mass|center_of_mass|moving_mass)|.*\.creep_speed"

@@ -10,12 +10,19 @@ from cyclopts import Parameter
 
 from beltdyn.cli.console import show, show_facts, show_paragraphs, show_table
 from beltdyn.cli.new import refuse_existing, write_text
+from beltdyn.parts.messages import plain
 
 if TYPE_CHECKING:
     from beltdyn.designs.selection import Proposal
     from beltdyn.model import Entry
 
 
+_PRINTED = {
+    "permanent_elongation": "{:.2g} of the length",
+    "thermal_expansion": "{:.3g} 1/K",
+    "least_safety": "{:.3g} in steady running",
+    "least_motion_safety": "{:.3g} in starts and stops",
+}
 _LENGTHS = {"datum": "datum length", "effective": "effective length", "outside": "inside length"}
 
 
@@ -80,7 +87,10 @@ def _list(entries: "dict[str, Entry]") -> None:
     kinds = {entry.kind: position for position, entry in reversed(list(enumerate(entries.values())))}
     ordered = sorted(entries.items(), key=lambda item: kinds[item[1].kind])
     show_table("Catalogue", headings, _rows(ordered))
-    show("\nThe values are generic, typical of a profile. `beltdyn catalogue SPB` shows one profile with its sources.")
+    show(
+        "\nThe values are generic, typical of a profile. `beltdyn catalogue SPB` shows one profile with its sources. "
+        'Other classes of conveyor belts and covers are read as well, such as "EP 400/3 5+2".'
+    )
 
 
 def _rows(entries: "Iterable[tuple[str, Entry]]") -> Iterator[tuple[str, ...]]:
@@ -91,12 +101,12 @@ def _rows(entries: "Iterable[tuple[str, Entry]]") -> Iterator[tuple[str, ...]]:
                 f"  {name}",
                 _size(entry),
                 f"{1e3 * entry.thickness:.3g}",
-                f"{entry.axial_stiffness / 1e3:.3g}",
+                plain(entry.axial_stiffness / 1e3, 3),
                 f"{entry.bending_stiffness:.2g}",
-                f"{1e3 * entry.mass_per_length:.3g}",
+                plain(1e3 * entry.mass_per_length, 3),
                 "" if entry.friction is None else f"{entry.friction:.2g}",
                 "flat" if entry.wedge_angle is None else f"{degrees(entry.wedge_angle):.3g}°",
-                "" if entry.smallest_diameter is None else f"{1e3 * entry.smallest_diameter:.3g}",
+                "" if entry.smallest_diameter is None else plain(1e3 * entry.smallest_diameter, 3),
             )
 
 
@@ -104,7 +114,7 @@ def _size(entry: "Entry") -> str:
     """The belt size of the values."""
     if entry.sold_by == "ribs":
         return f"1 {entry.piece}"
-    return f"{1e3 * entry.width:.3g} mm {entry.sold_by}"
+    return f"{1e3 * entry.width:.4g} mm {entry.sold_by}"
 
 
 def _show(profile: str, entry: "Entry") -> None:
@@ -114,7 +124,8 @@ def _show(profile: str, entry: "Entry") -> None:
     show_facts((f"  {name}", fact) for name, fact in _values(entry))
     show("\nDerived values")
     show_facts((f"  {name}", fact) for name, fact in _consequences(entry))
-    size = {"ribs": "ribs = 1", "width": 'width = "50 mm"', "diameter": 'diameter = "8 mm"'}[entry.sold_by]
+    width = f'width = "{max(50.0, 1e3 * entry.width):g} mm"'
+    size = {"ribs": "ribs = 1", "width": width, "diameter": 'diameter = "8 mm"'}[entry.sold_by]
     teeth = "" if entry.toothing is None else "  teeth = 100\n"
     show(f'\nIn a drive file\n  [belt]\n  profile = "{profile}"\n  {size}\n{teeth}\nSources')
     show_paragraphs(entry.source.strip().splitlines())
@@ -138,9 +149,9 @@ def _values(entry: "Entry") -> Iterator[tuple[str, str]]:
     if entry.wedge_angle is not None:
         yield "wedge_angle", f"{degrees(entry.wedge_angle):.3g}°"
     begins = ", the initial slope of the measured curve" * (entry.stretch_curve is not None)
-    yield "axial_stiffness", f"{entry.axial_stiffness / 1e3:.4g} kN{begins}"
+    yield "axial_stiffness", f"{plain(entry.axial_stiffness / 1e3, 4)} kN{begins}"
     yield "bending_stiffness", f"{entry.bending_stiffness:.3g} N·m²"
-    yield "mass_per_length", f"{1e3 * entry.mass_per_length:.3g} g/m"
+    yield "mass_per_length", f"{plain(1e3 * entry.mass_per_length, 3)} g/m"
     if entry.friction is not None:
         yield "friction", f"{entry.friction:.3g}, without the wedge factor of the groove"
     if entry.contact_stiffness is not None:
@@ -149,6 +160,11 @@ def _values(entry: "Entry") -> Iterator[tuple[str, str]]:
         yield "measuring_force", f"{entry.measuring_force:.4g} N, half in each strand"
     if entry.largest_tension is not None:
         yield "largest_tension", f"{entry.largest_tension:.4g} N"
+    if entry.strength is not None:
+        yield "strength", f"{1e-3 * entry.strength:.4g} N/mm of width"
+    for name in ("permanent_elongation", "thermal_expansion", "least_safety", "least_motion_safety"):
+        if (value := getattr(entry, name)) is not None:
+            yield name, _PRINTED[name].format(value)
     if (teeth := entry.toothing) is not None:
         yield "toothing.pitch", f"{1e3 * teeth.pitch:.5g} mm"
         yield "toothing.tooth_stiffness", f"{teeth.tooth_stiffness / 1e3:.3g} N/mm a tooth"
@@ -188,11 +204,12 @@ def _consequences(entry: "Entry") -> Iterator[tuple[str, str]]:
     if entry.measuring_force:
         yield "measured", f"{entry.measured_stretch - 1.0:.3%} longer than unstretched, under measuring_force"
     if entry.smallest_diameter is not None:
-        yield "smallest pulley", f"{1e3 * entry.smallest_diameter:.3g} mm of {entry.pulley_diameter} diameter"
+        of_drive = ", of a fully used belt on its drive pulley" if entry.strength else ""
+        yield "smallest pulley", f"{1e3 * entry.smallest_diameter:.3g} mm of {entry.pulley_diameter} diameter{of_drive}"
     if entry.friction is not None and entry.wedge_angle is not None:
         yield "friction in grooves", f"{entry.friction / sin(entry.wedge_angle / 2):.3g}"
     if entry.stretch_curve is None:
-        yield "stretch", f"{entry.axial_stiffness / 100:.4g} N at 1 %"
+        yield "stretch", f"{plain(entry.axial_stiffness / 100, 4)} N at 1 %"
     else:
         points = zip(entry.stretch_curve.strains, entry.stretch_curve.tensions, strict=True)
         yield "stretch", ", ".join(f"{tension:.4g} N at {100 * strain:.3g} %" for strain, tension in points if strain)

@@ -15,7 +15,8 @@ from numpy.typing import NDArray
 from pydantic import Field
 
 from beltdyn.arrays import FloatArray
-from beltdyn.designs.line_sheet import Launch, braking_force, line_sheet, travel_of_take_up
+from beltdyn.designs.line_motions import Launch, braking_forces
+from beltdyn.designs.line_sheet import line_sheet
 from beltdyn.errors import ModelError
 from beltdyn.model import Drive, FixedTensioner, Prepared, alignment, prepare
 from beltdyn.model.alignment import judge_alignment
@@ -112,8 +113,8 @@ def sheet(
     tolerance
         Tolerance of the belt length, as for `tensioner_sheet`.
     wear
-        Elongation of the belt over its life, as for `tensioner_sheet`; of a conveyor, permanent and by heat, for the
-        travel of its take-up.
+        Elongation of the belt over its life, as for `tensioner_sheet`; of a conveyor for the travel of its take-up, in
+        place of its permanent elongation and that by heat.
     full
         Also compute the duty with finite elements, as `duty`, and put its tensions and hub loads beside.
     at
@@ -194,10 +195,9 @@ def _sheet_of_line(
             )
     columns, factors = duty_of(drive, table), numbers_in("friction", friction, "", 3)
     held = held_at(drive, at)
-    made = line_sheet(held, columns, factors, Launch(rising, braking_force(drive) - braking_force(held)))
-    if options["wear"] is not None:
-        longer = lengths_of(prepare(drive), None, cast("Number", options["wear"]))[1]
-        made.variables.update(travel_of_take_up(made.variables, longer))
+    wear = None if options["wear"] is None else lengths_of(prepare(drive), None, cast("Number", options["wear"]))[1]
+    launch = Launch(rising, braking_forces(drive) - braking_forces(held))
+    made = line_sheet(held, columns, factors, launch, wear)
     result = build_result("sheet", drive, made.variables, made.coordinates, made.warnings)
     result.dataset.attrs |= {"drive_as_given": drive.text, "axes": _ROW, "title": f"Drive sheet of {drive.title}"}
     return result

@@ -12,10 +12,11 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from beltdyn.arrays import FloatArray, row
+from beltdyn.designs.line_belt import STRETCHES, safety_values, safety_warnings, take_up
+from beltdyn.designs.line_motions import MOTIONS, Launch, Motions
 from beltdyn.kernel import interpreted
-from beltdyn.machines import Brake, Idlers
+from beltdyn.machines import Idlers
 from beltdyn.machines.carrying.support import Support
-from beltdyn.machines.loads.shaft import shaft_torque
 from beltdyn.model import Drive, Prepared, prepare
 from beltdyn.model.carrying import stretch_of, upper_side
 from beltdyn.points.duty import Column, at_row, durations_of
@@ -26,24 +27,13 @@ from beltdyn.results.schema import COORDINATES, RECORDED, SLIP_SAFETIES
 from beltdyn.results.summary import Means, means_of
 from beltdyn.state.staying import bring_to_stand
 from beltdyn.state.steady import steady_state
-from beltdyn.system.build_machines import machine_arrays
 
 LARGEST_SAG = 0.01
 """Sag between idlers over their spacing to which the least tension belongs (DIN 22101)."""
 
-_SPEEDS = 50
-"""At which the torque of a motor is looked at."""
-STRETCHES = {
-    "running_stretch": "Stretch of the belt in steady running",
-    "start_stretch": "Stretch of the belt in starts",
-}
-"""Over the travel of the take-up by its ratio, m."""
-
 Values = dict[str, tuple[Variable, Any]]
 _ROW, _PULLEY, _SPAN, _TENSIONER, _ROLL, _NIP = "row", "pulley", "span", "tensioner", "roll", "nip"
 _MOTION, _IDLERS = "motion", "idlers"
-MOTIONS = ("start", "coasting", "emergency stop")
-"""With the torque of the start, without drives, and with all brakes."""
 
 RESISTANCES = {
     "main_resistance": "Main resistance of idlers, and friction of guides",
@@ -61,25 +51,6 @@ NIPS = (
 """What a sheet has of `beltdyn.derived.nips`."""
 
 
-class Launch(NamedTuple):
-    """How a line starts and is stopped."""
-
-    rising: float
-    """Largest acceleration of the driver in starts, rad/s^2; zero for that of its motor."""
-    braking: float
-    """Forces of all brakes on the belt that do not act in steady running, N."""
-
-
-def braking_force(drive: Drive) -> float:
-    """Largest forces of all brakes on the belt together, at any time, N."""
-    return sum(
-        load.torque.largest(np.inf) / abs(float(radius))
-        for one, radius in zip(drive.pulleys, drive.rolling_radii, strict=True)
-        for load in one.load
-        if isinstance(load, Brake)
-    )
-
-
 class LineSheet(NamedTuple):
     """Variables and coordinates of a sheet, and what a designer has to look after."""
 
@@ -88,11 +59,13 @@ class LineSheet(NamedTuple):
     warnings: list[str]
 
 
-def line_sheet(given: Drive, columns: list[Column] | None, factors: FloatArray, launch: Launch) -> LineSheet:
+def line_sheet(
+    given: Drive, columns: list[Column] | None, factors: FloatArray, launch: Launch, wear: float | None = None
+) -> LineSheet:
     """The sheet of a line, whose speeds and loads are those of an instant.
 
     `given`: a web line, or a belt that carries or slides over guides; `columns`: the duty; none for the drive as it is;
-    `factors`: on friction, ascending; `launch`: how it starts and stops.
+    `factors`: on friction, ascending; `launch`: how it starts and stops; `wear`: elongation of the belt, m.
     """
     durations = durations_of(columns) if columns else np.ones(1)
     drives = [at_row(given, columns, number) for number in range(durations.size)] if columns else [given]
@@ -136,8 +109,11 @@ def line_sheet(given: Drive, columns: list[Column] | None, factors: FloatArray, 
     meaning = "Running direction: 1 in the order of the pulleys, -1 against it"
     variables["running_sense"] = Variable((), "1", meaning), np.array(first.sense)
     warnings = list(dict.fromkeys(text for one in rows for text in one.run.warnings))
-    for name, point in zip(coordinates[_ROW][1], rows, strict=True):
-        warnings += _row_warnings(name, point, factors)
+    for name, point, values in zip(coordinates[_ROW][1], rows, found, strict=True):
+        warnings += [*_row_warnings(name, point, factors), *safety_warnings(given, values, name)]
+    if given.carries:
+        travel, short = take_up(first.prepared, variables, wear)
+        variables, warnings = variables | travel, warnings + short
     return LineSheet(variables, coordinates, warnings)
 
 
@@ -165,19 +141,6 @@ def _geometry(prepared: Prepared, at_rest: float) -> Values:
                 max((one.free_length for one in drive.supports if one.span == span), default=np.nan) or np.nan
                 for span in drive.spans
             ],
-        ),
-    }
-
-
-def travel_of_take_up(variables: Values, longer: float) -> Values:
-    """Travel of a take-up from the belt without tension to starts of a belt that is longer (m) by wear and heat."""
-    stretch = max(float(np.max(variables[name][1])) for name in STRETCHES)
-    ratio = float(variables["take_up_ratio"][1])
-    return {
-        "elongation": (Variable((), "m", "Elongation of the belt over its life, and by heat"), longer),
-        "take_up_travel": (
-            Variable((), "m", "Travel of the take-up over the life of the belt"),
-            (stretch + longer) / ratio,
         ),
     }
 
@@ -219,7 +182,8 @@ class _Row:
         yield "power_out", (Variable((), "W", "Power output"), balance.power_out)
         yield "loss", (Variable((), "W", "Losses"), balance.lost)
         if self.drive.carries:
-            yield "lifting_power", (Variable((), "W", "Power that lifts goods, part of the output"), balance.lifted)
+            meaning = "Power that lifts goods, part of the output; below zero part of the input, of goods that go down"
+            yield "lifting_power", (Variable((), "W", meaning), balance.lifted)
 
     def _of_pulleys(self) -> Iterator[tuple[str, tuple[Variable, Any]]]:
         pulleys = self.means.pulleys
@@ -298,41 +262,51 @@ class _Row:
 
     def _of_starts(self) -> Iterator[tuple[str, tuple[Variable, Any]]]:
         """Start at constant acceleration of a belt that moves as a whole, holdback, and what a take-up takes."""
-        start = self.start
-        running, starting = float(np.sum(start.pulls)), float(np.sum(start.starting_pulls))
-        yield "moved_mass", (Variable((), "kg", "Mass moved by the belt, with rotating ones"), start.mass)
-        yield "acceleration", (Variable((), "m/s^2", "Acceleration of the belt in starts"), start.acceleration)
+        motions = self.motions
+        running, starting = float(np.sum(motions.pulls)), float(np.sum(motions.pulls_on_belt[0]))
+        yield "moved_mass", (Variable((), "kg", "Mass moved by the belt, with rotating ones"), motions.mass)
+        yield "acceleration", (Variable((), "m/s^2", "Acceleration of the belt in starts"), motions.accelerations[0])
         yield "running_pull", (Variable((), "N", "Pull of the drives in steady running"), running)
         yield "start_pull", (Variable((), "N", "Pull of the drives in starts"), starting)
-        slack, needed = start.slack
+        slack, needed = motions.slack
         yield "start_slack_tension", (Variable((_PULLEY,), "N", "Slack tension of drives in starts"), slack)
         yield "least_start_slack_tension", (Variable((_PULLEY,), "N", "Least of it, by Euler's formula"), needed)
-        yield from self._of_motions(start)
+        yield from self._of_motions()
+        yield from safety_values(self.drive, self.at["largest_span_tension"].values, motions)
         lift = sum(float(np.sum(self.resistances()[name])) for name in ("slope_resistance", "goods_resistance"))
-        holds = max(0.0, lift) * float(np.abs(self.prepared.installation.path.radii)[self.drive.reference])
-        meaning = "Torque of a holdback at the driver, without friction of idlers and guides"
+        holds = abs(lift) * float(np.abs(self.prepared.installation.path.radii)[self.drive.reference])
+        meaning = "Torque that holds the belt at the driver, without friction of idlers and guides"
         yield "holdback_torque", (Variable((), "N m", meaning), holds)
-        for (name, meaning), part in zip(STRETCHES.items(), (0.0, 1.0), strict=True):
-            ends = np.array(self.span_ends) + part * np.array(start.rises)
-            yield name, (Variable((), "m", meaning), self._stretch(ends))
+        for (name, label), ends in zip(STRETCHES.items(), (motions.ends, motions.tensions[0]), strict=True):
+            yield name, (Variable((), "m", label), self._stretch(ends))
 
-    def _of_motions(self, start: "_Start") -> Iterator[tuple[str, tuple[Variable, Any]]]:
+    def _of_motions(self) -> Iterator[tuple[str, tuple[Variable, Any]]]:
         """Start, coasting and emergency stop at constant acceleration of a belt that moves as a whole."""
-        speed, masses = float(np.abs(self.at["belt_speed"].values).mean()), start.mass + start.driving_mass
-        running, brakes = float(np.sum(start.pulls)), self.launch.braking
-        slowing = np.array([running, running + brakes if brakes > 0.0 else np.nan]) / masses
-        rates = np.concatenate([[start.acceleration], slowing])
+        motions, speed = self.motions, self.motions.speed
+        rates = motions.accelerations * np.array([1.0, -1.0, -1.0])
         rates = np.where(rates > 0.0, rates, np.nan)
-        goods = float(np.max(self.goods_mass, initial=0.0))
+        goods, ends = float(np.max(self.goods_mass, initial=0.0)), motions.tensions
         columns = {
             "motion_rate": ("m/s^2", "Acceleration or deceleration of the belt", rates),
             "motion_time": ("s", "Time", speed / rates),
             "motion_travel": ("m", "Travel of the belt", 0.5 * speed**2 / rates),
             "motion_goods": ("kg", "Goods that leave the belt in it", 0.5 * speed**2 / rates * goods),
-            "motion_brakes": ("N", "Force of the brakes on the belt", np.array([0.0, 0.0, brakes])),
+            "motion_brakes": ("N", "Force of the brakes on the belt", np.array([0.0, 0.0, self.launch.braking.sum()])),
+            "motion_largest_tension": ("N", "Largest tension", ends.max(axis=(1, 2))),
+            "motion_least_tension": ("N", "Least tension", ends.min(axis=(1, 2))),
         }
         for name, (unit, meaning, values) in columns.items():
             yield name, (Variable((_MOTION,), unit, meaning), values)
+        forces = motions.shaft_forces
+        powered = {
+            "motion_torque": ("N m", "Torque of drive and brake, positive if it drives", forces * motions.radii),
+            "motion_power": ("W", "Largest power of drive and brake into the belt", forces * speed),
+            "motion_pull": ("N", "Pull of drive and brake on the belt", motions.pulls_on_belt),
+            "motion_tension_ratio": ("1", "Tight over slack effective tension", motions.tension_ratios),
+        }
+        for name, (unit, meaning, values) in powered.items():
+            shown = np.where(motions.powered, values, np.nan)
+            yield name, (Variable((_MOTION, _PULLEY), unit, meaning), shown)
 
     def _of_idlers(self) -> Iterator[tuple[str, tuple[Variable, Any]]]:
         """Number, load and speed of the idlers of each support that has them."""
@@ -366,9 +340,9 @@ class _Row:
         return float(np.sum(thinner.mean(axis=0) * path.span_lengths) + thinner.mean() * around)
 
     @cached_property
-    def start(self) -> "_Start":
-        """How it starts."""
-        return _Start(self)
+    def motions(self) -> Motions:
+        """How it starts and stops."""
+        return Motions(self.run, np.array(self.span_ends), self.launch)
 
     def _of_tensioners(self) -> Iterator[tuple[str, tuple[Variable, Any]]]:
         places, ones = [one.position for one in self.means.tensioners], self.drive.moving_tensioners
@@ -444,92 +418,6 @@ def take_up_ratio(prepared: Prepared) -> float:
     return np.nan
 
 
-class _Start:
-    """A belt that starts as a whole: the pull of its drives, and the tensions that come with the acceleration.
-
-    Every mass takes its part of the tension behind it. Drives share the start as they share the pull in steady running.
-    A weight, or another tensioner that moves, keeps its tension; with a fixed one the belt keeps its stretch.
-    """
-
-    def __init__(self, row: _Row) -> None:
-        self.row, drive = row, row.drive
-        self.drives = np.array([one.prescribed or any(load.driven_speed for load in one.load) for one in drive.pulleys])
-        self.radii = np.abs(row.prepared.rolling_radii)
-        # by torques, since tensions at both ends of an arc also differ by the weight of the belt on it
-        driving = -np.sign(row.at["pulley_speed"].values) * row.at["pulley_torque"].values
-        self.pulls = np.where(self.drives, driving / self.radii, 0.0)
-        self.inertia = np.array([one.inertia for one in drive.pulleys]) / self.radii**2
-        self.masses = _span_masses(row)
-        self.mass = float(np.sum(self.masses) + np.sum(self.inertia[~self.drives]))
-        self.driving_mass = float(np.sum(self.inertia[self.drives]))
-        self.acceleration = max(0.0, self._acceleration())
-
-    def _acceleration(self) -> float:
-        """As asked for at the driver, or what the largest torques of motors give at speeds up to the present one."""
-        row, drive = self.row, self.row.drive
-        if row.launch.rising > 0.0 or drive.driver is None or drive.pulleys[drive.driver].prescribed:
-            return row.launch.rising * float(self.radii[drive.reference])
-        machines = machine_arrays(row.prepared.pulleys, (), row.prepared.path)
-        speeds, states = row.at["pulley_speed"].values, np.zeros(row.run.dataset.sizes["body"])
-        torque, pull = interpreted(shaft_torque), 0.0
-        for p in np.flatnonzero(self.drives):
-            given = (
-                torque(machines.profiles, machines.shaft_loads, int(p), 0.0, 0.0, part * speeds[p], states).torque
-                for part in np.linspace(0.0, 1.0, _SPEEDS)
-            )
-            pull += max(np.sign(speeds[p]) * one for one in given) / float(self.radii[p])
-        return float((pull - np.sum(self.pulls)) / (self.mass + np.sum(self.inertia[self.drives])))
-
-    @cached_property
-    def starting_pulls(self) -> FloatArray:
-        """Pulls of the drives with the acceleration, N, shape (pulleys,)."""
-        whole = float(np.sum(self.pulls))
-        shares = self.pulls / whole if whole > 0.0 else self.drives / np.count_nonzero(self.drives)
-        return np.asarray(self.pulls + shares * self.mass * self.acceleration)
-
-    @cached_property
-    def rises(self) -> tuple[FloatArray, FloatArray]:
-        """By how much the tensions at start and end of each span are above those in steady running, N."""
-        row, count = self.row, len(self.pulls)
-        first, last, tension, forward = np.zeros(count), np.zeros(count), 0.0, row.sense > 0.0
-        taken = self.acceleration * np.where(self.drives, 0.0, self.inertia) - (self.starting_pulls - self.pulls)
-        for step in range(count):
-            p = (row.drive.reference + (step if forward else -step)) % count
-            span = p if forward else (p - 1) % count
-            tension += float(taken[p])
-            first[span] = tension
-            tension += self.acceleration * float(self.masses[span])
-            last[span] = tension
-        kept = float(np.average(0.5 * (first + last), weights=row.prepared.installation.path.span_lengths))
-        if row.drive.moving_tensioners:
-            p = row.drive.carried(row.drive.moving_tensioners[0])
-            kept = 0.5 * float(first[p] + last[p - 1] if forward else first[p - 1] + last[p])
-        return first - kept, last - kept
-
-    @cached_property
-    def slack(self) -> tuple[FloatArray, FloatArray]:
-        """Tension behind each drive in a start, and what Euler's formula needs there, N, shape (pulleys,)."""
-        row, spans = self.row, np.arange(len(self.pulls)) - (0 if self.row.sense > 0.0 else 1)
-        needed = self.starting_pulls / np.expm1(row.prepared.frictions * row.at["wrap_angle"].values)
-        slack = (row.span_ends[0] + self.rises[0])[spans]
-        return np.where(self.drives, slack, np.nan), np.where(self.drives, needed, np.nan)
-
-
-def _span_masses(row: _Row) -> FloatArray:
-    """Mass that moves with each span, kg, of belt, goods and idlers; half of the arcs at either end counts to it."""
-    drive, path = row.drive, row.prepared.installation.path
-    around = np.abs(path.radii) * path.wrap_angles
-    lengths = np.asarray(path.span_lengths) + 0.5 * (around + np.roll(around, -1))
-    masses = lengths / float(np.sum(lengths)) * row.prepared.belt.mass_per_length * row.prepared.belt_length
-    for one in drive.goods:
-        place = stretch_of(one, drive.spans, path)
-        masses[place.span] += one.mass_per_length * place.length
-    for support in drive.supports:
-        place = stretch_of(support, drive.spans, path)
-        masses[place.span] += support.rotating_mass * place.length
-    return np.asarray(masses)
-
-
 def _row_warnings(name: str, point: _Row, factors: FloatArray) -> Iterator[str]:
     """What a designer has to look after at an operating point."""
     slack = np.minimum(point.before, point.after)
@@ -541,13 +429,7 @@ def _row_warnings(name: str, point: _Row, factors: FloatArray) -> Iterator[str]:
             "Raise the tension or the wrap angle, or share the pull with another drive."
         )
     if point.drive.carries:
-        slack, needed = point.start.slack
-        for number in np.flatnonzero((slack < needed) & (point.start.acceleration > 0.0)):
-            yield (
-                f"{point.drive.pulleys[number].name} slips in starts at operating point {name}: its slack tension "
-                f"is {slack[number]:.4g} N, Euler's formula needs {needed[number]:.4g} N. Raise the tension, or start "
-                "more slowly."
-            )
+        yield from point.motions.warnings(name)
         needed, sag = point.sag
         for number in np.flatnonzero(sag > LARGEST_SAG):
             yield (

@@ -48,7 +48,8 @@ _MOVE = 1e-3
 _COORDINATES = ("center", "pivot", "point")
 _KEPT = (
     *("simulation", "steady", "limits", "contact.stiffness", "contact.damping"),
-    *("belt.cord_fatigue", "belt.rib_fatigue", "belt.largest_fleeting_angle"),
+    *("belt.cord_fatigue", "belt.rib_fatigue", "belt.largest_fleeting_angle", "belt.strength"),
+    *("belt.permanent_elongation", "belt.thermal_expansion", "belt.temperature_range"),
 )
 """Where numbers stand that have no effect on a state that stays, or are those of the method."""
 _SWITCHES = ("schedule",)

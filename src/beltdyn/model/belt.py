@@ -38,7 +38,7 @@ from beltdyn.model.belt_form import (
     without_section,
     written_as_sold,
 )
-from beltdyn.model.catalogue import Entry, read_catalogue
+from beltdyn.model.catalogue import Entry, find_entry, read_catalogue
 from beltdyn.model.friction_state import Friction
 from beltdyn.model.rating import CordFatigue, RatedBelt, RibFatigue, StretchCurve
 from beltdyn.model.toothing import DISCRETE, FEWEST_TEETH, MOST_OFF, MOST_TEETH, RatedTeeth, Toothing
@@ -53,8 +53,10 @@ from beltdyn.parts.quantity import (
     Length,
     LineStiffness,
     Ratio,
+    Stiffness,
     Stress,
     Temperature,
+    ThermalExpansion,
     Time,
 )
 from beltdyn.stretch import LAWS, StretchParameters
@@ -145,6 +147,26 @@ class Belt(Part):
         None,
         gt=0,
         description="the rated tension of the belt, all ribs together, above which `check` warns, in N",
+    )
+    strength: Stiffness | None = Field(
+        None,
+        gt=0,
+        description='the nominal strength of a conveyor belt per width, such as "1000 N/mm", for its safety factors, '
+        "in N/m",
+    )
+    permanent_elongation: Ratio | None = Field(
+        None,
+        ge=0,
+        lt=0.1,
+        description="the permanent elongation over the life of the belt, for the travel of a take-up",
+    )
+    thermal_expansion: ThermalExpansion | None = Field(
+        None, ge=0, description="the coefficient of thermal expansion along the belt, in 1/K"
+    )
+    temperature_range: tuple[Temperature, Temperature] | None = Field(
+        None,
+        description="the lowest and the highest temperature of the belt, for the travel of a take-up, in °C; by "
+        "default -10 and 40 °C",
     )
     smallest_diameter: Length | None = Field(
         None, gt=0, description="the smallest recommended pulley diameter, as pulleys are sold, in m"
@@ -342,6 +364,21 @@ class Belt(Part):
         return self
 
     @model_validator(mode="after")
+    def _has_a_range_of_temperature(self) -> Self:
+        if self.temperature_range is not None and not self.temperature_range[0] < self.temperature_range[1]:
+            low, high = self.temperature_range
+            raise ValueError(
+                f"temperature_range = [{low:g}, {high:g}] °C must be the lowest and the highest temperature. Exchange "
+                "or change them"
+            )
+        return self
+
+    @property
+    def breaking_force(self) -> float | None:
+        """Strength times width, N; None where the strength is not known."""
+        return None if self.strength is None else self.strength * self.width
+
+    @model_validator(mode="after")
     def _has_whole_teeth(self) -> Self:
         if self.teeth is None and self.toothing is None:
             return self
@@ -438,7 +475,14 @@ class Belt(Part):
         section = self._section
         if section is None or not changes_as_sold(section, {}):
             return None
-        return read_catalogue(section.get("catalogue")).get(section["profile"])
+        try:
+            return find_entry(read_catalogue(section.get("catalogue")), section["profile"])
+        except LookupError:
+            return None
+
+    def is_of_profile(self, key: str) -> bool:
+        """Whether the value of a key is that of its profile."""
+        return self._section is not None and key not in self._section
 
     @property
     def rib_count(self) -> int | None:

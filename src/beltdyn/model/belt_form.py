@@ -47,7 +47,7 @@ FATIGUE = ("cord_fatigue", "rib_fatigue")
 _GROUPS = (*FATIGUE, "toothing")
 _NUMBERS = (
     *("pitch_offset", "back_offset", "wedge_angle", "friction", *_FORCES, "smallest_diameter"),
-    *("largest_fleeting_angle", *LOSSES),
+    *("largest_fleeting_angle", "strength", "permanent_elongation", "thermal_expansion", *LOSSES),
 )
 TAKEN_OVER = (*_NUMBERS, *_GROUPS)
 

@@ -11,6 +11,7 @@ from typing import Any, Literal, Self
 
 from pydantic import Field, ValidationError, ValidationInfo, model_validator
 
+from beltdyn.model.conveyor_class import class_values, listed_classes
 from beltdyn.model.rating import CordFatigue, Rating, RibFatigue, StretchCurve, with_initial_slope
 from beltdyn.model.toothing import Toothing, ToothRating
 from beltdyn.parts.messages import explain, reason
@@ -25,6 +26,8 @@ from beltdyn.parts.quantity import (
     LineStiffness,
     MassPerLength,
     Ratio,
+    Stiffness,
+    ThermalExpansion,
     Time,
 )
 from beltdyn.parts.text_file import LONGEST_TOML, parse_toml, read_text, shorten
@@ -83,6 +86,21 @@ class Entry(Part):
         description="the total force of both strands on two equal pulleys while the nominal length is measured, in N",
     )
     largest_tension: Force | None = Field(None, gt=0, description="the rated tension, in N")
+    strength: Stiffness | None = Field(
+        None, gt=0, description="the nominal strength of a conveyor belt per width, in N/m"
+    )
+    permanent_elongation: Ratio | None = Field(
+        None, ge=0, lt=0.1, description="the permanent elongation of a conveyor belt over its life"
+    )
+    thermal_expansion: ThermalExpansion | None = Field(
+        None, ge=0, description="the coefficient of thermal expansion along a conveyor belt, in 1/K"
+    )
+    least_safety: Ratio | None = Field(
+        None, gt=0, description="the least safety factor of a conveyor belt in steady running: strength over tension"
+    )
+    least_motion_safety: Ratio | None = Field(
+        None, gt=0, description="the least safety factor of a conveyor belt in starts and stops"
+    )
     pulley_diameter: Literal["datum", "effective", "outside"] = Field(
         "outside", description="the diameter that is twice the radius of a pulley: datum, effective or outside"
     )
@@ -202,8 +220,10 @@ def read_catalogue(name: object = None, base: Path | None = None) -> dict[str, E
 
 
 def find_entry(catalogue: Mapping[str, Entry], profile: str) -> Entry:
-    """Look up a profile."""
+    """Look up a profile, by its name or as a class of conveyor belts such as "EP 400/3"."""
     entry = catalogue.get(profile)
+    if entry is None and (values := class_values(profile)) is not None:
+        entry = Entry.model_validate(values)
     if entry is None:
         if other := _OTHER_DRIVES.get(_section(profile)):
             raise LookupError(f'profile = "{shorten(profile)}" is not in the catalogue. {other}')
@@ -245,7 +265,8 @@ def _section(profile: str) -> str:
 @cache
 def _shipped() -> dict[str, Entry]:
     resource = files("beltdyn.model").joinpath("catalogue.toml")
-    return _entries(resource.read_text(encoding="utf-8"), resource.name)
+    classes = {name: Entry.model_validate(values) for name, values in listed_classes()}
+    return _entries(resource.read_text(encoding="utf-8"), resource.name) | classes
 
 
 def _entries(text: str, name: str, base: Path | None = None) -> dict[str, Entry]:

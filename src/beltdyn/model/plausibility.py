@@ -17,6 +17,7 @@ from beltdyn.model.pulley import Pulley, fastest_rim
 from beltdyn.model.toothing import RatedTeeth
 from beltdyn.parts.messages import NOTABLE, Finding, beyond, listing, plain
 from beltdyn.parts.quantity import RPM
+from beltdyn.theory.conveyor import smallest_pulley
 from beltdyn.theory.rating import REST_SHARE, RUN_IN
 
 _DIAMETER_POWER = 5.6
@@ -152,6 +153,9 @@ def other_diameters(drive: Drive) -> str:
 
 def _small_pulleys(drive: Drive) -> Iterator[Finding]:
     least = drive.belt.smallest_diameter
+    if drive.belt.strength is not None:
+        yield from _small_conveyor_pulleys(drive)
+        return
     small = {one.name: 2.0 * one.radius for one in drive.pulleys if least and 2.0 * one.radius < (1.0 - 1e-9) * least}
     if least is None or not small:
         return
@@ -163,6 +167,20 @@ def _small_pulleys(drive: Drive) -> Iterator[Finding]:
         "bending losses are higher.",
         "Use a larger pulley, or a belt of a smaller profile.",
     )
+
+
+def _small_conveyor_pulleys(drive: Drive) -> Iterator[Finding]:
+    """Pulleys that are too small for a conveyor belt at any tension."""
+    largest = drive.belt.smallest_diameter
+    for pulley, wrap in zip(drive.pulleys, drive.path.wrap_angles.tolist(), strict=True):
+        least = 0.0 if largest is None else smallest_pulley(largest, 0.0, wrap, high_tension=False)
+        if 2.0 * pulley.radius < (1.0 - 1e-9) * least:
+            yield Finding(
+                f"the diameter of {pulley.name} is {2e3 * pulley.radius:.4g} mm, but at least {1e3 * least:.4g} mm are "
+                "recommended for this belt at little tension (DIN 22101).",
+                "Carcass and joints of the belt fail early by bending.",
+                "Use a larger pulley, or a belt with a thinner carcass; the sheet shows what each pulley needs.",
+            )
 
 
 def _sides(drive: Drive) -> Iterator[Finding]:

@@ -167,6 +167,15 @@ class Limits(Part):
     least_slip_safety: Ratio | None = Field(
         None, gt=0, description="the least slip safety: the factor on all loads at which gross slip begins"
     )
+    least_belt_safety: Ratio | None = Field(
+        None,
+        gt=0,
+        description="the least safety factor of a conveyor belt in steady running: strength times width over the "
+        "largest tension",
+    )
+    least_motion_safety: Ratio | None = Field(
+        None, gt=0, description="the least safety factor of a conveyor belt in starts and stops"
+    )
     largest_tooth_load: Force | None = Field(
         None, gt=0, description="the largest force on a tooth of a toothed belt at any time, in N"
     )

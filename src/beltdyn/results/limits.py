@@ -81,12 +81,16 @@ def key_numbers(result: Result) -> tuple[KeyNumber, ...]:
     return tuple(KeyNumber(*one, _limit(limits, *one)) for one in found(result)) if found else ()
 
 
+LEAST_BELT_SAFETY, LEAST_MOTION_SAFETY = "least_belt_safety", "least_motion_safety"
+"""Keys of the limits of the safety factors of a conveyor belt."""
 _JUDGED_BY = {
     "largest_utilization": "`beltdyn sheet`, of a belt whose profile has a rating",
     "least_cord_life": "`beltdyn life`, of a belt with cord_fatigue",
     "least_rib_life": "`beltdyn life`, of a belt with rib_fatigue",
     "largest_tooth_load": "`beltdyn sheet`, of a toothed belt",
     "least_jump_margin": "`beltdyn sheet`, of a toothed belt",
+    LEAST_BELT_SAFETY: "`beltdyn sheet`, of a belt with a strength",
+    LEAST_MOTION_SAFETY: "`beltdyn sheet`, of a conveyor whose belt has a strength",
     "least_tension": "`beltdyn sheet`",
     "largest_tension": "`beltdyn sheet`",
     "largest_hub_load": "`beltdyn sheet`",
@@ -138,6 +142,10 @@ def _of_run(run: Result) -> Iterator[Found]:
     yield _worst("largest_hub_load", hub_load, "N", time, pulleys)
     yield _worst("largest_tension", largest, "N", time, spans)
     yield _worst("least_tension", least, "N", time, spans)
+    force = run.drive.belt.breaking_force
+    if force is not None:
+        key = LEAST_BELT_SAFETY if lasts else LEAST_MOTION_SAFETY
+        yield _worst(key, _over(force, largest), "1", time, spans)
     if slips:
         yield _worst("least_slip_safety", np.array([[one.least_safety for one in means]]), "1", [over], pulleys)
     for key, field in (("largest_tooth_load", "largest"), ("least_jump_margin", "jump_margin")) if loads else ():
@@ -182,6 +190,14 @@ def _of_table(
             values = variable.transpose(..., of).values.reshape(len(places), -1)
             values = _of_turning(result, values) if key == "largest_slip" else values
             yield _worst(key, values, unit, places, list(map(str, dataset[of].values)))
+            force = result.drive.belt.breaking_force
+            if key == "largest_tension" and force is not None and result.kind != EQUILIBRIUM:
+                yield _worst(LEAST_BELT_SAFETY, _over(force, values), "1", places, list(map(str, dataset[of].values)))
+
+
+def _over(force: float, tensions: FloatArray) -> FloatArray:
+    """Safety factors of a belt of a breaking force at tensions, N; not a number where it is slack."""
+    return force / np.where(tensions > 0.0, tensions, np.nan)
 
 
 def _of_life(result: Result) -> Iterator[Found]:
@@ -204,6 +220,9 @@ _OF_SHEETS = _OF_TABLES | {
 
 def _of_sheet(result: Result) -> Iterator[Found]:
     yield from _of_table(result, _OF_SHEETS if "peak_tension" in result.dataset else _OF_TABLES)
+    if "motion_belt_safety" in result.dataset:
+        factors = result.dataset["motion_belt_safety"]
+        yield _worst(LEAST_MOTION_SAFETY, factors.values, "1", _places(result.dataset), list(factors["motion"].values))
 
 
 def _places(dataset: "xr.Dataset") -> list[str]:

@@ -6,7 +6,9 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from beltdyn.arrays import BoolArray, FloatArray
-from beltdyn.designs.line_sheet import LARGEST_SAG, RESISTANCES, STRETCHES
+from beltdyn.designs.line_belt import ELONGATIONS, STRETCHES, USUAL_TEMPERATURES
+from beltdyn.designs.line_sheet import LARGEST_SAG, RESISTANCES
+from beltdyn.model import Belt
 from beltdyn.parts.messages import aligned, plain
 from beltdyn.parts.quantity import RPM
 from beltdyn.results import Result
@@ -28,13 +30,17 @@ _NOTHING = 1e-9
 def line_sheet(result: Result) -> Sheet:
     """Give the sheet of a line."""
     dataset, parts = result.dataset, list[Table | Facts]()
-    parts += [*parts_list(result.prepared), Facts(tuple(_facts(dataset))), _points(dataset)]
+    parts += [*parts_list(result.prepared), Facts(tuple(_facts(dataset, result.drive.belt))), _points(dataset)]
     if "moved_mass" in dataset:
         parts += [_starts(dataset), _motions(dataset)]
+        parts += [_safety(dataset)] if "belt_safety" in dataset else []
+        parts += [_take_up(dataset)] if "take_up_travel" in dataset else []
     for number, name in enumerate(dataset["row"].values):
         at, where = dataset.isel(row=number), f", operating point {name}" if dataset.sizes["row"] > 1 else ""
         stands = np.array(result.drive.guides, dtype=bool)
         parts += [_pulleys(at, where, stands), _grip(at, where, stands), _spans(at, where)]
+        if "motion_torque" in at:
+            parts.append(_drives(at, where))
         if "main_resistance" in at:
             parts.append(_resistances(at, where))
             if at["sag"].notnull().any():
@@ -50,23 +56,37 @@ def line_sheet(result: Result) -> Sheet:
     return Sheet(str(dataset.attrs["title"]), tuple(parts))
 
 
-def _facts(dataset: "xr.Dataset") -> Iterator[tuple[str, str]]:
+def _facts(dataset: "xr.Dataset", belt: Belt) -> Iterator[tuple[str, str]]:
     yield "belt length", f"{float(dataset['belt_length']):.5g} m unstretched"
     yield "tension at rest", f"{float(dataset['tension_at_rest']):.4g} N"
     if "take_up_ratio" in dataset and np.isfinite(dataset["take_up_ratio"]):
         taken = 1e3 * float(dataset["stretch_at_rest"] / dataset["take_up_ratio"])
         yield "take-up", f"{taken:.4g} mm for the stretch of the belt at rest"
+    if "belt_safety" in dataset:
+        yield "safety factors", "strength times width over the largest tension; those needed by [limits] or the class"
     if "take_up_travel" in dataset:
-        travel, longer = (1e3 * float(dataset[name]) for name in ("take_up_travel", "elongation"))
-        yield (
-            "travel of the take-up",
-            f"{travel:.4g} mm, with {longer:.4g} mm of elongation by wear and heat, and starts",
-        )
+        yield "elongation of the belt", _elongation(belt)
     factors = ", ".join(f"{one:.3g}" for one in dataset["friction"].values)
     yield "slack tension needed", f"by Euler's formula, with {factors} times the friction of the pulleys"
     if "main_resistance" in dataset:
         named = " of DIN 22101" if dataset["sag"].notnull().any() else ""
         yield "resistances", f"by the equations{named}, beside the rise of tension in computed steady running"
+
+
+def _elongation(belt: Belt) -> str:
+    """By which values the belt gets longer, and whether they are those of its class."""
+    low, high = belt.temperature_range or USUAL_TEMPERATURES
+    parts = (
+        ("permanent_elongation", "permanent", lambda share: f"{share:.3g} of the length", " (estimate of the class)"),
+        ("thermal_expansion", "by heat", lambda rate: f"{rate:.3g} 1/K", " (of the class)"),
+    )
+    words = [
+        f"{word} not stated"
+        if (value := getattr(belt, name)) is None
+        else f"{word} {written(value)}{origin * belt.is_of_profile(name)}"
+        for name, word, written, origin in parts
+    ]
+    return f"{'; '.join(words)}, from {low:g} to {high:g} °C{' (by default)' * (belt.temperature_range is None)}"
 
 
 def _points(dataset: "xr.Dataset") -> Table:
@@ -119,7 +139,7 @@ def _starts(dataset: "xr.Dataset") -> Table:
     ]
     headings: tuple[str, ...] = (
         *("", "moved\nkg", "start\nm/s²", "pull, running\nN", "start\nN", "start\nfactor"),
-        *("slack, start\nN", "needed\nN", "holdback\nN m"),
+        *("slack, start\nN", "needed\nN", "to hold it\nN m"),
     )
     if np.isfinite(ratio):
         columns += [aligned((1e3 / ratio * dataset[one].values).tolist(), 4) for one in STRETCHES]
@@ -136,15 +156,98 @@ def _motions(dataset: "xr.Dataset") -> Table:
         for motion in dataset["motion"].values
     ]
     columns = [
-        _known(dataset[f"motion_{name}"].values.ravel()) for name in ("rate", "time", "travel", "goods", "brakes")
+        _known(dataset[f"motion_{name}"].values.ravel())
+        for name in ("rate", "time", "travel", "goods", "brakes", "largest_tension", "least_tension")
     ]
-    headings = ("", "rate\nm/s²", "time\ns", "travel\nm", "goods that\nleave kg", "brakes\nN")
+    headings = (
+        "",
+        "rate\nm/s²",
+        "time\ns",
+        "travel\nm",
+        "goods that\nleave kg",
+        "brakes\nN",
+        "tension\nmax N",
+        "min N",
+    )
     return Table("Start and stops", headings, tuple(zip(names, *columns, strict=True)))
 
 
-def _known(values: FloatArray) -> list[str]:
-    """Numbers with four digits; a dash where there is none."""
-    return [plain(one, 4) if np.isfinite(one) else "–" for one in values.tolist()]
+def _safety(dataset: "xr.Dataset") -> Table:
+    """Safety factors of the belt in steady running, starts and stops, beside those needed."""
+    rows, several = list[tuple[str, ...]](), dataset.sizes["row"] > 1
+    for number, row in enumerate(dataset["row"].values):
+        at, place = dataset.isel(row=number), f", {row}" if several else ""
+        factors = {"steady running": (float(at["belt_safety"]), float(at["needed_belt_safety"]))}
+        factors |= {
+            str(motion): (factor, float(at["needed_motion_safety"]))
+            for motion, factor in zip(at["motion"].values, at["motion_belt_safety"].values.tolist(), strict=True)
+        }
+        rows += [
+            (f"{name}{place}", *_known(np.array([factor, least])), _judged(factor, least))
+            for name, (factor, least) in factors.items()
+            if np.isfinite(factor)
+        ]
+    return Table("Safety factors of the belt", ("", "factor", "needed", ""), tuple(rows))
+
+
+def _judged(factor: float, least: float) -> str:
+    if np.isnan(least):
+        return "not judged: neither limit nor class"
+    return "met" if factor >= least else "too low"
+
+
+def _take_up(dataset: "xr.Dataset") -> Table:
+    """What a take-up takes up over the life of the belt, as length of belt and as its travel, beside its room."""
+    ratio, difference = float(dataset["take_up_ratio"]), float(dataset["temperature_difference"])
+    words = ("stretch, at most", "permanent elongation", f"heat, {difference:.3g} K")
+    parts = [float(dataset[name]) for name in ELONGATIONS]
+    rows = [(word, f"{part:.3f}", f"{part / ratio:.3f}") for word, part in zip(words, parts, strict=True)]
+    rows.append(("needed", f"{sum(parts):.3f}", f"{float(dataset['take_up_travel']):.3f}"))
+    room = float(dataset["take_up_room"]) if "take_up_room" in dataset else np.nan
+    rows.append(("of the frame", "", f"{room:.3f}" if np.isfinite(room) else "not stated"))
+    return Table("Take-up over the life of the belt", ("", "belt\nm", "travel\nm"), tuple(rows))
+
+
+def _drives(at: "xr.Dataset", where: str) -> Table:
+    """Torque, power, pull, its share and the tension ratio of each drive and brake, steadily and in motions."""
+    names, motions = at["pulley"].values, ["steady running", *map(str, at["motion"].values)]
+    powered = np.flatnonzero(at["motion_torque"].notnull().any("motion").values)
+    unit, watts = power_unit(at["power"].values)
+    speeds = np.abs(at["pulley_speed"].values)
+    torque = np.divide(at["power"].values, speeds, out=np.zeros_like(speeds), where=speeds > 0.0)
+    steady = (
+        torque,
+        at["power"].values,
+        torque / np.abs(0.5 * at["pitch_diameter"].values),
+        at["tension_ratio"].values,
+    )
+    moving = (at[f"motion_{name}"].values for name in ("torque", "power", "pull", "tension_ratio"))
+    torques, powers, pulls, ratios = (
+        np.vstack([one, many])[:, powered] for one, many in zip(steady, moving, strict=True)
+    )
+    sums = np.nansum(pulls, axis=1, keepdims=True)
+    shares = np.divide(
+        pulls, sums, out=np.full_like(pulls, np.nan), where=np.abs(sums) > _NOTHING * np.nanmax(np.abs(pulls))
+    )
+    allowed = at["allowed_tension_ratio"].values[powered]
+    rows = [
+        (
+            f"{names[powered[place]]}, {motion}",
+            *_known(np.array([torques[number, place], powers[number, place] / watts, pulls[number, place]])),
+            f"{shares[number, place]:.1%}" if np.isfinite(shares[number, place]) else "–",
+            *_known(np.array([ratios[number, place], allowed[place]]), 3),
+        )
+        for place in range(len(powered))
+        for number, motion in enumerate(motions)
+        if max(abs(torques[number, place]), abs(pulls[number, place])) > 0.0  # nor where it is not a number
+    ]
+    headings = ("", "torque\nN m", f"power\n{unit}", "pull\nN", "share", "tension\nratio", "allowed")
+    return Table(f"Drives and brakes{where}", headings, tuple(rows))
+
+
+def _known(values: FloatArray, digits: int = 4) -> list[str]:
+    """Numbers with so many digits; a dash where there is none."""
+    return ["∞" if np.isinf(one) else "–" if np.isnan(one) else plain(one + 0.0, digits) for one in values.tolist()]
 
 
 def _idlers(at: "xr.Dataset", where: str) -> Table:
@@ -175,7 +278,12 @@ def _pulleys(at: "xr.Dataset", where: str, stands: BoolArray) -> Table:
         [f"{_DEGREES * one:z.0f}°" for one in at["hub_direction"].values],
     )
     headings = ("", "diameter\nmm", "wrap", "speed\nrpm", "torque\nN m", f"power\n{unit}", "hub load\nN", "direction")
-    return Table(f"Pulleys{where}", headings, tuple(zip(*columns, strict=True)))
+    rows = tuple(zip(*columns, strict=True))
+    if "smallest_diameter" in at:
+        headings = (*headings, "at least\nmm")
+        least = aligned((1e3 * at["smallest_diameter"].values).tolist(), 4)
+        rows = tuple((*row, one) for row, one in zip(rows, least, strict=True))
+    return Table(f"Pulleys{where}", headings, rows)
 
 
 def _grip(at: "xr.Dataset", where: str, stands: BoolArray) -> Table:

@@ -44,6 +44,8 @@ def _belt(prepared: Prepared) -> Iterator[tuple[str, str]]:
                 "to order",
                 f"1 × {profile}, {belt.teeth} teeth, {nominal:.5g} mm long, {wide}",
             )
+        case _ if entry.strength is not None:
+            yield "to order", f"{profile}, {wide}, {1e-3 * nominal:.5g} m long"
         case _:
             yield "to order", f"1 × {profile}, {wide}, {length}"
     if entry.lengths:

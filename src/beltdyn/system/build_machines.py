@@ -316,10 +316,8 @@ def _by_element(prepared: Prepared, lengths: FloatArray, stretches: Sequence[Str
 def _near(path: Path, stretch: Stretch) -> tuple[float, float]:
     """Between which places along a span elements may come to lie on a stretch of it, m from its start.
 
-    Those beyond the middle of the next arc belong to another span, even if it runs along the stretch further away.
+    Arcs of the mesh stay at their pulleys. A drum that a take-up moves towards a support would press on it.
     """
-    span, length = stretch.span, float(path.span_lengths[stretch.span])
-    half = np.append(0.5 * path.wrap_angles * np.abs(path.radii), 0.0)  # the last is that of an end
+    length = float(path.span_lengths[stretch.span])
     margin = _BEYOND * length
-    before, after = half[path.span_pulleys[span]].tolist()
-    return max(stretch.start - margin, -before), min(stretch.end + margin, length + after)
+    return max(stretch.start - margin, 0.0), min(stretch.end + margin, length)

@@ -14,6 +14,7 @@ from beltdyn.model.installation import DEFLECTION, tension_checks
 from beltdyn.show.rest_sheet import tensioning
 from beltdyn.show.sheet import sheet
 from beltdyn.show.tables import as_text
+from beltdyn.show.verdict import verdict
 
 TASKS = Path(__file__).parents[3] / "docs" / "tasks"
 
@@ -152,13 +153,86 @@ def test_a_take_up_travels_for_starts_wear_and_heat() -> None:
     drive = conveyor(False)
     dataset = bd.sheet(drive, acceleration="4 rad/s^2", wear="0.5 %").dataset
     longer = 0.005 * float(dataset.belt_length)
-    assert float(dataset.elongation) == pytest.approx(longer, rel=1e-6)
+    assert float(dataset.permanent_elongation) == pytest.approx(longer, rel=1e-6)
     stretch = float(dataset.start_stretch[0])
     assert float(dataset.take_up_travel) == pytest.approx((stretch + longer) / float(dataset.take_up_ratio), rel=1e-6)
     assert float(dataset.take_up_ratio) == pytest.approx(2.0, rel=0.01)
     assert "take_up_travel" not in bd.sheet(drive).dataset
     with pytest.raises(ModelError, match="wear"):
         bd.sheet(drive, wear="-1 %")
+
+
+def of_class(profile: str, **changes: Any) -> Drive:
+    """The conveyor with a belt by its class, 300 mm wide."""
+    drive = conveyor(False)
+    return drive.replace(belt={"profile": profile, "width": 0.3}, **changes)
+
+
+def test_a_belt_by_its_class_is_judged_in_running_starts_and_stops() -> None:
+    """Strength times width over tension; limits where there are any, or else what makers of the class use."""
+    drive = of_class("EP 200/2")
+    result = bd.sheet(drive, acceleration="4 rad/s^2")
+    found = result.dataset.isel(row=0)
+    assert float(found.belt_safety) == pytest.approx(60e3 / float(found.largest_span_tension.max()), rel=1e-9)
+    np.testing.assert_allclose(found.motion_belt_safety, 60e3 / found.motion_largest_tension, rtol=1e-9)
+    assert (float(found.needed_belt_safety), float(found.needed_motion_safety)) == pytest.approx((10.0, 10.0 / 1.5))
+    numbers = {one.key: one for one in bd.results.key_numbers(result)}
+    assert numbers["least_belt_safety"].value == pytest.approx(float(found.belt_safety))
+    assert numbers["least_motion_safety"].value == pytest.approx(float(np.nanmin(found.motion_belt_safety)))
+    assert not any("safety factor of the belt" in text for text in result.warnings)
+    text = as_text(sheet(result))
+    assert "Safety factors of the belt" in text
+    assert "met" in text
+    assert "EP 200/2, 300 mm wide" in text
+
+    limits = {"least_belt_safety": 1.02 * float(found.belt_safety), "least_motion_safety": 5.0}
+    strict = drive.replace(limits=limits)
+    again = bd.sheet(strict, acceleration="4 rad/s^2")
+    assert any("in steady running at operating point 1" in text for text in again.warnings)
+    assert verdict([again])[0] == "fail"
+    assert "too low" in as_text(sheet(again))
+    steady = bd.steady_state(strict)
+    assert "least motion safety is not judged here" in verdict([steady])[1]
+    (running,) = (one for one in bd.results.key_numbers(steady) if one.key == "least_belt_safety")
+    assert running.value == pytest.approx(float(found.belt_safety), rel=1e-3)
+    rest = bd.equilibrium(strict)
+    assert "Least belt safety is not judged here" in verdict([rest])[1]
+
+
+def test_drums_that_are_too_small_for_the_class_are_named() -> None:
+    """ST 1000 needs 630 mm at the driver of a fully used belt, two steps less where it carries little."""
+    result = bd.sheet(of_class("ST 1000"))
+    np.testing.assert_allclose(result.dataset.smallest_diameter[0], 0.4)
+    texts = [text for text in result.warnings if "the belt needs 400 mm" in text]
+    assert [text.split()[3] for text in texts] == ["head", "tail"]
+    assert "at least" in as_text(sheet(result))
+    assert not any("the belt needs" in text for text in bd.sheet(of_class("EP 200/2")).warnings)
+
+
+@pytest.mark.parametrize("given", [{"travel": "20 mm"}, {"stops": [-0.01, 0.01], "stop_stiffness": 1e6}])
+def test_the_travel_of_a_take_up_is_set_against_its_room(given: dict[str, Any]) -> None:
+    """Permanent and thermal elongation of the class, or what is stated; --wear in place of both."""
+    drive = of_class("ST 500")
+    held = drive.tensioners[0].replace(**given)
+    belt = {"temperature_range": [-20.0, 60.0], "permanent_elongation": 0.002}
+    result = bd.sheet(drive.replace(tensioner=[held]).with_({f"belt.{key}": value for key, value in belt.items()}))
+    found = result.dataset
+    length = float(found.belt_length)
+    assert float(found.permanent_elongation) == pytest.approx(0.002 * length)
+    assert float(found.thermal_elongation) == pytest.approx(80.0 * 11.7e-6 * length)
+    parts = float(found.largest_stretch + found.permanent_elongation + found.thermal_elongation)
+    assert float(found.take_up_travel) == pytest.approx(parts / float(found.take_up_ratio))
+    assert float(found.take_up_room) == pytest.approx(0.02)
+    short = [text for text in result.warnings if "the take-up needs a travel" in text]
+    assert bool(short) == (float(found.take_up_travel) > 0.02)
+    assert short
+    text = as_text(sheet(result))
+    assert "permanent 0.002 of the length;" in text
+    assert "by heat 1.17e-05 1/K (of the class), from -20 to 60 °C" in text
+    worn = bd.sheet(drive, wear="0.1 %")
+    assert float(worn.dataset.thermal_elongation) == 0.0
+    assert float(worn.dataset.permanent_elongation) == pytest.approx(0.001 * float(worn.dataset.belt_length))
+    assert "not stated" in as_text(sheet(worn))
 
 
 def test_the_tension_of_carried_strands_is_checked_between_idlers() -> None:

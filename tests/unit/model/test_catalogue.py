@@ -6,6 +6,7 @@ import pytest
 
 from beltdyn.model import Belt, Entry, read_catalogue
 from beltdyn.model.catalogue import find_entry
+from beltdyn.model.conveyor_class import CLASSES
 from beltdyn.theory.nip import bending_loss, compression_loss
 
 MINE = """
@@ -48,7 +49,7 @@ NAMES = (*SMOOTH, *TOOTHED)
 
 
 def test_what_is_shipped() -> None:
-    assert set(read_catalogue()) == set(NAMES)
+    assert set(read_catalogue()) == {*NAMES, *CLASSES}
 
 
 @pytest.mark.parametrize("name", NAMES)

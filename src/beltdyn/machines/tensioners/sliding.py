@@ -10,7 +10,7 @@ from beltdyn.arrays import FloatArray, record
 from beltdyn.kernel import kernel
 from beltdyn.kinds import register
 from beltdyn.machines.tensioners.tensioner import LEAST_LEVERAGE, SPRING, Center, Direction, MovingTensioner
-from beltdyn.parts.quantity import Coordinate, Damping, Force, Mass, Speed, Stiffness
+from beltdyn.parts.quantity import Coordinate, Damping, Force, Length, Mass, Speed, Stiffness
 
 SLIDE = record(
     center="2f8",  # c, the nominal center of the pulley, m
@@ -51,6 +51,11 @@ class SlidingTensioner(MovingTensioner):
     creep_speed: Speed = Field(1e-3, gt=0, description="the speed at which dry friction reaches 76 %, in m/s")
     stops: tuple[Coordinate, Coordinate] | None = Field(
         None, description="the lower and upper stops, from the given pulley center along the direction, in m"
+    )
+    travel: Length | None = Field(
+        None,
+        gt=0,
+        description="the travel that the frame leaves to a take-up, for the sheet, in m; by default from stop to stop",
     )
     stop_stiffness: Stiffness | None = Field(None, gt=0, description="the stiffness of the stops, in N/m")
     stop_damping: Damping = Field(0.0, ge=0, description="the damping of the stops, in N*s/m")

@@ -12,7 +12,7 @@ from beltdyn.arrays import FloatArray, record
 from beltdyn.kernel import KernelKinds, kernel
 from beltdyn.kinds import register
 from beltdyn.parts.part import Part
-from beltdyn.parts.quantity import Coordinate, Name, Ratio
+from beltdyn.parts.quantity import Coordinate, Length, Name, Ratio
 
 # A direction in the plane of the drive
 
@@ -268,3 +268,6 @@ class FixedTensioner(Tensioner):
     kind: Literal["fixed"] = Field(description="the kind of tensioner")
     direction: Direction = Field(description="the direction of the take-up, as [x, y]")
     take_up: Coordinate = Field(0.0, description="the displacement of the pulley from its center, in m")
+    travel: Length | None = Field(
+        None, gt=0, description="the travel that the frame leaves to a take-up, for the sheet, in m"
+    )
