@@ -12,6 +12,7 @@ from beltdyn.machines.loads.load import LOADS
 from beltdyn.machines.profiles.profile import PROFILES
 from beltdyn.machines.tensioners.tensioner import TENSIONERS
 from beltdyn.model import Entry, read_catalogue
+from beltdyn.parts.messages import plain
 from beltdyn.results import COORDINATES, VARIABLES, Variable
 from beltdyn.show.key_tables import Group, key_groups
 from beltdyn.show.plot import FIGURES
@@ -122,13 +123,13 @@ def profiles(catalogue: Mapping[str, Entry]) -> str:
                 yield f"**{kind}**", *[""] * 7
             yield (
                 f"`{name}`",
-                f"{1e3 * entry.width:.3g}",
+                plain(1e3 * entry.width, 3),
                 f"{1e3 * entry.thickness:.3g}",
-                f"{entry.axial_stiffness / 1e3:.3g}",
+                plain(entry.axial_stiffness / 1e3, 3),
                 f"{entry.bending_stiffness:.2g}",
-                f"{1e3 * entry.mass_per_length:.3g}",
+                plain(1e3 * entry.mass_per_length, 3),
                 f"{1e3 * entry.pitch_offset:.3g}, {1e3 * entry.back_offset:.3g}",
-                f"{1e3 * entry.smallest_diameter:.3g}" if entry.smallest_diameter else "",
+                plain(1e3 * entry.smallest_diameter, 3) if entry.smallest_diameter else "",
             )
 
     headings = "profile|width, mm|thickness, mm|$EA$, kN|$EI$, N m²|mass, g/m|"

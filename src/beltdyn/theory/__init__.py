@@ -4,5 +4,8 @@ import lazy_loader
 
 __getattr__, __dir__, __all__ = lazy_loader.attach(
     __name__,
-    submodules=["creep", "input_shaping", "nip", "observed_order", "rating", "running_drive", "span", "static_tension"],
+    submodules=[
+        *("conveyor", "creep", "input_shaping", "nip", "observed_order", "rating", "running_drive", "span"),
+        "static_tension",
+    ],
 )
