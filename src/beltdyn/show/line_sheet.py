@@ -77,14 +77,14 @@ def _elongation(belt: Belt) -> str:
     """By which values the belt gets longer, and whether they are those of its class."""
     low, high = belt.temperature_range or USUAL_TEMPERATURES
     parts = (
-        ("permanent_elongation", "permanent", lambda share: f"{share:.3g} of the length", " (estimate of the class)"),
-        ("thermal_expansion", "by heat", lambda rate: f"{rate:.3g} 1/K", " (of the class)"),
+        ("permanent_elongation", "permanent", "of the length", " (estimate of the class)"),
+        ("thermal_expansion", "by heat", "1/K", " (of the class)"),
     )
     words = [
         f"{word} not stated"
         if (value := getattr(belt, name)) is None
-        else f"{word} {written(value)}{origin * belt.is_of_profile(name)}"
-        for name, word, written, origin in parts
+        else f"{word} {value:.3g} {unit}{origin * belt.is_of_profile(name)}"
+        for name, word, unit, origin in parts
     ]
     return f"{'; '.join(words)}, from {low:g} to {high:g} °C{' (by default)' * (belt.temperature_range is None)}"
 
@@ -267,8 +267,8 @@ def _pulleys(at: "xr.Dataset", where: str, stands: BoolArray) -> Table:
     """Diameter, speed, torque, power and hub load of each pulley."""
     power, (unit, watts) = at["power"].values, power_unit(at["power"].values)
     power = np.where(np.abs(power) > _NOTHING * np.max(np.abs(power), initial=1.0), power, 0.0)
-    columns = (
-        map(str, at["pulley"].values),
+    columns: list[Sequence[str]] = [
+        [str(one) for one in at["pulley"].values],
         aligned((1e3 * at["pitch_diameter"].values).tolist(), 5),
         [f"{_DEGREES * one:.1f}°" for one in at["wrap_angle"].values],
         _but(stands, aligned((RPM * at["pulley_speed"].values).tolist(), 5)),
@@ -276,14 +276,12 @@ def _pulleys(at: "xr.Dataset", where: str, stands: BoolArray) -> Table:
         _but(stands, aligned((power / watts).tolist(), 4)),
         aligned(at["hub_load"].values.tolist(), 4),
         [f"{_DEGREES * one:z.0f}°" for one in at["hub_direction"].values],
-    )
-    headings = ("", "diameter\nmm", "wrap", "speed\nrpm", "torque\nN m", f"power\n{unit}", "hub load\nN", "direction")
-    rows = tuple(zip(*columns, strict=True))
+    ]
+    headings = ["", "diameter\nmm", "wrap", "speed\nrpm", "torque\nN m", f"power\n{unit}", "hub load\nN", "direction"]
     if "smallest_diameter" in at:
-        headings = (*headings, "at least\nmm")
-        least = aligned((1e3 * at["smallest_diameter"].values).tolist(), 4)
-        rows = tuple((*row, one) for row, one in zip(rows, least, strict=True))
-    return Table(f"Pulleys{where}", headings, rows)
+        headings.append("diameter\nat least mm")
+        columns.append(aligned((1e3 * at["smallest_diameter"].values).tolist(), 4))
+    return Table(f"Pulleys{where}", tuple(headings), tuple(zip(*columns, strict=True)))
 
 
 def _grip(at: "xr.Dataset", where: str, stands: BoolArray) -> Table:

@@ -205,7 +205,7 @@ def test_drums_that_are_too_small_for_the_class_are_named() -> None:
     np.testing.assert_allclose(result.dataset.smallest_diameter[0], 0.4)
     texts = [text for text in result.warnings if "the belt needs 400 mm" in text]
     assert [text.split()[3] for text in texts] == ["head", "tail"]
-    assert "at least" in as_text(sheet(result))
+    assert "at least mm" in as_text(sheet(result))
     assert not any("the belt needs" in text for text in bd.sheet(of_class("EP 200/2")).warnings)
 
 

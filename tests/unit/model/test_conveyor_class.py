@@ -77,7 +77,7 @@ def test_names_that_are_no_class() -> None:
 
 
 def test_a_belt_of_a_class_follows_its_width_and_keeps_what_is_stated() -> None:
-    belt = bd.Belt(profile="ST 1250 8+6", width="1.4 m", permanent_elongation="0.1 %")
+    belt = bd.Belt.model_validate({"profile": "ST 1250 8+6", "width": "1.4 m", "permanent_elongation": "0.1 %"})
     entry = belt.entry
     assert entry is not None
     assert belt.breaking_force == pytest.approx(1.4 * 1250e3)

@@ -3,6 +3,7 @@
 Two drums of equal size, so that both strands are parallel: resistances by DIN 22101, m g h, and the masses that move.
 """
 
+import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any
@@ -58,7 +59,7 @@ class Conveyor:
 
     @property
     def belt(self) -> bd.Belt:
-        return bd.Belt(profile=self.profile, width=self.width, length=1.0)
+        return bd.Belt.model_validate({"profile": self.profile, "width": self.width, "length": 1.0})
 
     @property
     def goods(self) -> float:
@@ -67,11 +68,11 @@ class Conveyor:
     @property
     def lift(self) -> float:
         """Weight of the goods along the carrying strand, N."""
-        return self.goods * GRAVITY * self.length * np.sin(self.slope)
+        return self.goods * GRAVITY * self.length * math.sin(self.slope)
 
     def strand(self, rotating: float, goods: float) -> float:
         """Resistance of a strand by friction, N, with the mass of rotating parts and goods, kg/m."""
-        carried = (self.belt.mass_per_length + goods) * np.cos(self.slope)
+        carried = (self.belt.mass_per_length + goods) * math.cos(self.slope)
         return FACTOR * FRICTION * GRAVITY * self.length * (rotating + carried)
 
     @property
