@@ -122,6 +122,7 @@ def plot(
     start: float | str | None = None,
     end: float | str | None = None,
     frames_per_turn: int | None = None,
+    style: str = "screen",
     force: Annotated[bool, Parameter(negative="")] = False,
 ) -> None:
     """Plot the figures of a result file, or compare several.
@@ -150,6 +151,8 @@ def plot(
         The period of the animation, such as "0.5 s", or in s; by default the whole run.
     frames_per_turn
         Frames per turn of the first pulley, for slow motion. By default 150 frames in all.
+    style
+        "screen", or "print" for figures of journals: PDF, 84 or 174 mm wide, in greys, with letters of 8 points.
     force
         Also replace files that are no figures of beltdyn.
     """
@@ -157,7 +160,7 @@ def plot(
 
     others = f"-and-{more[0].stem if len(more) == 1 else f'{len(more)}-more'}" if more else ""
     folder = output or file.with_name(f"{file.stem}{others}-figures")
-    choice = {"figures": _names(figures), "pulley": pulley, "variable": variable, "overwrite": force}
+    choice = {"figures": _names(figures), "pulley": pulley, "variable": variable, "overwrite": force, "style": style}
     film = {"start": start, "end": end, "per_turn": frames_per_turn}
     results = [open_result(one) for one in (file, *more)]
     draw(results, folder, (folder / f"animation.{'mp4' if mp4 else 'gif'}", film) if animate or mp4 else None, **choice)

@@ -124,8 +124,8 @@ def contact_arc(run: Run | StaticResult, pulley: str | int, time: float | None =
     xarray.Dataset
         Over ``angle`` (rad, from the tangent point where the belt enters, in the direction in which the rim moves):
         ``normal_force`` and ``friction_force`` (N/m, the latter positive in that direction), ``pressure`` and ``shear``
-        (Pa: these over the belt's width), ``slip_velocity`` (m/s, belt faster than the rim) and ``sliding``, 1 where
-        friction is fully used, otherwise 0.
+        (Pa: these over the belt's width), ``slip_velocity`` (m/s, belt faster than the rim), ``sliding``, 1 where
+        friction is fully used, otherwise 0, and ``belt_tension`` (N), linear between the middles of elements.
 
     Raises
     ------
@@ -136,7 +136,7 @@ def contact_arc(run: Run | StaticResult, pulley: str | int, time: float | None =
     --------
     >>> arc = bd.derived.contact_arc(run, "driver")
     >>> sorted(arc)
-    ['friction_force', 'normal_force', 'pressure', 'shear', 'sliding', 'slip_velocity']
+    ['belt_tension', 'friction_force', 'normal_force', 'pressure', 'shear', 'sliding', 'slip_velocity']
     """
     number, prepared = pulley_number(run, pulley), run.prepared
     instant = run.fields_at(time)
@@ -161,6 +161,7 @@ def contact_arc(run: Run | StaticResult, pulley: str | int, time: float | None =
         "shear": (shear / prepared.belt.width, "Pa", "Contact shear"),
         "slip_velocity": (forward * slip[on], "m/s", "Slip velocity"),
         "sliding": (sliding.astype(float), "1", "Sliding"),
+        "belt_tension": (_tension_at_points(instant)[on], "N", "Belt tension"),
     }
     order = np.argsort(angle, kind="stable")
     return xr.Dataset(
@@ -170,6 +171,13 @@ def contact_arc(run: Run | StaticResult, pulley: str | int, time: float | None =
         },
         {"angle": ("angle", angle[order], {"units": "rad", "long_name": "Angle from the inlet"}), "time": instant.time},
     )
+
+
+def _tension_at_points(instant: xr.Dataset) -> FloatArray:
+    """Tension of the belt at all contact points, N, linear between the middles of elements."""
+    tension, points = instant["belt_tension"].values, instant.sizes["contact_point"]
+    place = (np.arange(points) + 0.5) * len(tension) / points
+    return np.asarray(np.interp(place, np.arange(len(tension)) + 0.5, tension, period=len(tension)))
 
 
 def _number(run: Run, roller: str | int) -> tuple[int, int, int]:

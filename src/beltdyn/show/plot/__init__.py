@@ -5,6 +5,7 @@ from typing import Any
 from beltdyn.show.plot.animation import animate as animate
 from beltdyn.show.plot.axis import carriage_error as carriage_error
 from beltdyn.show.plot.axis import stroke as stroke
+from beltdyn.show.plot.contact_pressure import arc_forces as arc_forces
 from beltdyn.show.plot.contact_pressure import contact_forces as contact_forces
 from beltdyn.show.plot.contact_pressure import contact_pressure as contact_pressure
 from beltdyn.show.plot.contact_pressure import load_sharing as load_sharing
@@ -44,6 +45,7 @@ from beltdyn.show.plot.operating_map import efficiency_map as efficiency_map
 from beltdyn.show.plot.operating_map import operating_points as operating_points
 from beltdyn.show.plot.operating_map import tensioner_sheet as tensioner_sheet
 from beltdyn.show.plot.operating_map import traction_curve as traction_curve
+from beltdyn.show.plot.print_style import figure_style as figure_style
 from beltdyn.show.plot.pulleys import hub_load_sizes as hub_load_sizes
 from beltdyn.show.plot.pulleys import hub_loads as hub_loads
 from beltdyn.show.plot.pulleys import losses as losses
@@ -81,6 +83,7 @@ __all__ = [
     "color",
     "dash",
     "figure",
+    "figure_style",
     "label",
     "layout",
     "name_lines",

@@ -202,6 +202,74 @@ def contact_pressure(
     return ax
 
 
+Quantity = Literal["tension", "normal", "friction"]
+_QUANTITIES = {"tension": "belt_tension", "normal": "normal_force", "friction": "friction_force"}
+"""Kind of `arc_forces` -> variable over the arc."""
+
+
+def _quantities_by_pulleys(draw: Callable[..., Axes], run: Result, choice: Choice) -> Figure:
+    """Lay out a row for each quantity, a panel for each pulley; at rest nothing rubs."""
+    kinds = get_args(Quantity)[: 2 if isinstance(run, StaticResult) else 3]
+    blocks = [(block, kind) for block in _pulleys(run, choice) for kind in kinds]
+    return panels([[partial(draw, run, name, kind=kind) for name in block] for block, kind in blocks])
+
+
+@figure(on_request, _quantities_by_pulleys, of=(RUN, EQUILIBRIUM), compares=True)
+def arc_forces(
+    run: Run | StaticResult,
+    pulley: str | int,
+    time: float | None = None,
+    kind: Quantity = "normal",
+    ax: Axes | None = None,
+) -> Axes:
+    """Draw tension, normal or friction force on the belt over the angle from the inlet of a pulley.
+
+    Forces that the mesh does not resolve are marked.
+
+    Parameters
+    ----------
+    run : Run or StaticResult
+        The run, or the drive at rest.
+    pulley : str or int
+        Name or number of the pulley.
+    time : float, optional
+        Time, s; the nearest output along the belt is used. By default the last one.
+    kind : {"tension", "normal", "friction"}
+        Which one. Friction is positive in the direction in which the rim moves.
+    ax : Axes, optional
+        Where to draw; a new figure by default.
+
+    Returns
+    -------
+    Axes
+        The axes.
+
+    Raises
+    ------
+    ModelError
+        If there is no such pulley or kind, or the run holds no output.
+
+    Examples
+    --------
+    >>> bd.plot.arc_forces(run, pulley="driver", kind="tension").get_ylabel()
+    'Belt tension [N]'
+    """
+    if kind not in _QUANTITIES:
+        raise ModelError(f'kind = "{kind}" is unknown. Choose one of {", ".join(_QUANTITIES)}.')
+    number = derived.pulley_number(run, pulley)
+    arc = derived.contact_arc(run, number, time)
+    force, name = arc[_QUANTITIES[kind]], run.drive.pulleys[number].name
+    ax = axes_or_new(ax)
+    ax.plot(np.degrees(arc["angle"]), force, color=color(number), label=name)
+    if kind == "friction":
+        ax.axhline(0.0, color="0.4", linewidth=0.6, zorder=1)
+    ax.set(xlabel="Angle from the inlet [°]", ylabel=label(force))
+    ax.set_title(_title(run, name, float(arc["time"])))
+    if kind != "tension" and not run.resolution.resolves("peak pressure"):
+        reserve(ax, f"peaks not resolved by {run.drive.elements} elements")
+    return ax
+
+
 def _title(run: Result, name: str, time: float) -> str:
     """The pulley, and the instant of a run."""
     return ", ".join(filter(None, (name, at_instant(run, time))))

@@ -23,6 +23,7 @@ from beltdyn.results.cycles import ends_at_standstill
 from beltdyn.results.schema import runs_steadily
 from beltdyn.show.plot.gaps import explain_empty, first_failure, gaps, mark_isolated
 from beltdyn.show.plot.headline import headlines, overlay, write_headline
+from beltdyn.show.plot.print_style import PRINT, SCREEN, figure_style, rules
 from beltdyn.show.plot.style import one_panel, show_enough, styled
 
 P = ParamSpec("P")
@@ -218,6 +219,9 @@ def data_uri(figure: Figure, file_format: Literal["svg", "png"] = "svg") -> str:
     return f"data:image/{kind};base64,{base64.b64encode(stream.getvalue()).decode()}"
 
 
+_FORMATS = {SCREEN: "png", PRINT: "pdf"}
+"""Style -> suffix of the files of figures."""
+
 _READING = (
     *("carriage_error", "configuration", "speeds", "span_tensions", "slip", "hub_load_sizes", "hub_loads"),
     *("slip_safety", "torques", "powers", "losses", "tensioners", "energy", "contact_pressure"),
@@ -233,8 +237,9 @@ def save_all(
     pulley: str | int | None = None,
     variable: str = "span_tension",
     overwrite: bool = False,
+    style: str = SCREEN,
 ) -> list[Path]:
-    """Save figures of a result as PNG.
+    """Save figures of a result: as PNG, or for print as PDF.
 
     Parameters
     ----------
@@ -252,6 +257,8 @@ def save_all(
         What is drawn in a sweep: a variable over time and pulley, span or tensioner.
     overwrite : bool
         Replace any regular files, and not only figures of beltdyn.
+    style : {"screen", "print"}
+        See `figure_style`.
 
     Returns
     -------
@@ -271,7 +278,8 @@ def save_all(
     >>> [path.name for path in bd.plot.save_all(run, "figures", figures=["speeds"])]
     ['speeds.png']
     """
-    results = [run] if isinstance(run, Result) else list(run)
+    with figure_style(style):  # an unknown one is refused before anything is drawn
+        results = [run] if isinstance(run, Result) else list(run)
     for result in results:
         if isinstance(result, Run):
             result.require_output()
@@ -287,18 +295,18 @@ def save_all(
             raise ModelError(f"figure {name!r} is unknown. Choose from {', '.join(known)}.")
         require_results(name, results)
     choice = Choice(None if pulley is None else _number(results, pulley), variable)
-    paths = {name: Path(folder) / f"{name}.png" for name in chosen}
+    paths = {name: Path(folder) / f"{name}.{_FORMATS.get(style, '')}" for name in chosen}
     for path in paths.values():
         require_replaceable(path, is_marked, overwrite)
     with Parts(refuses=True) as parts:
         drawn = dict[str, Figure]()
         for name in chosen:
-            with parts.part(repeated(results, name, pulley, variable)):
+            with parts.part(repeated(results, name, pulley, variable)), figure_style(style):
                 drawn[name] = FIGURES[name].arrange(results, choice)
         if drawn:
             make_folder(Path(folder))
         for name, page in drawn.items():
-            with parts.part(repeated(results, name, pulley, variable)):
+            with parts.part(repeated(results, name, pulley, variable)), figure_style(style), rules({}):
                 parts.completed.append(save(page, paths[name], overwrite))
     return parts.completed
 

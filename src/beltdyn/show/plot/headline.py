@@ -22,6 +22,7 @@ from beltdyn.results import Result, Run, StaticResult, power_balance
 from beltdyn.results.cycles import ends_at_standstill, mean_window
 from beltdyn.results.schema import runs_steadily
 from beltdyn.show.plot.gaps import gaps
+from beltdyn.show.plot.print_style import prints
 from beltdyn.show.plot.style import INK, NOTE, dash, name_lines
 
 # Several results in one figure: what each is called, and how its lines differ from those of the others
@@ -178,7 +179,9 @@ _AN_INCH = 11.5
 
 
 def write_headline(page: Figure, text: str) -> None:
-    """Write above all panels of a page, at the left, in as many lines as it takes."""
+    """Write above all panels of a page, at the left, in as many lines as it takes; in print captions say it."""
+    if prints():
+        return
     text = fill(text, int(_AN_INCH * page.get_figwidth()))
     page.suptitle(text, x=0.01, horizontalalignment="left", fontsize=_SIZE)
 

@@ -18,6 +18,7 @@ from beltdyn.results.summary import means_of
 from beltdyn.show.plot.figures import Choice, figure, over_time, over_turns, slipping, turning_at_the_end
 from beltdyn.show.plot.headline import names_of_results
 from beltdyn.show.plot.history import draw_limits, envelope, lines, mark_incidents
+from beltdyn.show.plot.print_style import prints
 from beltdyn.show.plot.style import (
     INK,
     POLAR_SIZE,
@@ -117,12 +118,16 @@ def _worth_drawing(balances: Sequence[Balance]) -> list[str]:
     return [cause for cause, power in powers.items() if power > _NEGLIGIBLE * largest]
 
 
+_ROOM, _ROOM_IN_PRINT = 0.3, 0.6
+"""Room for the power behind the longest bar, over its length."""
+
+
 def _frame(ax: Axes, causes: Sequence[str]) -> None:
     """Name the rows, from the top, with a line at zero."""
     ax.set_yticks(range(len(causes)), causes)
     ax.invert_yaxis()
     ax.grid(axis="y", visible=False)
-    ax.margins(x=0.3)
+    ax.margins(x=_ROOM_IN_PRINT if prints() else _ROOM)
     if ax.dataLim.x0 >= 0.0:
         ax.set_xlim(left=0.0)
     ax.axvline(0.0, color=INK, linewidth=0.8)

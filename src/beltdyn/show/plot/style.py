@@ -20,6 +20,7 @@ from matplotlib.ticker import LogFormatter
 from matplotlib.typing import LineStyleType
 
 from beltdyn.results import Result
+from beltdyn.show.plot.print_style import GREYS, PRINT_SAMPLE, PRINT_SIZE, finish, printed_size, prints, rules
 
 _SAMPLE, _SIZE = 45.0, 9.0
 """Width of the line before a name with the gap to the next one, and size of names, points."""
@@ -72,9 +73,10 @@ def _columns(names: Sequence[str], width: float) -> int:
 
 def _widths(names: Sequence[str], columns: int) -> float:
     """Width of a legend of so many columns, which are filled one after the other, inches."""
-    font = FontProperties(size=_SIZE)
+    sample, size = (PRINT_SAMPLE, PRINT_SIZE) if prints() else (_SAMPLE, _SIZE)
+    font = FontProperties(size=size)
     widths = [text_to_path.get_text_width_height_descent(name, font, False)[0] for name in names]
-    return sum(_SAMPLE + float(part.max()) for part in np.array_split(np.array(widths), columns)) / _INCH
+    return sum(sample + float(part.max()) for part in np.array_split(np.array(widths), columns)) / _INCH
 
 
 P = ParamSpec("P")
@@ -149,8 +151,11 @@ def styled(function: Callable[P, R]) -> Callable[P, R]:
 
     @wraps(function)
     def draw(*args: P.args, **kwargs: P.kwargs) -> R:
-        with mpl.rc_context(_RULES):
-            return function(*args, **kwargs)
+        with rules(_RULES):
+            drawn = function(*args, **kwargs)
+            if prints() and isinstance(drawn, Axes | Figure):
+                finish(drawn.figure.figure)
+        return drawn
 
     return draw
 
@@ -162,21 +167,26 @@ def set_log_scale(ax: Axes) -> None:
     ax.yaxis.set_minor_formatter(LogFormatter())
 
 
-def new_figure(size: tuple[float, float] = SIZE) -> Figure:
-    """Make a figure that belongs to no window, for files."""
-    return Figure(figsize=size, layout="constrained")
+def fitted(size: tuple[float, float], wide: bool = False) -> tuple[float, float]:
+    """Give the size of a figure in the present style, inches; in print a wide one fills the page."""
+    return printed_size(size, wide) if prints() else size
+
+
+def new_figure(size: tuple[float, float] = SIZE, wide: bool = False) -> Figure:
+    """Make a figure that belongs to no window, for files; see `fitted`."""
+    return Figure(figsize=fitted(size, wide), layout="constrained")
 
 
 def axes_or_new(ax: Axes | None, size: tuple[float, float] = SIZE) -> Axes:
     """Give the axes to draw on."""
-    return plt.subplots(figsize=size, layout="constrained")[1] if ax is None else ax
+    return plt.subplots(figsize=fitted(size), layout="constrained")[1] if ax is None else ax
 
 
 def polar_or_new(ax: Axes | None, size: tuple[float, float] = POLAR_SIZE) -> Axes:
     """Give the axes to draw on; new ones are polar. See `axes_or_new`."""
     if ax is not None:
         return ax
-    return plt.subplots(figsize=size, layout="constrained", subplot_kw={"projection": "polar"})[1]
+    return plt.subplots(figsize=fitted(size), layout="constrained", subplot_kw={"projection": "polar"})[1]
 
 
 def unit(variable: xr.DataArray) -> str:
@@ -230,7 +240,8 @@ def dash(number: int) -> Dash:
 
 def color(number: int) -> str:
     """Give the color of the line of this number, counted from 0."""
-    return COLORS[number % len(COLORS)]
+    colors = GREYS if prints() else COLORS
+    return colors[number % len(colors)]
 
 
 def tension_colors() -> Colormap:
@@ -262,7 +273,7 @@ def rows(items: Sequence[Item], most: int = _COLUMNS) -> list[list[Item]]:
 def panels(calls: Sequence[Sequence[Callable[..., Axes]]], *, sharey: bool = True) -> Figure:
     """Draw rows of panels; the last row may be shorter."""
     columns = len(calls[0])
-    figure = new_figure((_PANEL[0] * columns, _PANEL[1] * len(calls)))
+    figure = new_figure((_PANEL[0] * columns, _PANEL[1] * len(calls)), columns > 1)
     grid = figure.subplots(len(calls), columns, squeeze=False, sharey="row" if sharey else False)
     for axes, draws in zip(grid, calls, strict=True):
         for ax in axes[len(draws) :]:
