@@ -17,7 +17,7 @@ def main(arguments: list[str] | None = None) -> int:
     parser.add_argument("--out", type=Path, default=Path("beltdyn-paper"), help="folder for paper.html and its runs")
     folder = parser.parse_args(arguments).out
     try:
-        with ending_in_order(), runs_bar(at_end="timing some runs, and writing the page") as report:
+        with ending_in_order(), runs_bar(at_end="writing the page") as report:
             outcome = build_paper(folder, report)
     except BeltdynError as error:
         show_error(str(error))

@@ -5,6 +5,7 @@ import platform
 import tempfile
 import time
 from collections.abc import Callable, Sequence
+from contextlib import suppress
 from dataclasses import dataclass
 from datetime import UTC, datetime
 from pathlib import Path
@@ -14,8 +15,9 @@ from beltdyn.model import Drive
 from beltdyn.results import provenance
 from beltdyn.results.atomic import make_folder, unwritable
 from beltdyn.solvers.run_progress import BatchProgress
+from validation.paper.forecast import Forecast
 from validation.paper.page import write_page
-from validation.paper.runs import RunMissingError, Runs, run_all
+from validation.paper.runs import REPEATS, RunMissingError, Runs, run_all
 from validation.paper.statement import Section
 from validation.paper.statements import SECTIONS, Part
 
@@ -69,7 +71,11 @@ def build_paper(
     """
     begun = time.perf_counter()
     _check_folder(folder)
-    runs = run_all(_all_cases(parts), folder / RUNS, progress)
+    cases = _all_cases(parts)
+    forecast = Forecast(cases, progress)
+    runs = run_all(cases, folder / RUNS, forecast.runs)
+    names = _timed(parts, runs)
+    runs.take_times(names, forecast.timed([runs[name].dataset.attrs["cpu_time"] for name in names], REPEATS))
     sections = tuple(_section(part, runs) for part in parts)
     facts = _facts(time.perf_counter() - begun, folder, runs)
     write_page(folder / PAGE, sections, runs.failures, facts)
@@ -94,6 +100,16 @@ def _all_cases(parts: Sequence[Part]) -> dict[str, Drive]:
             if drives.setdefault(name, drive) != drive:
                 raise ValueError(f"two parts of the page name different drives {name}")
     return drives
+
+
+def _timed(parts: Sequence[Part], runs: Runs) -> list[str]:
+    """Names of the runs that parts want timed, each once; none of parts that lack a run."""
+    names = dict[str, None]()
+    for part in parts:
+        if hasattr(part, "timed"):
+            with suppress(RunMissingError):
+                names |= dict.fromkeys(map(runs.name_of, part.timed(runs)))
+    return list(names)
 
 
 def _section(part: Part, runs: Runs) -> Section:

@@ -1,17 +1,16 @@
 """What the page keeps of a run: a few curves and means in place of all that was recorded, a hundredth of its size."""
 
-from contextlib import closing
 from pathlib import Path
 
 import numpy as np
 import xarray as xr
 
 from beltdyn.arrays import BoolArray, FloatArray, IntArray
-from beltdyn.results import Run
-from beltdyn.results.atomic import atomic_path
-from beltdyn.results.dataset import is_result
-from beltdyn.results.netcdf import write_dataset
+from beltdyn.model import Drive
+from beltdyn.results import Result, Run
+from beltdyn.solvers.run_progress import Report
 from beltdyn.system.build import contact_points
+from beltdyn.transient.simulate import simulate
 from validation.paper.averages import BINS, contact_samples
 
 CURVES = (
@@ -27,20 +26,28 @@ AT_END = ("normal_force", "friction_force", "slip_velocity", "contact_pulley", "
 _FREE = -1
 
 
-def keep(run: Run) -> None:
-    """Replace the file of a run by what the page needs of it.
+def paper_run(drive: Drive, *, progress: Report | None = None) -> Result:
+    """Simulate a drive in memory, and give what the page needs of the run.
 
     Parameters
     ----------
-    run : Run
-        A completed run with a result file.
+    drive : Drive
+        The drive.
+    progress : callable, optional
+        Called repeatedly with a `Progress`.
+
+    Returns
+    -------
+    Result
+        See `reduce`; an interrupted run as it is.
     """
-    assert run.path is not None
-    with closing(run.dataset) as dataset:
-        kept = reduce(Run(dataset, run.drive)).load()
-    with atomic_path(run.path, is_result) as temporary:
-        packed = {"zlib": True, "shuffle": True, "complevel": 4}
-        write_dataset(temporary, kept, dict.fromkeys(kept.data_vars, packed))
+    run = simulate(drive, progress=progress)
+    if run.status != "completed":
+        return run
+    kept = reduce(run)
+    for variable in kept.data_vars.values():
+        variable.encoding = {"zlib": True, "shuffle": True, "complevel": 4}
+    return Result(kept, run.drive)
 
 
 def open_kept(path: Path) -> xr.Dataset:
@@ -49,7 +56,7 @@ def open_kept(path: Path) -> xr.Dataset:
     Parameters
     ----------
     path : Path
-        A file written by `keep`.
+        A file with the result of `paper_run`.
     """
     return xr.load_dataset(path, engine="h5netcdf", decode_times=False)
 

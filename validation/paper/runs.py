@@ -1,21 +1,25 @@
 """Runs by name, of which some may have failed."""
 
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping
 from pathlib import Path
 
 import numpy as np
 
+from beltdyn.analyses import Analysis
 from beltdyn.arrays import FloatArray
-from beltdyn.designs.batch import simulate_all
+from beltdyn.designs.batch import analyse_all
 from beltdyn.model import Drive
 from beltdyn.results import Run
 from beltdyn.results.atomic import make_folder
 from beltdyn.solvers.run_progress import BatchProgress
 from beltdyn.transient.simulate import simulate
-from validation.paper.kept import keep, open_kept
+from validation.paper.kept import open_kept
 
-REPEATS = 3
-"""How often a run is done again to see how its computing time varies."""
+REPEATS = 2
+"""How often a timed run is done, to see how its computing time varies."""
+
+PAPER_RUN = Analysis("validation.paper.kept:paper_run", "Simulate a drive, and keep what the page needs.")
+"""What is computed of each drive."""
 
 
 class RunMissingError(KeyError):
@@ -28,6 +32,8 @@ class RunMissingError(KeyError):
 class Runs(Mapping[str, Run]):
     """What was kept of runs by name; asking for one that failed raises `RunMissingError`.
 
+    Iteration gives each run once: names of equal drives stand for one run.
+
     Parameters
     ----------
     paths : mapping
@@ -36,8 +42,8 @@ class Runs(Mapping[str, Run]):
         Name -> drive.
     failures : mapping
         Name -> why there is none.
-    progress : callable, optional
-        Told of runs that are timed again.
+    same : mapping
+        Name -> name of the run of an equal drive, which is in `paths` or `failures`.
     """
 
     def __init__(
@@ -45,13 +51,15 @@ class Runs(Mapping[str, Run]):
         paths: Mapping[str, Path],
         drives: Mapping[str, Drive],
         failures: Mapping[str, str],
-        progress: Callable[[BatchProgress], None] | None = None,
+        same: Mapping[str, str] | None = None,
     ) -> None:
-        self._progress = progress
         self._runs = {name: Run(open_kept(path), drives[name]) for name, path in paths.items()}
+        self._times = dict[str, FloatArray]()
+        self._same = dict(same or {})
         self.failures = dict(failures)
 
     def __getitem__(self, name: str) -> Run:
+        name = self.name_of(name)
         if name in self.failures:
             raise RunMissingError(f"the run {name} failed: {self.failures[name]}")
         return self._runs[name]
@@ -62,33 +70,46 @@ class Runs(Mapping[str, Run]):
     def __len__(self) -> int:
         return len(self._runs)
 
-    def cpu_times(self, names: Sequence[str], repeats: int = REPEATS) -> dict[str, FloatArray]:
-        """Time some runs again, one at a time and in turns, so that a change of the machine's speed meets them all.
+    def name_of(self, name: str) -> str:
+        """Name under which the run of a drive is kept."""
+        return self._same.get(name, name)
+
+    def take_times(
+        self,
+        names: Iterable[str],
+        progress: Callable[[BatchProgress], None] | None = None,
+        repeats: int = REPEATS,
+    ) -> None:
+        """Time some runs, one at a time and in turns, so that a change of the machine's speed meets them all.
 
         Parameters
         ----------
-        names : sequence of str
-            Names of runs.
+        names : iterable of str
+            Names of runs, each of which is timed once however often it is named.
+        progress : callable, optional
+            Told of the runs.
         repeats : int
             How often each is done.
-
-        Returns
-        -------
-        dict
-            Name -> processor time of each repetition, without outputs on the way, s, shape (repeats,).
 
         Raises
         ------
         KeyboardInterrupt
             After Ctrl-C.
         """
-        drives = [_without_outputs(self[name].drive) for name in names]
-        times = np.zeros(repeats * len(drives))
-        for number in range(times.size):
-            if self._progress is not None:
-                self._progress(BatchProgress(number, times.size, {Path(names[number % len(drives)]): 0.0}))
-            times[number] = _cpu_time(drives[number % len(drives)])
-        return dict(zip(names, times.reshape(repeats, -1).T, strict=True))
+        distinct = list(dict.fromkeys(map(self.name_of, names)))
+        drives = [_without_outputs(self[name].drive) for name in distinct]
+        times = np.zeros((repeats, len(drives)))
+        for done, (turn, number) in enumerate(np.ndindex(*times.shape)):
+            if progress is not None:
+                progress(BatchProgress(done, times.size, {Path(distinct[number]): 0.0}, kind="timed runs"))
+            times[turn, number] = _cpu_time(drives[number])
+        if progress is not None:
+            progress(BatchProgress(times.size, times.size, {}, kind="timed runs"))
+        self._times |= dict(zip(distinct, times.T, strict=True))
+
+    def cpu_times(self, names: Iterable[str]) -> dict[str, FloatArray]:
+        """Give the processor time of each repetition, without outputs on the way, s, shape (repeats,), by name."""
+        return {name: self._times[self.name_of(name)] for name in names}
 
 
 def _without_outputs(drive: Drive) -> Drive:
@@ -117,15 +138,15 @@ def run_all(
     progress: Callable[[BatchProgress], None] | None = None,
     jobs: int | None = None,
 ) -> Runs:
-    """Simulate drives side by side.
+    """Simulate drives side by side, equal ones once.
 
     Parameters
     ----------
     drives : mapping
         Name -> drive.
     folder : Path
-        Where to write, for each drive and named after it, its drive file and what the page keeps of its run; made if
-        need be.
+        Where to write, for each drive and named after it (of equal ones the first), its drive file and what the page
+        keeps of its run; made if need be.
     progress : callable, optional
         Told of the runs.
     jobs : int, optional
@@ -144,12 +165,15 @@ def run_all(
         After Ctrl-C; files that are there hold what was computed.
     """
     make_folder(folder)
-    for name, drive in drives.items():
+    first = dict[str, str]()
+    same = {name: first.setdefault(drive.text, name) for name, drive in drives.items()}
+    distinct = {name: drives[name] for name in first.values()}
+    for name, drive in distinct.items():
         (folder / f"{name}.toml").write_text(drive.text, encoding="utf-8")
-    paths = {name: folder / f"{name}.nc" for name in drives}
-    wanted = {paths[name]: _with_fields(drive) for name, drive in drives.items()}
-    endings = simulate_all(wanted, progress, jobs, finish=keep)
+    paths = {name: folder / f"{name}.nc" for name in distinct}
+    wanted = {paths[name]: _with_fields(drive) for name, drive in distinct.items()}
+    endings = analyse_all(PAPER_RUN, wanted, progress, jobs)
     if any(ending.status in ("interrupted", "not started") for ending in endings.values()):
         raise KeyboardInterrupt
     failures = {name: endings[path].error for name, path in paths.items() if endings[path].error}
-    return Runs({name: path for name, path in paths.items() if name not in failures}, drives, failures, progress)
+    return Runs({name: path for name, path in paths.items() if name not in failures}, drives, failures, same)

@@ -112,12 +112,14 @@ def runs_bar(at_end: str = "done") -> Iterator[Callable[["BatchProgress"], None]
             if begin is None and (progress.running or progress.done):
                 begin = perf_counter()
             part = (progress.done + sum(progress.running.values())) / max(progress.total, 1)
+            part = part if progress.share is None else progress.share
+            state = f"{progress.done} of {progress.total} {progress.kind}"
             elapsed = perf_counter() - begin if begin is not None else 0.0
             remaining = elapsed * (1.0 - part) / part if part >= FORECAST else 0.0
             if not told and elapsed > _EARLY and remaining > _LONG:
                 told = True
                 bar.console.print(_long("These runs", remaining, _SLOW_RUNS), highlight=False)
-            log(f"{progress.done} of {progress.total} runs", remaining)
+            log(state, remaining)
             for file in lines.keys() - progress.running.keys():
                 bar.remove_task(lines.pop(file))
             for file, done in progress.running.items():
@@ -129,9 +131,9 @@ def runs_bar(at_end: str = "done") -> Iterator[Callable[["BatchProgress"], None]
             bar.update(
                 whole,
                 description=at_end if progress.done == progress.total else phase,
-                completed=progress.done + sum(progress.running.values()),
-                total=progress.total if begun else None,
-                state=f"{progress.done} of {progress.total} runs",
+                completed=part,
+                total=1.0 if begun else None,
+                state=state,
                 visible=True,
             )
 

@@ -89,3 +89,7 @@ class BatchProgress:
     """Number of all simulations."""
     running: Mapping[Path, float]
     """Result file -> completed share, 0 to 1, of running simulations."""
+    share: float | None = None
+    """Completed share of all work, 0 to 1, where simulations take different times; by default that of their number."""
+    kind: str = "runs"
+    """What is computed, in words."""

@@ -210,6 +210,19 @@ def test_without_a_terminal_a_line_a_minute_tells_of_the_work(
     assert "simulating, 0.25 of 1 s, step 1.0e-04 s; about 3 minutes more\n" in capsys.readouterr().err
 
 
+def test_runs_of_different_lengths_are_forecast_by_their_share(
+    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """Half of the work after two of many runs: as much time is left as has passed, whatever the runs are called."""
+    now = [0.0]
+    monkeypatch.setattr("beltdyn.cli.progress.perf_counter", lambda: now[0])
+    with runs_bar() as report:
+        report(BatchProgress(0, 40, {Path("long.nc"): 0.0}, share=0.0))
+        now[0] = 300.0
+        report(BatchProgress(2, 40, {}, share=0.5, kind="timed runs"))
+    assert "2 of 40 timed runs; about 5 minutes more\n" in capsys.readouterr().err
+
+
 def test_progress_of_many(capsys: pytest.CaptureFixture[str]) -> None:
     """A line for all, and one for each that is on its way."""
     with runs_bar(at_end="writing the page") as report:

@@ -1,7 +1,8 @@
 """The paper: one module for each part, with its cases and its statements.
 
 A module has two functions: ``cases() -> dict[str, Drive]`` names what is to be run, and
-``section(runs) -> Section`` judges the results.  `SECTIONS` lists the modules in the order of the page.
+``section(runs) -> Section`` judges the results. A third, ``timed(runs) -> list[str]``, names runs whose computing time
+it compares: these run again, one at a time.  `SECTIONS` lists the modules in the order of the page.
 """
 
 from collections.abc import Mapping

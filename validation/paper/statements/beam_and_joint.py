@@ -48,6 +48,11 @@ def _tied_name(case: Case, elements: int) -> str:
     return f"{case.name}_multipliers_{elements}"
 
 
+def timed(runs: Runs) -> list[str]:
+    """Both forms of the joint with two meshes."""
+    return [name for names in _forms().values() for name in names]
+
+
 def section(runs: Runs) -> Section:
     """What the factor on bending and the form of the joint change."""
     return Section(
@@ -165,16 +170,26 @@ def _same_motion(runs: Runs) -> Statement:
     )
 
 
-def _effort(runs: Runs) -> Statement:
-    forms = (("shared node", _belt_name), ("multipliers", _tied_name))
-    groups = {
-        (case, title): [name(case, n) for n in (case.elements, _FINE)] for case in _CASES for title, name in forms
+_FORMS = {"shared node": _belt_name, "multipliers": _tied_name}
+"""Forms of the joint -> the names of their runs."""
+
+
+def _forms() -> dict[tuple[Case, str], list[str]]:
+    """Names of the runs of a case and a form of the joint."""
+    return {
+        (case, title): [name(case, n) for n in (case.elements, _FINE)]
+        for case in _CASES
+        for title, name in _FORMS.items()
     }
-    taken = runs.cpu_times([name for names in groups.values() for name in names])
+
+
+def _effort(runs: Runs) -> Statement:
+    groups = _forms()
+    taken = runs.cpu_times(timed(runs))
 
     def finding(case: Case) -> Finding:
         numbers, spent = [], []
-        for title, _ in forms:
+        for title in _FORMS:
             names = groups[case, title]
             times = np.sum([taken[name] for name in names], axis=0)
             iterations = sum(int(runs[name].dataset.attrs["newton_iterations"]) for name in names)

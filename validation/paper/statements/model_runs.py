@@ -108,8 +108,9 @@ def reference_name(case: Case, elements: int = REFERENCE) -> str:
 def make(case: Case, model: Model, elements: int) -> Drive:
     """The drive of a case with a belt cut in the way of a model."""
     drive = case.build()
+    kind = None if model is PAPER else model.kind  # by default, so that drives of other parts are the same
     return drive.replace(
-        belt=drive.belt.replace(discretization=model.kind, elements=elements),
+        belt=drive.belt.replace(discretization=kind, elements=elements),
         contact=drive.contact.replace(sampling=model.sampling),
     )
 

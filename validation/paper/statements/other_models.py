@@ -45,6 +45,12 @@ def cases() -> Mapping[str, Drive]:
     return compared_cases()
 
 
+def timed(runs: Runs) -> list[str]:
+    """The meshes on either side of the targets whose computing time is compared."""
+    pairs = [pair for case in CASES for pair in _sides(case, _brackets(compare(runs, case))).values()]
+    return sorted({name for pair in pairs for name in pair})
+
+
 def section(runs: Runs) -> Section:
     """What each model needs for the same accuracy."""
     comparisons = [compare(runs, case) for case in CASES]
@@ -270,12 +276,7 @@ def _smooth(comparisons: Sequence[Comparison]) -> Statement:
 
 def _time(runs: Runs, comparisons: Sequence[Comparison]) -> Statement:
     def finding(comparison: Comparison) -> Finding:
-        series = [comparison.series[model] for model in (PAPER, *_PEERS)]
-        brackets = {
-            (measure, found.model): found.bracket(measure, TARGETS[measure][0])
-            for measure in _GEOMETRY
-            for found in series
-        }
+        brackets = _brackets(comparison)
         times = _times(runs, comparison.case, brackets)
         numbers = [
             Number(
@@ -301,19 +302,33 @@ def _time(runs: Runs, comparisons: Sequence[Comparison]) -> Statement:
     )
 
 
+_Brackets = dict[tuple[str, Model], Bracket]
 _Times = dict[tuple[str, Model], FloatArray | None]
 
 
-def _times(runs: Runs, case: Case, brackets: Mapping[tuple[str, Model], Bracket]) -> _Times:
-    """Processor times of every target in every repetition, s; None where it does not lie between two meshes."""
-    inside = {
+def _brackets(comparison: Comparison) -> _Brackets:
+    """Where the compared models meet the targets of `less-time`."""
+    series = [comparison.series[model] for model in (PAPER, *_PEERS)]
+    return {
+        (measure, found.model): found.bracket(measure, TARGETS[measure][0]) for measure in _GEOMETRY for found in series
+    }
+
+
+def _sides(case: Case, brackets: _Brackets) -> dict[tuple[str, Model], tuple[str, str]]:
+    """Names of the runs on either side of each target that lies between two meshes."""
+    return {
         key: (run_name(case, key[1], bracket.misses.elements), run_name(case, key[1], bracket.meets.elements))
         for key, bracket in brackets.items()
         if bracket.misses and bracket.meets
     }
-    taken = runs.cpu_times(sorted({name for pair in inside.values() for name in pair}))
+
+
+def _times(runs: Runs, case: Case, brackets: _Brackets) -> _Times:
+    """Processor times of every target in every repetition, s; None where it does not lie between two meshes."""
+    sides = _sides(case, brackets)
+    taken = runs.cpu_times({name for pair in sides.values() for name in pair})
     return {
-        key: bracket.interpolate(*(taken[name] for name in inside[key])) if key in inside else None
+        key: bracket.interpolate(*(taken[name] for name in sides[key])) if key in sides else None
         for key, bracket in brackets.items()
     }
 

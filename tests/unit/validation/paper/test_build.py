@@ -8,6 +8,7 @@ import pytest
 from beltdyn.errors import ModelError
 from beltdyn.model import Drive
 from validation.paper import build_paper
+from validation.paper.build import _timed
 from validation.paper.runs import RunMissingError, Runs
 from validation.paper.statement import Finding, Section, Statement, Verdict
 from validation.paper.statements import SECTIONS
@@ -50,3 +51,13 @@ def test_a_file_in_place_of_the_folder(tmp_path: Path) -> None:
 def test_all_cases_can_be_built_and_have_names_fit_for_files() -> None:
     names = [name for part in SECTIONS for name in part.cases()]
     assert all(re.fullmatch(r"[\w-]+", name) for name in names)
+
+
+def test_runs_that_several_parts_time_are_timed_once(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """A part that lacks a run is left out, and does not keep others from theirs."""
+    parts = [part(name, {}) for name in ("one", "two", "three")]
+    vars(parts[0])["timed"] = lambda _: ["a", "b"]
+    vars(parts[1])["timed"] = lambda runs: [runs["missing"]]
+    vars(parts[2])["timed"] = lambda _: ["b", "c"]
+    runs = Runs({}, {}, {"missing": "why"}, {"c": "a"})
+    assert _timed(parts, runs) == ["a", "b"]

@@ -6,10 +6,9 @@ import numpy as np
 import pytest
 
 from beltdyn.results import Run
-from beltdyn.results.dataset import open_dataset
 from validation.paper.averages import contact_samples, mean_forces
 from validation.paper.distribution import distribution
-from validation.paper.kept import AT_END, CURVES, keep, open_kept, reduce
+from validation.paper.kept import AT_END, CURVES, open_kept, paper_run, reduce
 
 
 def test_curves_and_the_last_output_are_those_of_the_run(run: Run) -> None:
@@ -53,14 +52,19 @@ def test_points_that_are_free_neither_slide_nor_stick(run: Run) -> None:
     assert np.all(np.isnan(kept["mean_slip_velocity"]))
 
 
-def test_the_file_is_replaced_by_a_small_one(run: Run, tmp_path: Path) -> None:
-    path = tmp_path / "run.nc"
-    run.dataset.to_netcdf(path, engine="h5netcdf")
-    before, whole = path.stat().st_size, reduce(run)
-    keep(Run(open_dataset(path), run.drive, path))
-    assert path.stat().st_size < 0.2 * before
-    assert [file.name for file in tmp_path.iterdir()] == ["run.nc"]
-    assert open_kept(path).equals(whole)
+def test_what_is_kept_is_small_and_read_again(run: Run, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("validation.paper.kept.simulate", lambda *_, **__: run)
+    whole = run.save(tmp_path / "whole.nc")
+    kept = paper_run(run.drive)
+    path = kept.save(tmp_path / "kept.nc")
+    assert path.stat().st_size < 0.2 * whole.stat().st_size
+    assert open_kept(path).equals(kept.dataset)
+
+
+def test_an_interrupted_run_is_given_as_it_is(run: Run, monkeypatch: pytest.MonkeyPatch) -> None:
+    interrupted = Run(run.dataset.assign_attrs(status="interrupted"), run.drive)
+    monkeypatch.setattr("validation.paper.kept.simulate", lambda *_, **__: interrupted)
+    assert paper_run(run.drive) is interrupted
 
 
 def test_distributions_are_read_from_what_was_kept(run: Run) -> None:

@@ -23,7 +23,7 @@ def test_runs_go_on_when_one_fails(tmp_path: Path) -> None:
     """A run whose file cannot be written leaves a reason, the others leave their results."""
     (tmp_path / "bad.nc").mkdir()
     stages: list[BatchProgress] = []
-    drives = {"good": short(0.01), "bad": short(0.01), "other": short(0.02)}
+    drives = {"good": short(0.01), "bad": short(0.015), "other": short(0.02), "again": short(0.02)}
     runs = run_all(drives, tmp_path, stages.append, jobs=2)
     assert sorted(runs) == ["good", "other"]
     assert (runs["good"].status, runs["good"].drive) == ("completed", drives["good"])
@@ -31,13 +31,16 @@ def test_runs_go_on_when_one_fails(tmp_path: Path) -> None:
     with pytest.raises(RunMissingError, match="the run bad failed"):
         runs["bad"]
     assert "bad" not in runs
+    assert (len(runs), runs.name_of("again")) == (2, "other")
+    assert runs["again"] is runs["other"]
+    assert not (tmp_path / "again.nc").exists()
     assert load(tmp_path / "other.toml") == drives["other"]
     assert (stages[0].total, stages[-1]) == (3, BatchProgress(3, 3, {}))
 
 
 @pytest.mark.parametrize("status", ["interrupted", "not started"])
 def test_an_interruption_goes_on_to_the_caller(monkeypatch: pytest.MonkeyPatch, tmp_path: Path, status: str) -> None:
-    monkeypatch.setattr("validation.paper.runs.simulate_all", lambda *_, **__: {tmp_path / "one.nc": Ending(status)})
+    monkeypatch.setattr("validation.paper.runs.analyse_all", lambda *_, **__: {tmp_path / "one.nc": Ending(status)})
     with pytest.raises(KeyboardInterrupt):
         run_all({"one": short(0.01)}, tmp_path)
 
@@ -48,8 +51,15 @@ def test_no_drives_no_runs(tmp_path: Path) -> None:
     assert (tmp_path / "runs").is_dir()
 
 
-@pytest.mark.slow
-def test_times_are_taken_in_turns_without_outputs(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+@pytest.fixture
+def kept(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> Runs:
+    """Two runs of which nothing was kept, and a second name of the first."""
+    monkeypatch.setattr("validation.paper.runs.open_kept", lambda _: xr.Dataset())
+    paths = {name: tmp_path / f"{name}.nc" for name in ("one", "two")}
+    return Runs(paths, {"one": short(0.01), "two": short(0.02)}, {"bad": "why"}, {"first": "one"})
+
+
+def test_times_are_taken_in_turns_once_each_without_outputs(kept: Runs, monkeypatch: pytest.MonkeyPatch) -> None:
     done: list[tuple[float, float]] = []
 
     def simulate(drive: Drive) -> Run:
@@ -57,18 +67,19 @@ def test_times_are_taken_in_turns_without_outputs(tmp_path: Path, monkeypatch: p
         done.append((settings.duration, settings.output_interval))
         return Run(xr.Dataset(attrs={"status": "completed", "cpu_time": float(len(done))}), drive)
 
-    runs = run_all({"one": short(0.01), "two": short(0.02)}, tmp_path)
     monkeypatch.setattr("validation.paper.runs.simulate", simulate)
-    times = runs.cpu_times(["two", "one"], repeats=3)
+    told = list[BatchProgress]()
+    kept.take_times(["two", "one", "first", "two"], told.append, repeats=3)
     assert done == [(0.02, 0.02), (0.01, 0.01)] * 3
+    assert [one.done for one in told] == list(range(7))
+    assert {(one.total, one.kind) for one in told} == {(6, "timed runs")}
+    times = kept.cpu_times(["two", "first"])
     np.testing.assert_array_equal(times["two"], [1.0, 3.0, 5.0])
-    np.testing.assert_array_equal(times["one"], [2.0, 4.0, 6.0])
+    np.testing.assert_array_equal(times["first"], [2.0, 4.0, 6.0])
 
 
-def test_timing_that_is_interrupted_ends_all(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_timing_that_is_interrupted_ends_all(kept: Runs, monkeypatch: pytest.MonkeyPatch) -> None:
     interrupted = Run(xr.Dataset(attrs={"status": "interrupted"}), short(0.01))
     monkeypatch.setattr("validation.paper.runs.simulate", lambda _: interrupted)
-    monkeypatch.setattr("validation.paper.runs.open_kept", lambda _: xr.Dataset())
-    runs = Runs({"one": tmp_path / "one.nc"}, {"one": short(0.01)}, {})
     with pytest.raises(KeyboardInterrupt):
-        runs.cpu_times(["one"])
+        kept.take_times(["one"])
