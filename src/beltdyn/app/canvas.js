@@ -137,17 +137,17 @@ export default {
     measure() {
       return this.unit || { name: "mm", size: 1 };
     },
-    pulled() { // tensions of spans beside their lengths: the thicker the line, the larger the tension
+    pulled() { // tensions of spans beside their lengths: lines as wide as the tensions are large
       const spans = this.shown.spans || [], known = this.tensions || [];
       if (this.live || !this.shown.valid || known.length !== spans.length || known.length === 0) return [];
       const [least, most] = [Math.min(...known), Math.max(...known)];
       if (most - least < 0.02 * Math.abs(most)) return []; // at rest all are alike
       return spans.map((one, i) => {
-        const share = (known[i] - least) / (most - least);
+        const share = Math.max(known[i], 0) / most;
         const side = known[i] === most ? "tight " : known[i] === least ? "slack " : "";
         const away = this.away(one), [x1, y1, x2, y2] = one.ends;
         return {
-          d: `M${x1} ${y1}L${x2} ${y2}`, width: (2 + 5 * share) * this.px, side,
+          d: `M${x1} ${y1}L${x2} ${y2}`, width: Math.max(8 * share, 0.75) * this.px, side,
           x: one.x + one.right * away, y: one.y + one.down * away + (one.down < -0.3 ? -9 : 17) * this.px,
           anchor: this.anchor(one), label: `${side}${Number(known[i].toPrecision(3))} N`,
         };

@@ -5,13 +5,21 @@ import re
 from collections.abc import Callable, Iterator, Mapping, Set
 from typing import Any, Literal, NamedTuple
 
+import numpy as np
 from nicegui import ui
 from nicegui.elements.mixins.validation_element import ValidationElement
 
 from beltdyn.app import placing
-from beltdyn.app.forms import Field, fields, kinds, schema_of, unit_in, value_at
+from beltdyn.app.forms import Field, fields, in_units, kinds, schema_of, shown, unit_in, value_at
+from beltdyn.app.scene import groups
 from beltdyn.app.session import Session
-from beltdyn.model import Drive
+from beltdyn.errors import ModelError
+from beltdyn.model import Drive, estimate_at_rest, prepare, read_catalogue
+from beltdyn.model.catalogue import Entry
+from beltdyn.model.pulley import flat_friction_on
+from beltdyn.model.toothing import FEWEST_TEETH
+from beltdyn.parts.part import Part
+from beltdyn.parts.quantity import to_si
 from beltdyn.parts.toml_edits import Edit, Location
 
 _EXAMPLE = re.compile(r"^(?:>>>|\.\.\.) (.*)$", re.MULTILINE)
@@ -40,7 +48,33 @@ def beginning(
             value = _usual(one, data, drive)
             if value is not None:
                 found[one.key] = value
-    return given | found
+    acting = {key: _at_once(value) for key, value in found.items()}
+    return given | _loading(acting, location, drive)
+
+
+def _at_once(value: Any) -> Any:
+    """A profile that steps or rises at some time as a constant: the drive may have ended before."""
+    if isinstance(value, Mapping) and "value" in value and value.get("kind") not in (None, "constant"):
+        return {"kind": "constant", "value": value["value"]}
+    return value
+
+
+def _loading(found: dict[str, Any], location: Location, drive: Drive | None) -> dict[str, Any]:
+    """A load whose torques oppose the rotation of its pulley on an average, as a driven machine does."""
+    if "torques" not in found or location[0] != "pulley" or drive is None:
+        return found
+    torques, turning = np.asarray(found["torques"], dtype=float), _turning(drive, int(location[1]))
+    if float(torques.mean()) * turning > 0.0:
+        torques = -torques
+    if turning < 0.0 and "speeds" in found:  # the same machine, seen from its other end
+        speeds = [to_si(one, "rad/s") if isinstance(one, str) else float(one) for one in found["speeds"]]
+        return found | {"speeds": [-one for one in reversed(speeds)], "torques": torques[..., ::-1].tolist()}
+    return found | {"torques": torques.tolist()}
+
+
+def _turning(drive: Drive, number: int) -> float:
+    """Sense in which a pulley turns, positive counter-clockwise."""
+    return float(drive.running_sense * drive.pulleys[number].turning * drive.positive_sense)
 
 
 def _example(data: Mapping[str, Any], location: Location) -> dict[str, Any]:
@@ -75,8 +109,7 @@ def _level(one: Field, data: Mapping[str, Any], drive: Drive | None) -> Any:
     """What a profile rises to: the torque on a pulley opposes its rotation."""
     level = _OF_UNITS.get(one.unit, 1.0)
     if one.location[0] == "pulley" and one.location[2] == "torque" and drive is not None:
-        pulley = drive.pulleys[drive.number_of(str(data["pulley"][int(one.location[1])]["name"]))]
-        return level if drive.running_sense * pulley.turning * drive.positive_sense < 0 else _OPPOSING
+        return level if _turning(drive, int(one.location[1])) < 0.0 else _OPPOSING
     return level
 
 
@@ -140,6 +173,105 @@ def edits_of_value(data: Mapping[str, Any], location: Location, value: Any) -> l
     if len(location) == 3 and location[0] == "pulley" and location[2] == "name":
         return placing.rename(data, int(location[1]), str(value))
     return [Edit("set", location, value)]
+
+
+_NEAR_LENGTH = 1e-3
+"""Difference from a standard length within which a nominal length is kept, relative."""
+
+
+def edits_of_profile(data: Mapping[str, Any], profile: str | None, drive: Drive | None) -> list[Edit]:
+    """Edits that set the profile of the belt, and clear what does not fit it: measures by which it is not sold, teeth.
+
+    The new belt is about as wide as the one before, and pulleys without teeth as large.
+    """
+    edits = edits_of_value(data, ("belt", "profile"), profile)
+    belt, entry = value_at(data, ("belt",)), read_catalogue().get(profile or "")
+    if entry is None or not isinstance(belt, Mapping):
+        return edits
+    refused = {"ribs", "width", "diameter"} - {entry.sold_by}
+    if entry.toothing is None:
+        refused.add("teeth")
+        edits += _without_teeth(data, drive)
+    elif drive is not None and drive.belt.teeth is None:
+        edits += _with_teeth(data, drive, entry.toothing.pitch)
+        refused |= {"length"} if _takes_up(data) else {"length", "installed_tension"}
+    if not _is_sold(entry, belt.get("nominal_length")):
+        refused.add("nominal_length")
+    edits += [Edit("remove", ("belt", key)) for key in sorted(refused & belt.keys())]
+    lengths = {"length", "nominal_length", "installed_tension"} & (belt.keys() - refused)
+    if entry.toothing is None and not lengths and "teeth" in belt and drive is not None:
+        edits.append(Edit("set", ("belt", "installed_tension"), f"{estimate_at_rest(prepare(drive))[1].tension:.3g} N"))
+    before = None if drive is None else drive.belt.entry
+    counted = before is not None and before.is_v_belt == entry.is_v_belt
+    if drive is not None and not (entry.sold_by in belt and counted):
+        edits.append(Edit("set", ("belt", entry.sold_by), _size(entry, drive.belt.width)))
+    return edits
+
+
+def _takes_up(data: Mapping[str, Any]) -> bool:
+    """Whether a fixed tensioner takes up the length of the belt."""
+    return any(one.get("kind") == "fixed" for one in groups(data, "tensioner"))
+
+
+def _without_teeth(data: Mapping[str, Any], drive: Drive | None) -> list[Edit]:
+    """Edits that make pulleys with teeth smooth, as large as they are."""
+    edits = list[Edit]()
+    for number, pulley in enumerate(groups(data, "pulley")):
+        if "teeth" in pulley:
+            edits.append(Edit("remove", ("pulley", number, "teeth")))
+            if drive is not None and not {"radius", "diameter"} & pulley.keys():
+                edits.append(Edit("set", ("pulley", number, "radius"), f"{1e3 * drive.pulleys[number].radius:.5g} mm"))
+    return edits
+
+
+def _with_teeth(data: Mapping[str, Any], drive: Drive, pitch: float) -> list[Edit]:
+    """Edits that give teeth to pulleys inside the belt, about as many as have room, and to the belt."""
+    edits = [Edit("set", ("belt", "teeth"), max(FEWEST_TEETH, int(drive.path.length / pitch)))]
+    for number, pulley in enumerate(groups(data, "pulley")):
+        if drive.pulleys[number].side == "inside":
+            edits += [Edit("remove", ("pulley", number, key)) for key in ("radius", "diameter") if key in pulley]
+            around = 2.0 * np.pi * float(drive.pulleys[number].radius) / pitch
+            edits.append(Edit("set", ("pulley", number, "teeth"), max(FEWEST_TEETH, round(around))))
+    return edits
+
+
+def _is_sold(entry: Entry, nominal_length: Any) -> bool:
+    """Whether a profile has a standard length, or none are known."""
+    try:
+        length = to_si(nominal_length, "m") if isinstance(nominal_length, str) else nominal_length
+    except ValueError:
+        return True
+    return not entry.lengths or length is None or any(abs(length / one - 1.0) < _NEAR_LENGTH for one in entry.lengths)
+
+
+def _size(entry: Entry, width: float) -> int | str:
+    """Ribs, width or diameter of a belt that is about as wide as another one, m."""
+    if entry.sold_by == "ribs":
+        return max(1, round(width / entry.width))
+    sold = entry.tooth_rating.widths if entry.tooth_rating is not None else ()
+    near = min(sold, key=lambda one: abs(one - width), default=width if entry.sold_by == "width" else entry.width)
+    return f"{1e3 * near:.5g} mm"
+
+
+def in_use(drive: Drive | None, location: Location) -> Any:
+    """The value of a drive at a place of its file, with what its profile supplies and what is chosen; None if none."""
+    if drive is None or len(location) < 2:
+        return None
+    completed = drive.completed
+    part: Any = {"belt": completed.belt, "contact": completed.contact, "simulation": drive.simulation}.get(
+        str(location[0]), drive
+    )
+    try:
+        if location == ("contact", "friction"):
+            return drive.belt.friction
+        if location[0] == "pulley" and location[-1] == "friction":
+            return flat_friction_on(drive.pulleys[int(location[1])], drive.belt, drive.contact)
+        steps = location[1:] if part is not drive else location
+        for step in steps:
+            part = part[step] if isinstance(step, int) else part.value_of(step) if isinstance(part, Part) else None
+    except (LookupError, AttributeError, ModelError, ValueError):
+        return None
+    return part
 
 
 def edits_of_kind(
@@ -252,18 +384,20 @@ class FormView:
             if row.what == "field":
                 assert row.field is not None
                 widget.value = self._shown(row.field)
+                if isinstance(widget, ui.input):
+                    widget.props["placeholder"] = self._in_use(row.field)
                 told = draft.told_below(row.location)
             else:
                 group = value_at(draft.data, row.location)
                 widget.value = _kind_of(group) if row.kinds else group is not None
                 told = draft.told_at(row.location)
             if isinstance(widget, ValidationElement):
-                widget.error = "\n".join(told) or None
+                widget.error = in_units("\n".join(told), self._session.units) or None
         self._messages.clear()
         if self._location is not None:
             with self._messages:
                 for sentence in draft.told_at(self._location):
-                    ui.label(sentence).classes("bd-message")
+                    ui.label(in_units(sentence, self._session.units)).classes("bd-message")
 
     def _shown(self, field: Field) -> Any:
         if field.form == "flag":
@@ -271,6 +405,14 @@ class FormView:
         if field.form == "choice":
             return field.value if field.value in field.choices else None
         return field.text(self._session.units)
+
+    def _in_use(self, field: Field) -> str:
+        """What holds where a field is left open: the value of the drive, or else the default."""
+        units = self._session.units
+        value = in_use(self._session.draft.drive, field.location)
+        if isinstance(value, bool) or not isinstance(value, int | float):
+            return field.usual(units)
+        return shown(value if isinstance(value, int) else float(f"{value:.5g}"), field.unit, units)
 
     def _build_field(self, row: Row) -> None:
         field = row.field
@@ -292,13 +434,13 @@ class FormView:
             widget.props("dense outlined options-dense hide-bottom-space").classes("w-full")
         else:
             suffix = unit_in(units, field.unit).shown if field.unit else ""
-            widget = ui.input(label=label, value=self._shown(field), placeholder=usual)
+            widget = ui.input(label=label, value=self._shown(field), placeholder=self._in_use(field))
             widget.props(f'dense outlined stack-label hide-bottom-space autocomplete="off" suffix="{suffix}"')
             widget.classes("w-full").on("change", lambda: self._type(field, widget.value or ""))
         widget.mark(".".join(map(str, field.location)))
         with widget:
             default = f" Default: {usual} {unit_in(units, field.unit).shown if field.unit else ''}".rstrip() + "."
-            ui.tooltip(field.hint + default * bool(usual)).props("max-width=320px delay=600")
+            ui.tooltip(in_units(field.hint, units) + default * bool(usual)).props("max-width=320px delay=600")
         self._widgets[row.location] = widget
 
     def _build_group(self, row: Row) -> None:
@@ -370,7 +512,11 @@ class FormView:
             self._enter(field, field.read(text, self._session.units))
 
     def _enter(self, field: Field, value: Any) -> None:
-        if not self._filling:
+        if self._filling:
+            return
+        if field.location == ("belt", "profile"):
+            self._apply(edits_of_profile(self._session.document.data, value, self._session.draft.drive))
+        else:
             self._apply(edits_of_value(self._session.document.data, field.location, value))
 
     def _give(self, location: Location, given: bool) -> None:

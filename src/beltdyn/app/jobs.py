@@ -66,6 +66,12 @@ class Outcome(NamedTuple):
     """What is shown as figures and charts."""
     pictures: tuple[str, ...] = ()
     """Its first figures, as addresses of pictures."""
+    answer: str = ""
+    """The answer in a sentence, such as the operating point."""
+    verdict: tuple[str, str] = ("open", "")
+    """"pass", "fail" or "open" by the limits of the drive file, and why."""
+    text: str = ""
+    """The drive file that was analyzed."""
 
 
 class Job:
@@ -75,7 +81,7 @@ class Job:
         self._heard, told = SPAWN.Pipe(duplex=False)
         self._stop = new_event()
         self._process = start_process(_analyse, name, text, folder, result, dict(options), told, self._stop)
-        self.name = name
+        self.name, self._text = name, text
         self.step = _STARTING
         self.outcome: Outcome | None = None
         self._ending: Outcome | None = None
@@ -86,7 +92,7 @@ class Job:
     def poll(self) -> None:
         """Receive messages of the process."""
         if self.outcome is None and self._ending is not None:
-            self.outcome = self._ending
+            self.outcome = self._ending._replace(text=self._text)
             self.close()
 
     def _listen(self) -> None:
@@ -189,9 +195,11 @@ class _Teller:
 
 def _outcome(found: Any, result: Path) -> Outcome:
     """What is shown of a result, with its report."""
-    from beltdyn.results import Run
+    from beltdyn.results import Run, key_numbers
     from beltdyn.show.report import write_report
+    from beltdyn.show.report.report import lead
     from beltdyn.show.sheet import sheet
+    from beltdyn.show.verdict import verdict
 
     if isinstance(found, Run) and not found.outputs:
         return Outcome(found.status)
@@ -205,7 +213,9 @@ def _outcome(found: Any, result: Path) -> Outcome:
     shown = sheet(found)
     faults = dict.fromkeys(map(str, (*shown.errors, *parts.errors)))
     warnings = (*found.warnings, *(line for fault in faults for line in fault.splitlines()))
-    return Outcome(found.status, "", shown.parts, warnings, result, report, written, findings, pictures)
+    answer = parts.done(lambda: lead([found], found.drive.title), "")
+    judged = parts.done(lambda: verdict([found]) if key_numbers(found) else ("open", ""), ("open", ""))
+    return Outcome(found.status, "", shown.parts, warnings, result, report, written, findings, pictures, answer, judged)
 
 
 def _pictures(found: Any, parts: Parts) -> tuple[str, ...]:

@@ -10,7 +10,7 @@ from nicegui.element import Element
 from nicegui.events import GenericEventArguments, KeyEventArguments
 
 from beltdyn.app.form_view import FormView
-from beltdyn.app.forms import SYSTEMS, Unit, unit_in
+from beltdyn.app.forms import SYSTEMS, Unit, in_units, unit_in
 from beltdyn.app.pulley_table import TableDialog
 from beltdyn.app.results_view import ResultsView
 from beltdyn.app.scene import MILLIMETRES, groups, scene
@@ -323,7 +323,7 @@ class Page:
                 ui.label("Place the next pulley: a belt runs around two or more.").classes("bd-heading-plain")
                 return
             for one in self.session.draft.told:
-                label = ui.label(one.sentence).classes("bd-message cursor-pointer")
+                label = ui.label(in_units(one.sentence, self.session.units)).classes("bd-message cursor-pointer")
                 label.on("click", lambda one=one: self._go_to(one.location))
         if self.session.document.lost_comments:
             self.session.document.lost_comments = False
@@ -424,6 +424,7 @@ class Page:
         """Show lengths, speeds and forces in other units."""
         self.session.units = system
         self._canvas.measure(unit_in(system, "m"))
+        self._update_messages()
         self._form.rebuild()
         self._results.redraw()
 

@@ -1,13 +1,15 @@
 """Results beside the canvas: numbers that follow each change, and analyses."""
 
+import json
 import math
 import re
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from functools import cache, partial
 from inspect import Parameter
 from pathlib import Path
 from tempfile import mkdtemp
 from typing import TYPE_CHECKING, Any, NamedTuple
+from urllib.parse import quote
 
 from docstring_parser import parse
 from nicegui import app, ui
@@ -23,6 +25,7 @@ from beltdyn.model import Drive
 from beltdyn.parts import options
 from beltdyn.parts.quantity import RPM
 from beltdyn.parts.text_file import shorten
+from beltdyn.show.tables import Facts
 
 if TYPE_CHECKING:
     from beltdyn.app.watching import Glimpse
@@ -191,8 +194,24 @@ class AnalysisView:
         if self._proposed != self._proposals():
             self._ask_options()
         self._start.set_enabled(self._session.draft.drive is not None and not running)
+        for (name, outcome), card in self._titled():
+            card.text = self._title(name, outcome)
+            old = self._is_old(outcome)
+            card.classes(add="bd-old" if old else "", remove="" if old else "bd-old")
         self._cancel.set_visibility(running)
         self._bar.set_visibility(running)
+
+    def _is_old(self, outcome: Outcome) -> bool:
+        """Whether the drive was edited since."""
+        return bool(outcome.text) and outcome.text != self._session.document.text
+
+    def _title(self, name: str, outcome: Outcome) -> str:
+        return f"{name}: {outcome.status}{', before the last edits' * self._is_old(outcome)}"
+
+    def _titled(self) -> Iterator[tuple[tuple[str, Outcome], ui.expansion]]:
+        """Outcomes with their names, and their cards."""
+        names = {id(outcome): name for name, outcome in self._session.outcomes}
+        yield from (((names[id(one)], one), card) for one, card in self._cards if id(one) in names)
 
     def redraw(self) -> None:
         """Show the outcomes anew, as in other units."""
@@ -319,20 +338,27 @@ class AnalysisView:
         for _, other in self._cards:
             other.value = False
         with self._results:
-            title = f"{name}: {outcome.status}"
-            card = ui.expansion(title, value=True).classes("w-full").props("dense header-class=text-weight-medium")
+            card = ui.expansion(self._title(name, outcome), value=True).classes("w-full")
+            card.props("dense header-class=text-weight-medium")
             card.move(target_index=0)
             with card:
-                self._fill(outcome)
+                self._fill(name, outcome)
         self._cards.append((outcome, card))
 
-    def _fill(self, outcome: Outcome) -> None:
+    def _fill(self, name: str, outcome: Outcome) -> None:
         if outcome.error:
             ui.label(outcome.error).classes("bd-message")
+        if outcome.answer:
+            ui.label(outcome.answer).classes("bd-answer")
+        mark, why = outcome.verdict
+        if why:
+            ui.label(f"{_MARKS[mark]} {why}").classes(f"bd-verdict bd-{mark}")
         with ui.row().classes("w-full items-center gap-x-2 gap-y-0"):
             if (report := outcome.report) is not None:
                 address = app.add_static_file(local_file=report)
                 _button("Show report", "article", lambda: _open(address)).mark("look")
+                _button("Print or PDF", "print", lambda: _print(address)).mark("print")
+                _button("Mail", "mail", lambda: self._mail(name, outcome)).mark("mail")
                 _button("Download report", "download", partial(ui.download.file, report)).mark("report")
             for text, file in (("Result file", outcome.result), ("Resulting drive file", outcome.best)):
                 if file is not None:
@@ -346,6 +372,44 @@ class AnalysisView:
             shown = bool(outcome.findings.figures or outcome.pictures)
             with ui.expansion("All numbers", value=not shown).classes("w-full bd-all").props("dense"):
                 show_parts(outcome.parts)
+
+    def _mail(self, name: str, outcome: Outcome) -> None:
+        """Begin a mail with the answer, and download the report to attach it."""
+        assert outcome.report is not None
+        ui.download.file(outcome.report)
+        facts = [f"{fact}: {value}" for part in outcome.parts if isinstance(part, Facts) for fact, value in part.facts]
+        body = "\n".join(
+            [outcome.answer, outcome.verdict[1], *facts[:_MOST_FACTS], "", f"Report attached: {outcome.report.name}"]
+        )
+        subject = f"{(self._session.name or 'drive').removesuffix('.toml')}: {name.replace('_', ' ')}"
+        ui.run_javascript(f"window.location.href = {json.dumps(mail_address(subject, body))}")
+
+
+_MARKS = {"pass": "✓", "fail": "✗", "open": "·"}
+_MOST_FACTS = 8
+"""Numbers in a mail; all are in the report."""
+
+
+def mail_address(subject: str, body: str) -> str:
+    """The address at which a browser begins a mail (RFC 6068)."""
+    return f"mailto:?subject={quote(subject)}&body={quote(body.strip().replace(chr(10), chr(13) + chr(10)))}"
+
+
+_PRINT = """
+const frame = document.createElement("iframe");
+frame.style = "position: fixed; left: -200vw; width: 210mm; height: 297mm; border: 0";
+frame.title = "report to print";
+frame.onload = () => setTimeout(() => { frame.contentWindow.print(); }, 1000);  // charts are drawn by then
+frame.src = ADDRESS;
+document.querySelectorAll('iframe[title="report to print"]').forEach((one) => one.remove());
+document.body.append(frame);
+"""
+
+
+def _print(address: str) -> None:
+    """Let the browser print a report, which it also does to a PDF file."""
+    prefix = str(ui.context.client.request.scope.get("root_path", ""))
+    ui.run_javascript(_PRINT.replace("ADDRESS", json.dumps(f"{prefix}{address}")))
 
 
 def _button(text: str, icon: str, on_click: Callable[[], None]) -> ui.button:

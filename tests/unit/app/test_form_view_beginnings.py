@@ -59,3 +59,18 @@ def test_a_hub_begins_with_the_rim_that_it_needs() -> None:
     edits = edits_of_entry(data, ("pulley", 0, "hub"), "isolator")
     assert [one.location for one in edits] == [("pulley", 0, "hub", 0), ("pulley", 0, "inertia")]
     assert 0.0 < edits[1].value < 1.0
+
+
+@pytest.mark.parametrize("number", [2, 3], ids=("inside", "back"))
+def test_new_loads_act_at_once_and_oppose_their_pulley(number: int) -> None:
+    """Whatever its kind, a load that begins with torques takes power; brakes brake at all times."""
+    data = EXAMPLES["accessory_drive"]
+    drive = draft(data, HERE).drive
+    assert drive is not None
+    for kind in ("brake", "table", "angle_table", "angle_speed_table", "resistance", "fan", "generator"):
+        edits = edits_of_entry(data, ("pulley", number, "load"), kind, drive)
+        alone = changed_data(data, [Edit("set", ("pulley", number, "load"), [edits[-1].value])])
+        changed = draft(alone, HERE).drive
+        assert changed is not None, kind
+        powers = changed.belt_loads(changed.driver or 0).powers_drawn(changed.path)[0]
+        assert powers[number] > 0.0, kind

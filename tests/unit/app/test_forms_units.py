@@ -5,7 +5,7 @@ from typing import Any
 
 import pytest
 
-from beltdyn.app.forms import System, shown, unit_in, with_unit
+from beltdyn.app.forms import System, in_units, shown, unit_in, with_unit
 from beltdyn.parts.quantity import to_si
 
 
@@ -43,3 +43,19 @@ def test_numbers_get_the_unit_of_the_page_and_units_stay() -> None:
     ]
     assert with_unit("30", "m", "SI") == "30"
     assert to_si(with_unit("1500", "rad/s", "mm"), "rad/s") == pytest.approx(50.0 * math.pi)
+
+
+@pytest.mark.parametrize(
+    ("sentence", "shown"),
+    [
+        ("the path is 0.75 m long", "the path is 750 mm long"),
+        ("12 N m, 3 m/s, 9.81 m/s^2 and 5 N m/rad", "12 N m, 3 m/s, 9.81 m/s^2 and 5 N m/rad"),
+        ("0.5 kg m^2 at 100 rad/s, 0.2 rad apart.", "5000 kg cm² at 954.93 rpm, 11.459 ° apart."),
+        ("pulley[a2].radius = 0.05 m must", "pulley[a2].radius = 50 mm must"),
+        ("the radius, in m", "the radius, in mm"),
+        ("the torque, in N*m; none", "the torque, in N*m; none"),
+    ],
+)
+def test_messages_have_the_units_of_the_page(sentence: str, shown: str) -> None:
+    assert in_units(sentence, "mm") == shown
+    assert in_units(sentence, "SI") == sentence

@@ -20,6 +20,7 @@ from beltdyn.app.numbers_view import table_html
 from beltdyn.app.results_view import AnalysisView
 from beltdyn.app.session import Session
 from beltdyn.app.workspace import Workspace
+from beltdyn.parts.toml_edits import Edit
 from beltdyn.show.tables import Facts, Table
 
 
@@ -381,3 +382,29 @@ def test_fields_and_canvas_are_in_the_chosen_units(workspace: Workspace) -> None
         assert marked(user, "pulley.1.center").value == "0.03, 0.14"
 
     go(workspace, journey)
+
+
+def test_an_answer_comes_first_and_is_marked_after_edits(session: Session, ended_job: Callable[..., Any]) -> None:
+    """Undone, the edit leaves no mark."""
+    answered = Outcome(
+        "completed", answer="crank 1500 rpm", verdict=("fail", "1 of 2 limits"), text=session.document.text
+    )
+    session.job = ended_job("duty", answered)
+    views: list[AnalysisView] = []
+
+    async def journey() -> None:
+        async with user_simulation(root=lambda: views.append(AnalysisView(session, lambda _: None))) as user:
+            await user.open("/")
+            for words in ("duty: completed", "crank 1500 rpm", "✗ 1 of 2 limits"):
+                await user.should_see(words, retries=100)
+            await user.should_not_see("before the last edits")
+            session.apply([Edit("set", ("belt", "ribs"), 5)])
+            with user:
+                views[-1].update()
+            await user.should_see("duty: completed, before the last edits")
+            session.undo()
+            with user:
+                views[-1].update()
+            await user.should_not_see("before the last edits")
+
+    asyncio.run(asyncio.wait_for(journey(), 20.0))

@@ -1,8 +1,10 @@
 """Analyses that the page offers, with their options."""
 
+from urllib.parse import parse_qs, urlsplit
+
 import pytest
 
-from beltdyn.app.results_view import Option, offered, options_of
+from beltdyn.app.results_view import Option, mail_address, offered, options_of
 from beltdyn.errors import ModelError
 
 
@@ -56,3 +58,9 @@ def test_every_option_says_what_it_means() -> None:
         for one in options_of(name):
             assert len(one.about) > 10, (name, one.name)
             assert "`" not in one.about
+
+
+def test_a_mail_begins_with_subject_and_answer() -> None:
+    address = urlsplit(mail_address("drive: modes", "slip & squeal: 50 %\nReport attached"))
+    assert address.scheme == "mailto"
+    assert parse_qs(address.query) == {"subject": ["drive: modes"], "body": ["slip & squeal: 50 %\r\nReport attached"]}

@@ -217,7 +217,7 @@ def _page(results: Sequence[Result], parts: Parts) -> str:
             toothed=any(one.drive.belt.teeth is not None for one in results),
             standing=done(lambda: all(map(_stands, results)), False),
             verdict=done(partial(verdict, results), ("open", "No verdict")),
-            lead=done(partial(_lead, results, names[0]), ""),
+            lead=done(partial(lead, results, names[0]), ""),
             parts=pages,
             marks=marks,
             together=[*together, *([facts] if facts and facts.rows else [])] if len(results) > 1 else [],
@@ -238,7 +238,7 @@ def _page(results: Sequence[Result], parts: Parts) -> str:
     )
 
 
-def _lead(results: Sequence[Result], name: str) -> str:
+def lead(results: Sequence[Result], name: str) -> str:
     """The sentence below the title: the answer of the analysis, or else the operating point; nothing of several."""
     if len(results) > 1:
         return ""
