@@ -79,11 +79,12 @@ def _number(value: Any, si: str) -> float | None:
         return None
 
 
+_NUMBER = r"[+-]?\d+(?:\.\d+)?(?:e[+-]?\d+)?"
 _MEASURED = re.compile(
-    r"(?P<number>(?<![\w.\[])[+-]?\d+(?:\.\d+)?(?:e[+-]?\d+)?) "
+    rf"(?<![\w.\[])(?P<numbers>(?:\[{_NUMBER}, {_NUMBER}\])|(?:{_NUMBER} (?:to|or|and) )?{_NUMBER}) "
     r"(?P<unit>m\^2|m\^3|m|rad/s|rad|kg m\^2|N/m|Pa)(?![\w/^²³]| [\w/]*[sm]\b(?=[/^²³]))"
 )
-"""A number with an SI unit in a sentence, neither of a product nor of a quotient."""
+"""Numbers with an SI unit in a sentence, neither of a product nor of a quotient: one, a range or a pair."""
 _IN_UNIT = re.compile(r", in (?P<unit>m\^2|m\^3|m|rad/s|rad|kg\*m\^2|N/m|Pa)(?=$|[;,.])")
 
 
@@ -92,7 +93,11 @@ def in_units(sentence: str, system: System) -> str:
 
     def measured(match: re.Match[str]) -> str:
         unit = unit_in(system, match["unit"].replace("kg m", "kg*m"))
-        return f"{float(match['number']) / unit.size:.{_DIGITS - 2}g} {unit.shown}" if unit.written else match[0]
+        if not unit.written:
+            return match[0]
+        digits = f".{_DIGITS - 2}g"
+        numbers = re.sub(_NUMBER, lambda number: f"{float(number[0]) / unit.size:{digits}}", match["numbers"])
+        return f"{numbers} {unit.shown}"
 
     sentence = _MEASURED.sub(measured, sentence)
     return _IN_UNIT.sub(lambda match: f", in {unit_in(system, match['unit']).shown}", sentence)
@@ -232,6 +237,8 @@ def _is_excluded(data: Mapping[str, Any], location: Location, key: str) -> bool:
     group = value_at(data, location) or {}
     if key in group:
         return False
+    if location == ("belt",) and key == "sold":
+        return True  # of result files, beside values in place of a profile
     if key in _OF_TEETH:
         return not value_at(data, ("belt", "teeth"))
     if _group_name(location) != "pulley":

@@ -12,7 +12,7 @@ from nicegui.events import ValueChangeEventArguments
 
 from beltdyn.app.computing import Answer, Asked, Calculator, in_words
 from beltdyn.app.findings import Around, Column, Figure, Findings, Rows, Shape, at_rest
-from beltdyn.app.forms import System, unit_in
+from beltdyn.app.forms import System, in_units, unit_in
 from beltdyn.app.session import Session
 from beltdyn.errors import BeltdynError
 from beltdyn.model import estimate_at_rest, prepare
@@ -377,9 +377,9 @@ class NumbersView:
         self._box.clear()
         with self._box:
             if answer.error:
-                ui.label(answer.error).classes("bd-message")
+                ui.label(in_units(answer.error, self._session.units)).classes("bd-message")
             for warning in answer.warnings:
-                ui.label(warning).classes("bd-message bd-warning")
+                ui.label(in_units(warning, self._session.units)).classes("bd-message bd-warning")
             show_findings(answer.findings, self._session)
             if answer.parts:
                 with ui.expansion("All numbers", value=self._all_open).classes("w-full bd-all") as all_numbers:

@@ -16,6 +16,7 @@ from nicegui import app, ui
 
 from beltdyn.analyses import ANALYSES, SIMULATE
 from beltdyn.app.computing import COMPILING
+from beltdyn.app.forms import in_units
 from beltdyn.app.jobs import Job, Outcome
 from beltdyn.app.numbers_view import TITLES, NumbersView, show_findings, show_parts
 from beltdyn.app.scene import groups
@@ -346,13 +347,14 @@ class AnalysisView:
         self._cards.append((outcome, card))
 
     def _fill(self, name: str, outcome: Outcome) -> None:
+        units = self._session.units
         if outcome.error:
-            ui.label(outcome.error).classes("bd-message")
+            ui.label(in_units(outcome.error, units)).classes("bd-message")
         if outcome.answer:
-            ui.label(outcome.answer).classes("bd-answer")
+            ui.label(in_units(outcome.answer, units)).classes("bd-answer")
         mark, why = outcome.verdict
         if why:
-            ui.label(f"{_MARKS[mark]} {why}").classes(f"bd-verdict bd-{mark}")
+            ui.label(f"{_MARKS[mark]} {in_units(why, units)}").classes(f"bd-verdict bd-{mark}")
         with ui.row().classes("w-full items-center gap-x-2 gap-y-0"):
             if (report := outcome.report) is not None:
                 address = app.add_static_file(local_file=report)
@@ -364,7 +366,7 @@ class AnalysisView:
                 if file is not None:
                     _button(text, "download", partial(ui.download.file, file)).mark(text)
         for warning in outcome.warnings:
-            ui.label(warning).classes("bd-message bd-warning")
+            ui.label(in_units(warning, units)).classes("bd-message bd-warning")
         show_findings(outcome.findings, self._session)
         for picture in outcome.pictures:
             ui.image(picture).props("no-spinner no-transition").classes("bd-picture")

@@ -98,8 +98,7 @@ def scene(draft: Draft, *, settled: bool = True) -> dict[str, Any]:
     complete = len(found) == len(groups(draft.data, "pulley"))
     path = drive.path if drive is not None else sketched(found) if complete else None
     rest = _rest(drive) if settled and drive is not None else None
-    centers = {} if drive is None else dict(enumerate(drive.centers.tolist()))
-    pulleys = [_pulley(one, drive, centers.get(one.number, (one.x, one.y)), draft) for one in found]
+    pulleys = [_pulley(one, drive, draft) for one in found]
     thickness = drive.belt.thickness if drive is not None else 0.0
     tensioners = _tensioners(draft.data, found)
     return {
@@ -143,26 +142,33 @@ def _ghosts(drive: Drive, rest: Path) -> list[dict[str, float]]:
     return [dict(zip("xyr", (*_place(*center), MILLIMETRES * radius), strict=True)) for center, radius in places]
 
 
-def _pulley(one: Circle, drive: Drive | None, center: Sequence[float], draft: Draft) -> dict[str, Any]:
-    x, y = _place(center[0], center[1])
-    given = groups(draft.data, "pulley")[one.number]
-    pulley = None if drive is None else drive.pulleys[one.number]
-    drives = bool(given.get("speed")) if pulley is None else pulley.prescribed or pulley.driven_speed() > 0
-    wrap = None if drive is None else math.degrees(drive.path.wrap_angles[one.number])
-    return {
+def _pulley(one: Circle, drive: Drive | None, draft: Draft) -> dict[str, Any]:
+    x, y = _place(one.x, one.y)
+    drawn = {
         "number": one.number,
         "name": one.name,
         "x": x,
         "y": y,
         "r": MILLIMETRES * one.radius,
         "outside": one.side == "outside",
-        "drives": drives,
-        "sense": 0
-        if drive is None or pulley is None or drive.guides[one.number]
-        else drive.running_sense * pulley.turning,
-        "wrap": "" if wrap is None else f"{wrap:.1f}°",
-        "beyond": None if drive is None else _beyond(drive.path, one.number),
+        "drives": bool(groups(draft.data, "pulley")[one.number].get("speed")),
+        "sense": 0,
+        "wrap": "",
+        "beyond": None,
         "wrong": bool(draft.told_below(("pulley", one.number))),
+    }
+    if drive is None:
+        return drawn
+    number = drive.number_of(one.name)  # a drive has its pulleys counter-clockwise, a file in either order
+    pulley, center = drive.pulleys[number], drive.centers[number].tolist()
+    x, y = _place(center[0], center[1])
+    return drawn | {
+        "x": x,
+        "y": y,
+        "drives": pulley.prescribed or pulley.driven_speed() > 0,
+        "sense": 0 if drive.guides[number] else drive.running_sense * pulley.turning,
+        "wrap": f"{math.degrees(drive.path.wrap_angles[number]):.1f}°",
+        "beyond": _beyond(drive.path, number),
     }
 
 

@@ -1,25 +1,10 @@
 """A form as rows, and what they change."""
 
 import tomllib
-from pathlib import Path
-from typing import Any
 
-import pytest
-
-from beltdyn.app.draft import draft
-from beltdyn.app.form_view import edits_of_entry, edits_of_kind, edits_of_profile, edits_of_value, in_use, rows
+from beltdyn.app.beginnings import edits_of_entry, edits_of_kind
+from beltdyn.app.form_view import edits_of_value, rows
 from beltdyn.app.session import Document
-from beltdyn.model import read_catalogue
-from beltdyn.parts.toml_edits import changed_data
-
-HERE = Path(__file__).parent
-SMOOTH: dict[str, Any] = {
-    "belt": {"profile": "PK", "ribs": 6, "installed_tension": 300.0},
-    "pulley": [
-        {"name": "driver", "center": [0, 0], "radius": 0.075, "speed": 150.0},
-        {"name": "driven", "center": [0.4, 0.0], "radius": 0.05, "inertia": 0.003},
-    ],
-}
 
 
 def test_rows_follow_groups_and_lists(alternator_text: str) -> None:
@@ -64,47 +49,3 @@ def test_a_value_is_set_left_open_or_the_same(alternator_text: str) -> None:
     assert document.data["tensioner"][0]["pulley"] == "arm"
     document.apply(edits_of_value(document.data, ("belt", "installed_tension"), None))
     assert "installed_tension" not in document.data["belt"]
-
-
-@pytest.mark.parametrize("profile", [name for name, one in read_catalogue().items() if one.toothing is None])
-def test_another_profile_clears_what_does_not_fit(profile: str) -> None:
-    """From ribs to any other smooth belt, and back; V-belts and flat belts are about as wide."""
-    before = draft(SMOOTH, HERE).drive
-    assert before is not None
-    data = changed_data(SMOOTH, edits_of_profile(SMOOTH, profile, before))
-    found = draft(data, HERE)
-    assert found.told == []
-    assert found.drive is not None
-    again = changed_data(data, edits_of_profile(data, "PK", found.drive))
-    assert draft(again, HERE).told == []
-    assert again["belt"].keys() == SMOOTH["belt"].keys()
-    entry = read_catalogue()[profile]
-    if entry.is_v_belt or entry.sold_by == "width":  # ribs remain ribs, and a round belt has its diameter
-        assert found.drive.belt.width == pytest.approx(before.belt.width, rel=0.5)
-
-
-def test_teeth_come_and_go_with_the_profile() -> None:
-    smooth = draft(SMOOTH, HERE).drive
-    data = changed_data(SMOOTH, edits_of_profile(SMOOTH, "HTD 8M", smooth))
-    assert data["belt"] == {"profile": "HTD 8M", "teeth": 150, "width": "20 mm"}
-    assert [one["teeth"] for one in data["pulley"]] == [59, 39]
-    data["belt"]["teeth"] = 149  # the only message is that 150 would hang slack
-    toothed = draft(data, HERE)
-    assert toothed.told == []
-    back = changed_data(data, edits_of_profile(data, "PK", toothed.drive))
-    assert draft(back, HERE).told == []
-    assert "teeth" not in back["belt"]
-    assert all("teeth" not in one for one in back["pulley"])
-    length = changed_data(SMOOTH, edits_of_value(SMOOTH, ("belt", "nominal_length"), "1.234 m"))
-    assert "nominal_length" not in changed_data(length, edits_of_profile(length, "SPZ", smooth))["belt"]
-
-
-def test_empty_fields_show_the_value_in_use() -> None:
-    drive = draft(SMOOTH, HERE).drive
-    assert drive is not None
-    assert in_use(drive, ("belt", "axial_stiffness")) == pytest.approx(120e3)  # of the profile
-    assert in_use(drive, ("belt", "length")) == pytest.approx(drive.belt_length)
-    assert in_use(drive, ("contact", "stiffness")) == pytest.approx(drive.contact_stiffness)  # chosen
-    assert in_use(drive, ("contact", "friction")) == in_use(drive, ("pulley", 1, "friction")) == drive.belt.friction
-    assert in_use(drive, ("pulley", 7, "mass")) is None
-    assert in_use(None, ("belt", "length")) is None

@@ -1,0 +1,44 @@
+"""Values that hold where a drive file leaves a key open: of the profile, chosen by the program, or solved for."""
+
+from collections.abc import Mapping
+from typing import Any
+
+from beltdyn.app.forms import value_at
+from beltdyn.errors import ModelError
+from beltdyn.model import Drive, prepare
+from beltdyn.model.pulley import flat_friction_on
+from beltdyn.parts.part import Part
+from beltdyn.parts.toml_edits import Location
+
+
+def in_use(drive: Drive | None, data: Mapping[str, Any], location: Location) -> Any:
+    """The value of a drive at a place of its file; None where there is none."""
+    if drive is None or len(location) < 2:
+        return None
+    try:
+        if location == ("belt", "installed_tension"):
+            return float(prepare(drive).installation.tension)
+        if location == ("contact", "friction"):
+            return drive.belt.friction
+        part, steps = _part(drive, data, location)
+        if location[0] == "pulley" and steps == ("friction",):
+            return flat_friction_on(part, drive.belt, drive.contact)
+        for step in steps:
+            part = part[step] if isinstance(step, int) else part.value_of(step) if isinstance(part, Part) else None
+    except (LookupError, ModelError, TypeError, ValueError):
+        return None
+    return part
+
+
+def _part(drive: Drive, data: Mapping[str, Any], location: Location) -> tuple[Any, Location]:
+    """A part of the completed drive, and the rest of a location in it."""
+    completed, group = drive.completed, location[0]
+    if group == "pulley":  # a drive has its pulleys counter-clockwise, a file in either order
+        return completed.pulleys[drive.number_of(value_at(data, (*location[:2], "name")))], location[2:]
+    if group == "tensioner":
+        return completed.tensioners[int(location[1])], location[2:]
+    if group == "simulation":
+        return drive.simulation.replace(frame=drive.frame.name), location[1:]
+    return {"belt": completed.belt, "contact": completed.contact}.get(str(group), drive.value_of(str(group))), location[
+        1:
+    ]
