@@ -25,6 +25,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from beltdyn.arrays import FloatArray, IntArray
+from beltdyn.errors import ConvergenceError
 from beltdyn.model.belt import Belt
 from beltdyn.model.path import Path
 from beltdyn.parts.messages import Finding, listing
@@ -126,7 +127,18 @@ def graded_mesh(
     """Divide a closed belt into elements, with layers (m) at the ends of arcs; lengths in m, the first from zero.
 
     A span has at least `per_span` elements at a fineness of 1.
+
+    Raises
+    ------
+    ConvergenceError
+        If arcs overlap, as where a span lies against a pulley that a tensioner has moved too far.
     """
+    limits = [0.0, *(place for arc in arcs for place in (arc.start, arc.end)), length]
+    if any(end < start for start, end in pairwise(limits)):
+        raise ConvergenceError(
+            "the belt touches a pulley outside of its arc, as where a span lies against a pulley that a tensioner has "
+            "moved too far. Move the pulleys apart, or give the tensioner stops."
+        )
     first, closer = _FIRST * layer, per_span > SPAN_ELEMENTS
     around = length - arcs[-1].end + arcs[0].start
     pieces = [_divide(arcs[0].start, first, around / per_span, fineness, (False, True), closer=closer)]

@@ -3,6 +3,7 @@
 import numpy as np
 import pytest
 
+from beltdyn.errors import ConvergenceError
 from beltdyn.model.resolution import Arc, graded_mesh, layer_length
 
 ARCS = [Arc(0.18, 0.45, 0.08), Arc(0.80, 1.05, 0.08)]
@@ -66,3 +67,10 @@ def test_the_length_to_resolve() -> None:
     assert layer_length(bending=6e-3, sinking=1.5e-3) == pytest.approx(3e-3)
     assert layer_length(bending=1e-3, sinking=2e-3) == 1e-3
     assert layer_length(bending=1e-5, sinking=1e-2) == pytest.approx(2e-3)
+
+
+@pytest.mark.parametrize("arcs", [[(0.1, 0.5), (0.4, 0.6)], [(0.1, 0.9), (0.3, 0.5)], [(0.2, 0.3), (0.6, 1.1)]])
+def test_arcs_that_overlap_are_refused(arcs: list[tuple[float, float]]) -> None:
+    """As where a span lies against a pulley that its tensioner has moved too far."""
+    with pytest.raises(ConvergenceError, match="outside of its arc"):
+        graded_mesh(1.0, [Arc(start, end, 0.05) for start, end in arcs], LAYER)
