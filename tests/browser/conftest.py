@@ -95,7 +95,7 @@ def open_page(browser: Any, server: Server) -> Iterator[Callable[..., Any]]:
     contexts, faults = list[Any](), list[str]()
 
     def watch(request: Any) -> None:
-        if not request.url.startswith(("http://127.0.0.1:", "ws://127.0.0.1:", "data:", "blob:")):
+        if not request.url.startswith(("http://127.0.0.1:", "ws://127.0.0.1:", "data:", "blob:", "mailto:")):
             faults.append(f"asks {request.url}")
 
     def opened(width: int = 1400, height: int = 900, scheme: str = "light") -> Any:

@@ -21,7 +21,7 @@ _OF_UNITS = {"rad/s": "1500 rpm", "N*m": "5 N m", "N": "100 N", "Pa": "5 MPa", "
 """What profiles rise to, by their unit."""
 _OPPOSING = "-5 N m"
 """Torque on a pulley that turns counter-clockwise."""
-_TIMES = {"start": 0.02, "end": 0.2, "time": 0.1, "times": [0.0, 0.2]}
+_TIMES = {"start": (0.02,), "end": (0.2,), "time": (0.1,), "times": (0.0, 0.2)}
 """Instants of profiles, s; of shorter runs than `_USUAL_RUN` they are earlier."""
 _USUAL_RUN = 0.4
 """s."""
@@ -151,10 +151,9 @@ def _example(data: Mapping[str, Any], location: Location) -> dict[str, Any]:
 def _usual(one: Field, data: Mapping[str, Any], drive: Drive | None) -> Any:
     """A usual value of a required key."""
     if one.key in _TIMES:
-        instants, sooner = _TIMES[one.key], 1.0
-        if drive is not None:
-            sooner = min(1.0, (drive.simulation.end - drive.simulation.begin) / _USUAL_RUN)
-        return [sooner * instant for instant in instants] if isinstance(instants, list) else sooner * instants
+        run = _USUAL_RUN if drive is None else min(drive.simulation.end - drive.simulation.begin, _USUAL_RUN)
+        instants = [run / _USUAL_RUN * instant for instant in _TIMES[one.key]]
+        return instants if one.key == "times" else instants[0]
     if one.key in ("value", "values"):
         rises_to = _level(one, data, drive)
         return rises_to if one.key == "value" else [0.0, rises_to]

@@ -165,7 +165,8 @@ class FormView:
             return value
         if isinstance(value, bool) or not isinstance(value, int | float):
             return field.usual(units)
-        return shown(value if isinstance(value, int) else float(f"{value:.5g}"), field.unit, units)
+        size = unit_in(units, field.unit).size
+        return shown(value if isinstance(value, int) else size * float(f"{value / size:.5g}"), field.unit, units)
 
     def _label(self, field: Field) -> str:
         """The name of a choice, with what holds where it is left open."""

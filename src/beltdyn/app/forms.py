@@ -2,7 +2,7 @@
 
 import math
 import re
-from collections.abc import Mapping
+from collections.abc import Mapping, Set
 from functools import cache
 from types import MappingProxyType
 from typing import Any, Literal, NamedTuple
@@ -10,6 +10,8 @@ from typing import Any, Literal, NamedTuple
 from beltdyn.app.scene import groups
 from beltdyn.machines.loads.load import LOADS
 from beltdyn.model import Drive, read_catalogue
+from beltdyn.model.belt_form import MATERIAL
+from beltdyn.model.catalogue import Entry, find_entry
 from beltdyn.parts.quantity import described_unit, printed_unit, to_si
 from beltdyn.parts.text_file import ErrorLocation, option_names
 from beltdyn.parts.toml_edits import Location
@@ -85,22 +87,32 @@ _MEASURED = re.compile(
     r"(?P<unit>m\^2|m\^3|m|rad/s|rad|kg m\^2|N/m|Pa)(?![\w/^²³]| [\w/]*[sm]\b(?=[/^²³]))"
 )
 """Numbers with an SI unit in a sentence, neither of a product nor of a quotient: one, a range or a pair."""
-_IN_UNIT = re.compile(r", in (?P<unit>m\^2|m\^3|m|rad/s|rad|kg\*m\^2|N/m|Pa)(?=$|[;,.])")
+_IN_UNIT = re.compile(r"(?P<before>, in|in units of) (?P<unit>m\^2|m\^3|m|rad/s|rad|kg\*m\^2|N/m|Pa)(?=$|[;,.])")
+_BOUND = re.compile(
+    rf"(?P<value>(?<= = ){_NUMBER} )?(?P<rule>must be (?:greater than|at least|less than|at most)) (?P<bound>{_NUMBER})"
+    rf"(?=\. .*?{_IN_UNIT.pattern})"
+)
+"""A value beside its bound, without a unit, before the hint that has it."""
 
 
 def in_units(sentence: str, system: System) -> str:
     """A message or a hint with its lengths, speeds and angles in the units of the page."""
 
+    def converted(numbers: str, unit: Unit) -> str:
+        return re.sub(_NUMBER, lambda number: f"{float(number[0]) / unit.size:.{_DIGITS - 2}g}", numbers)
+
     def measured(match: re.Match[str]) -> str:
         unit = unit_in(system, match["unit"].replace("kg m", "kg*m"))
-        if not unit.written:
-            return match[0]
-        digits = f".{_DIGITS - 2}g"
-        numbers = re.sub(_NUMBER, lambda number: f"{float(number[0]) / unit.size:{digits}}", match["numbers"])
-        return f"{numbers} {unit.shown}"
+        return f"{converted(match['numbers'], unit)} {unit.shown}" if unit.written else match[0]
 
-    sentence = _MEASURED.sub(measured, sentence)
-    return _IN_UNIT.sub(lambda match: f", in {unit_in(system, match['unit']).shown}", sentence)
+    def bounded(match: re.Match[str]) -> str:
+        unit = unit_in(system, match["unit"])
+        return f"{converted(match['value'] or '', unit)}{match['rule']} {converted(match['bound'], unit)}"
+
+    if system == "SI":
+        return sentence
+    sentence = _BOUND.sub(bounded, _MEASURED.sub(measured, sentence))
+    return _IN_UNIT.sub(lambda match: f"{match['before']} {unit_in(system, match['unit']).shown}", sentence)
 
 
 def with_unit(text: str, si: str, system: System) -> str:
@@ -237,8 +249,8 @@ def _is_excluded(data: Mapping[str, Any], location: Location, key: str) -> bool:
     group = value_at(data, location) or {}
     if key in group:
         return False
-    if location == ("belt",) and key == "sold":
-        return True  # of result files, beside values in place of a profile
+    if location == ("belt",) and key in _beside_profile(group):
+        return True
     if key in _OF_TEETH:
         return not value_at(data, ("belt", "teeth"))
     if _group_name(location) != "pulley":
@@ -246,6 +258,15 @@ def _is_excluded(data: Mapping[str, Any], location: Location, key: str) -> bool:
     if key == "harmonics":
         return "speed" not in group
     return any(key in _APART[one] for one in _APART if group.get(one))
+
+
+def _beside_profile(belt: Mapping[str, Any]) -> Set[str]:
+    """Keys of a belt that its profile or its teeth exclude; `sold` is of result files."""
+    excluded = {"sold"} | ({"length", "nominal_length"} if belt.get("teeth") else set())
+    entry = entry_of(belt.get("profile"))
+    if entry is None:
+        return excluded
+    return excluded | {*MATERIAL, "ribs", "diameter", *({"teeth"} if entry.toothing is None else ())} - {entry.sold_by}
 
 
 def schema_of(data: Mapping[str, Any], location: Location) -> Mapping[str, Any]:
@@ -303,6 +324,8 @@ def _field(
     choices = _choices(schema) if form == "choice" else _kinds(schema if form != "groups" else _entries(schema))
     if location == ("belt", "profile"):
         form, choices = "choice", _profiles()
+        if isinstance(value, str) and value not in choices:  # of a catalogue of one's own, or a class of conveyor belts
+            choices = (value, *choices)
     elif location[-1] == "pulley" and location[0] == "tensioner":
         form, choices = "choice", tuple(str(one.get("name")) for one in groups(data, "pulley"))
     elif location[-1] == "sensor":
@@ -371,6 +394,14 @@ def _entries(schema: Mapping[str, Any]) -> Mapping[str, Any]:
 
 def _kinds(schema: Mapping[str, Any]) -> tuple[str, ...]:
     return tuple(kind for kind in schema.get("discriminator", {}).get("mapping", {}) if kind not in _NOT_IN_FILES)
+
+
+def entry_of(profile: object) -> Entry | None:
+    """A profile of the package's catalogue; None of others."""
+    try:
+        return find_entry(read_catalogue(), str(profile))
+    except LookupError:
+        return None
 
 
 @cache

@@ -10,9 +10,10 @@ from typing import Any
 
 from beltdyn.app import placing
 from beltdyn.app.draft import Draft, draft
+from beltdyn.app.forms import entry_of
 from beltdyn.app.scene import Circle, circles, groups, length_in, sketched
 from beltdyn.errors import BeltdynError
-from beltdyn.model import Belt, Drive, estimate_at_rest, prepare, read_catalogue
+from beltdyn.model import Belt, Drive, estimate_at_rest, prepare
 from beltdyn.model.belt_form import Stiffnesses, without_section
 from beltdyn.model.catalogue import Entry
 from beltdyn.model.toothing import FEWEST_TEETH
@@ -26,6 +27,8 @@ _OF_SECTION = ("ribs", "diameter", "width", "profile", "sold", "poissons_ratio")
 """Keys of the section of a belt beside those that `without_section` knows."""
 _PLAIN = (*Stiffnesses.model_fields, "pitch_offset", "back_offset", "wedge_angle", "friction", "contact_stiffness")
 """Values that a belt keeps without its profile."""
+_OF_SMOOTH_PULLEYS = ("radius", "diameter", "diameter_kind", "surface")
+"""Keys of a pulley that its teeth exclude."""
 _NEAR_LENGTH = 1e-3
 """Relative difference of a nominal length from the standard length that it means."""
 _SIMILAR_TENSION = 2.0
@@ -49,7 +52,9 @@ def edits_of_profile(current: Draft, profile: str | None, folder: Path) -> list[
     belt = current.data.get("belt")
     if not isinstance(belt, Mapping) or belt.get("profile") == profile:
         return [] if isinstance(belt, Mapping) else [Edit("set", ("belt", "profile"), profile)]
-    entry = read_catalogue().get(profile or "")
+    entry = entry_of(profile)
+    if entry is None and profile is not None:
+        return [Edit("set", ("belt", "profile"), profile)]
     options = list(_without_profile(current) if entry is None else _with_profile(current, str(profile), entry))
     chosen, least = options[0], math.inf
     for option in options:
@@ -141,7 +146,7 @@ def _with_profile(current: Draft, profile: str, entry: Entry) -> Iterator[Data]:
 
 def _size(belt: Mapping[str, Any], entry: Entry, present: Belt | None) -> Data:
     """Ribs, width or diameter: as typed where that is still meant, or else of a belt about as wide as the present."""
-    before = read_catalogue().get(str(belt.get("profile")))
+    before = entry_of(belt.get("profile"))
     same = before is not None and (before.sold_by, before.is_v_belt) == (entry.sold_by, entry.is_v_belt)
     standard = entry.tooth_rating.widths if entry.tooth_rating is not None else ()
     typed = belt.get(entry.sold_by)
@@ -188,9 +193,6 @@ def _toothed_pulleys(data: Mapping[str, Any], entry: Entry) -> list[Any]:
             kept["teeth"] = entry.toothing.teeth_about(radii[number], 0.0)
         toothed.append(_as_sold(kept, entry))
     return toothed
-
-
-_OF_SMOOTH_PULLEYS = ("radius", "diameter", "diameter_kind", "surface")
 
 
 def _as_sold(pulley: Data, entry: Entry) -> Data:
@@ -274,17 +276,14 @@ def _is_sold(entry: Entry, nominal_length: Any) -> bool:
 def _toothed_lengths(current: Draft, entry: Entry, changed: Data) -> Iterator[Data]:
     """Numbers of teeth, the nearest to the present length first: at the present tension, or as the teeth leave it."""
     belt, drive = current.data["belt"], current.drive
-    if _has_pitch(current.data, entry):
+    if drive is None or entry.toothing is None or _has_pitch(current.data, entry):
         yield {key: belt[key] for key in ("teeth", "installed_tension") if key in belt}
     if drive is None or entry.toothing is None:
-        yield {}
         return
     before, after = _loop(current.data, drive.belt), _loop(changed, entry)
     pitches = (drive.belt_length + (after - before if before and after else 0.0)) / entry.toothing.pitch
-    counts = sorted(
-        range(max(round(pitches) - _TOOTH_COUNTS, FEWEST_TEETH), round(pitches) + _TOOTH_COUNTS + 1),
-        key=lambda count: abs(count - pitches),
-    )
+    least = max(round(pitches) - _TOOTH_COUNTS, FEWEST_TEETH)
+    counts = sorted(range(least, least + 2 * _TOOTH_COUNTS + 1), key=lambda count: abs(count - pitches))
     if not drive.moving_tensioners:
         for tension in _tensions(current, changed):
             yield from ({"teeth": count, "installed_tension": tension} for count in counts)
@@ -310,9 +309,10 @@ def _taking_up(current: Draft, option: Data) -> Data:
         edits = [Edit("remove", ("tensioner", number, "take_up")) for number in fixed]
         return changed_data(option, edits)
     drive = current.drive
-    assert drive is not None
+    if drive is None or drive.given_ends:
+        return option
     driver = None if drive.driver is None else drive.pulleys[drive.driver].name
     movable = [number for number, item in enumerate(groups(option, "pulley")) if item.get("name") != driver]
-    if not movable or drive.given_ends:
+    if not movable:
         return option
     return changed_data(option, placing.new_tensioner(current, movable[-1], "fixed", len(groups(option, "tensioner"))))

@@ -3,7 +3,7 @@
 import json
 import math
 import re
-from collections.abc import Callable, Iterator
+from collections.abc import Callable
 from functools import cache, partial
 from inspect import Parameter
 from pathlib import Path
@@ -163,7 +163,7 @@ class AnalysisView:
 
     def __init__(self, session: Session, watch: Callable[["Glimpse | None"], None]) -> None:
         self._session, self._watch = session, watch
-        self._cards: list[tuple[Outcome, ui.expansion]] = []
+        self._cards: list[tuple[str, Outcome, ui.expansion]] = []
         self._seen: Glimpse | None = None
         names = offered()
         with ui.row().classes("w-full items-center no-wrap gap-2"):
@@ -195,7 +195,7 @@ class AnalysisView:
         if self._proposed != self._proposals():
             self._ask_options()
         self._start.set_enabled(self._session.draft.drive is not None and not running)
-        for (name, outcome), card in self._titled():
+        for name, outcome, card in self._cards:
             card.text = self._title(name, outcome)
             old = self._is_old(outcome)
             card.classes(add="bd-old" if old else "", remove="" if old else "bd-old")
@@ -209,14 +209,9 @@ class AnalysisView:
     def _title(self, name: str, outcome: Outcome) -> str:
         return f"{name}: {outcome.status}{', before the last edits' * self._is_old(outcome)}"
 
-    def _titled(self) -> Iterator[tuple[tuple[str, Outcome], ui.expansion]]:
-        """Outcomes with their names, and their cards."""
-        names = {id(outcome): name for name, outcome in self._session.outcomes}
-        yield from (((names[id(one)], one), card) for one, card in self._cards if id(one) in names)
-
     def redraw(self) -> None:
         """Show the outcomes anew, as in other units."""
-        for _, card in self._cards:
+        for *_, card in self._cards:
             card.delete()
         self._cards.clear()
         self._show_outcomes()
@@ -328,15 +323,15 @@ class AnalysisView:
     def _show_outcomes(self) -> None:
         """Show new outcomes, and remove those that the session has dropped."""
         there = self._session.outcomes
-        for old in [one for one in self._cards if all(one[0] is not outcome for _, outcome in there)]:
-            old[1].delete()
+        for old in [one for one in self._cards if all(one[1] is not outcome for _, outcome in there)]:
+            old[2].delete()
             self._cards.remove(old)
         for name, outcome in reversed(there):
-            if all(shown is not outcome for shown, _ in self._cards):
+            if all(shown is not outcome for _, shown, _ in self._cards):
                 self._show(name, outcome)
 
     def _show(self, name: str, outcome: Outcome) -> None:
-        for _, other in self._cards:
+        for *_, other in self._cards:
             other.value = False
         with self._results:
             card = ui.expansion(self._title(name, outcome), value=True).classes("w-full")
@@ -344,7 +339,7 @@ class AnalysisView:
             card.move(target_index=0)
             with card:
                 self._fill(name, outcome)
-        self._cards.append((outcome, card))
+        self._cards.append((name, outcome, card))
 
     def _fill(self, name: str, outcome: Outcome) -> None:
         units = self._session.units
@@ -380,9 +375,8 @@ class AnalysisView:
         assert outcome.report is not None
         ui.download.file(outcome.report)
         facts = [f"{fact}: {value}" for part in outcome.parts if isinstance(part, Facts) for fact, value in part.facts]
-        body = "\n".join(
-            [outcome.answer, outcome.verdict[1], *facts[:_MOST_FACTS], "", f"Report attached: {outcome.report.name}"]
-        )
+        answer = [in_units(words, self._session.units) for words in (outcome.answer, outcome.verdict[1])]
+        body = "\n".join([*answer, *facts[:_MOST_FACTS], "", f"Report attached: {outcome.report.name}"])
         subject = f"{(self._session.name or 'drive').removesuffix('.toml')}: {name.replace('_', ' ')}"
         ui.run_javascript(f"window.location.href = {json.dumps(mail_address(subject, body))}")
 

@@ -5,7 +5,7 @@ from typing import Any
 
 from beltdyn.app.forms import value_at
 from beltdyn.errors import ModelError
-from beltdyn.model import Drive, prepare
+from beltdyn.model import Drive, estimate_at_rest, prepare
 from beltdyn.model.pulley import flat_friction_on
 from beltdyn.parts.part import Part
 from beltdyn.parts.toml_edits import Location
@@ -17,7 +17,7 @@ def in_use(drive: Drive | None, data: Mapping[str, Any], location: Location) -> 
         return None
     try:
         if location == ("belt", "installed_tension"):
-            return float(prepare(drive).installation.tension)
+            return float(estimate_at_rest(prepare(drive))[1].tension)
         if location == ("contact", "friction"):
             return drive.belt.friction
         part, steps = _part(drive, data, location)
@@ -39,6 +39,6 @@ def _part(drive: Drive, data: Mapping[str, Any], location: Location) -> tuple[An
         return completed.tensioners[int(location[1])], location[2:]
     if group == "simulation":
         return drive.simulation.replace(frame=drive.frame.name), location[1:]
-    return {"belt": completed.belt, "contact": completed.contact}.get(str(group), drive.value_of(str(group))), location[
-        1:
-    ]
+    if group in ("belt", "contact"):
+        return getattr(completed, str(group)), location[1:]
+    return drive.value_of(str(group)), location[1:]

@@ -7,6 +7,7 @@ from typing import Any
 import pytest
 
 from beltdyn.app.forms import as_text, as_value, fields, kinds, value_at
+from beltdyn.model import read_catalogue
 
 
 @pytest.fixture(scope="module")
@@ -24,6 +25,25 @@ def test_the_belt_has_its_keys_with_units_and_the_profiles_of_the_catalogue(data
     assert found["crossed"].form == "flag"
     assert (found["integration"].choices, found["integration"].default) == (("full", "reduced"), "full")
     assert fields(data, ("belt",))[0].key == "profile"
+
+
+@pytest.mark.parametrize("profile", read_catalogue())
+def test_a_belt_is_asked_for_the_keys_of_its_profile(profile: str) -> None:
+    entry, belt = read_catalogue()[profile], {"profile": profile}
+    keys = {one.key for one in fields({"belt": belt}, ("belt",))}
+    assert entry.sold_by in keys
+    assert not keys & ({"ribs", "diameter", "density", "sold"} - {entry.sold_by})
+    assert ("teeth" in keys) == (entry.toothing is not None)
+    toothed = {one.key for one in fields({"belt": belt | {"teeth": 100, "length": 1.0}}, ("belt",))}
+    assert toothed >= {"teeth", "length"}  # what the file has is shown
+    assert "nominal_length" not in toothed
+
+
+@pytest.mark.parametrize("profile", ["EP 400/3 5+2", "a profile of a catalogue of one's own"])
+def test_a_profile_that_is_not_listed_is_shown(profile: str) -> None:
+    shown = next(one for one in fields({"belt": {"profile": profile}}, ("belt",)) if one.key == "profile")
+    assert shown.value == profile
+    assert shown.choices[:2] == (profile, "PH")
 
 
 def test_groups_within_groups_have_the_keys_of_their_kind(data: dict[str, Any]) -> None:

@@ -55,7 +55,17 @@ def test_numbers_get_the_unit_of_the_page_and_units_stay() -> None:
         ("beyond its stroke, -0.12 to 0.12 m. Shorten", "beyond its stroke, -120 to 120 mm. Shorten"),
         ("stroke = [-0.12, 0.12] m is longer", "stroke = [-120, 120] mm is longer"),
         ("at 0.5 or 1e-3 m; 3 belts and 2 m", "at 500 or 1 mm; 3 belts and 2000 mm"),
+        (
+            "radius = -0.05 must be greater than 0. Give the radius, in m; of a toothed one, teeth.",
+            "radius = -50 must be greater than 0. Give the radius, in mm; of a toothed one, teeth.",
+        ),
+        (
+            "width = 30.0 must be at most 2. Give the width, in m. Or 3 ribs.",
+            "width = 30000 must be at most 2000. Give the width, in mm. Or 3 ribs.",
+        ),
+        ("ribs = 0 must be at least 1. Give the number.", "ribs = 0 must be at least 1. Give the number."),
         ("the radius, in m", "the radius, in mm"),
+        ('"50 kg" must be in units of m, not "kg".', '"50 kg" must be in units of mm, not "kg".'),
         ("the torque, in N*m; none", "the torque, in N*m; none"),
     ],
 )

@@ -140,7 +140,7 @@ def test_a_wrong_value_is_told_at_its_field_and_below_the_canvas(workspace: Work
         user.find(Canvas).trigger("choose", {"number": 1})
         await user.should_see(marker="pulley.1.radius")
         enter(user, "pulley.1.radius", "32 kg")
-        said = 'pulley[tensioner].radius = "32 kg" must be in units of m, not "kg". Give the radius of the pulley'
+        said = 'pulley[tensioner].radius = "32 kg" must be in units of mm, not "kg". Give the radius of the pulley'
         assert marked(user, "pulley.1.radius").error.startswith(said)
         await user.should_see(said)
         assert canvas(user)["scene"]["belt"] == ""
@@ -380,6 +380,23 @@ def test_fields_and_canvas_are_in_the_chosen_units(workspace: Workspace) -> None
         enter(user, "pulley.1.radius", "0.034")
         assert canvas(user)["scene"]["pulleys"][1]["r"] == pytest.approx(34.0)
         assert marked(user, "pulley.1.center").value == "0.03, 0.14"
+
+    go(workspace, journey)
+
+
+def test_empty_fields_and_messages_are_in_the_chosen_units(workspace: Workspace) -> None:
+    async def journey(user: User) -> None:
+        await user.should_see(marker="belt.length")
+        assert marked(user, "belt.length").value == ""
+        assert 890.0 < float(marked(user, "belt.length").props["placeholder"]) < 910.0
+        enter(user, "belt.length", "500")
+        enter(user, "belt.installed_tension", "")
+        await user.should_see("belt.length = 500 mm is too short")
+        with user:
+            marked(user, "units").value = "SI"
+        await user.should_see("belt.length = 0.5 m is too short")
+        enter(user, "belt.length", "")
+        assert 0.89 < float(marked(user, "belt.length").props["placeholder"]) < 0.91
 
     go(workspace, journey)
 

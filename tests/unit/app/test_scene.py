@@ -98,3 +98,13 @@ def test_every_pulley_of_an_example_with_teeth_is_drawn(name: str) -> None:
     broken = draft({**made.data, "contact": {"friction": -1}}, HERE)  # while something else is wrong
     assert broken.drive is None
     assert len(scene(broken)["pulleys"]) == len(sizes)
+
+
+def test_a_list_of_pulleys_in_the_other_order_is_drawn_alike() -> None:
+    """The drive has its pulleys counter-clockwise whatever the order in the file."""
+    data = tomllib.loads(files("beltdyn").joinpath("examples", "accessory_drive.toml").read_text(encoding="utf-8"))
+    clockwise = data | {"pulley": [data["pulley"][0], *data["pulley"][:0:-1]]}
+    drawn, other = ({one.pop("name"): one for one in scene(draft(each, HERE))["pulleys"]} for each in (data, clockwise))
+    for name, pulley in drawn.items():
+        del pulley["number"], other[name]["number"]
+        assert pulley == other[name], name
