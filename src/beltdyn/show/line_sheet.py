@@ -58,7 +58,7 @@ def line_sheet(result: Result) -> Sheet:
 
 def _facts(dataset: "xr.Dataset", belt: Belt) -> Iterator[tuple[str, str]]:
     yield "belt length", f"{float(dataset['belt_length']):.5g} m unstretched"
-    yield "tension at rest", f"{float(dataset['tension_at_rest']):.4g} N"
+    yield "tension at rest", f"{plain(float(dataset['tension_at_rest']), 4)} N"
     if "take_up_ratio" in dataset and np.isfinite(dataset["take_up_ratio"]):
         taken = 1e3 * float(dataset["stretch_at_rest"] / dataset["take_up_ratio"])
         yield "take-up", f"{taken:.4g} mm for the stretch of the belt at rest"
@@ -115,8 +115,10 @@ def _points(dataset: "xr.Dataset") -> Table:
     )
     if "goods_mass" in dataset and dataset["goods_mass"].values.any():
         flow = _HOUR * (dataset["goods_mass"] * dataset["belt_speed"]).max("span").values
-        columns += [aligned((dataset["lifting_power"].values / watts).tolist(), 4), aligned(flow.tolist(), 4)]
-        headings = (*headings, f"lifting\n{unit}", "goods\nt/h")
+        lifting = dataset["lifting_power"].values / watts
+        falls = bool(lifting.max() < 0.0)  # then goods put power in
+        columns += [aligned((-lifting if falls else lifting).tolist(), 4), aligned(flow.tolist(), 4)]
+        headings = (*headings, f"{'lowering' if falls else 'lifting'}\n{unit}", "goods\nt/h")
     return Table("Operating points", headings, tuple(zip(*columns, strict=True)))
 
 
@@ -235,7 +237,7 @@ def _drives(at: "xr.Dataset", where: str) -> Table:
             f"{names[powered[place]]}, {motion}",
             *_known(np.array([torques[number, place], powers[number, place] / watts, pulls[number, place]])),
             f"{shares[number, place]:.1%}" if np.isfinite(shares[number, place]) else "–",
-            *_known(np.array([ratios[number, place], allowed[place]]), 3),
+            *("∞" if np.isinf(one) else f"{one:.2f}" for one in (ratios[number, place], allowed[place])),
         )
         for place in range(len(powered))
         for number, motion in enumerate(motions)
@@ -245,9 +247,9 @@ def _drives(at: "xr.Dataset", where: str) -> Table:
     return Table(f"Drives and brakes{where}", headings, tuple(rows))
 
 
-def _known(values: FloatArray, digits: int = 4) -> list[str]:
-    """Numbers with so many digits; a dash where there is none."""
-    return ["∞" if np.isinf(one) else "–" if np.isnan(one) else plain(one + 0.0, digits) for one in values.tolist()]
+def _known(values: FloatArray) -> list[str]:
+    """Numbers with four digits; a dash where there is none."""
+    return [plain(one + 0.0, 4) if np.isfinite(one) else "–" for one in values.tolist()]
 
 
 def _idlers(at: "xr.Dataset", where: str) -> Table:
@@ -370,7 +372,7 @@ def _tensioners(at: "xr.Dataset", where: str, result: Result) -> Table:
         unit = "N m" if one.turns else "N"
         stops = " to ".join(one.written(stop) for stop in one.stops or ()) or "none"
         place = place if abs(place) > _NOTHING else 0.0
-        rows.append((one.pulley, one.written(float(place)), f"{force:.4g} {unit}", stops))
+        rows.append((one.pulley, one.written(float(place)), f"{plain(float(force), 4)} {unit}", stops))
     return Table(f"Tensioners{where}", ("", "position", "force", "stops"), tuple(rows))
 
 

@@ -340,7 +340,7 @@ def _givers(summary: Summary) -> str:
     powers.append(("goods that go down", -summary.balance.lifted))
     givers = [(name, power) for name, power in powers if power > _LEAST_SHARE * summary.balance.power_in]
     parts = ", ".join(f"{name} {_watts(power)}" for name, power in givers)
-    return f" ({parts})" if len(givers) > 1 else ""
+    return f" ({parts})" if len(givers) > 1 or summary.balance.lifted < 0.0 else ""
 
 
 def _tensioners(run: Run, summary: Summary) -> list[tuple[str, str]]:

@@ -59,6 +59,29 @@ def test_operating_points_are_judged_over_all(drive: Drive) -> None:
     assert (found["largest_slip"].value, found["largest_slip"].passes) == (0.02, False)
 
 
+def test_a_belt_with_a_strength_is_judged_by_its_largest_tension(make_run: Callable[..., Run], drive: Drive) -> None:
+    """A run that changes by the limit of starts and stops, a steady one and points by that of running, rest by none."""
+    run = make_run()
+    strong = run.drive.with_({"belt.strength": "10 N/mm"}).replace(limits={"least_motion_safety": 1e6})
+    force, largest = 1e4 * strong.belt.width, float(run.dataset["largest_span_tension"].max())
+    found = by_key(Run(run.dataset, strong))
+    assert found["least_motion_safety"].value == pytest.approx(force / largest)
+    assert found["least_motion_safety"].passes is False
+    assert "least_belt_safety" not in found
+    assert "least_motion_safety" not in by_key(run)
+    for kind in ("operating_map", "equilibrium"):
+        dataset = xr.Dataset(
+            {"largest_span_tension": ("span", [5.0, 8.0], {"units": "N"})},
+            {"span": ["driver-driven", "driven-driver"]},
+            {"kind": kind, "axes": ""},
+        )
+        table = by_key(Result(dataset, drive.with_({"belt.strength": 1e4})))
+        assert ("least_belt_safety" in table) == (kind == "operating_map")
+        if kind == "operating_map":
+            assert table["least_belt_safety"].value == pytest.approx(1e4 * drive.belt.width / 8.0)
+            assert table["least_belt_safety"].where == "driven-driver"
+
+
 def test_a_traction_curve_goes_on_until_the_belt_slips(drive: Drive) -> None:
     assert key_numbers(Result(xr.Dataset(attrs={"kind": "traction"}), drive)) == ()
 
