@@ -16,7 +16,9 @@ from typing import Any, NamedTuple
 import matplotlib as mpl
 from matplotlib.axes import Axes
 
+import beltdyn as bd
 from beltdyn.show.plot.style import COLORS, dash, new_figure, styled
+from validation.published.released_belt import released_belt
 
 ROOT = Path(__file__).parents[2]
 FOLDER = ROOT / "docs" / "_static" / "verification"
@@ -183,8 +185,18 @@ def draw(curves: dict[str, Curves]) -> None:
         figure.savefig(FOLDER / f"{name}.svg", metadata={"Date": None})
 
 
+@styled
+def draw_shapes() -> None:
+    """Draw the iterations of the released belt."""
+    mpl.rcParams.update({"svg.hashsalt": "beltdyn", "svg.fonttype": "none"})
+    figure = new_figure((5.2, 4.4))
+    bd.plot.iterations(bd.release(released_belt(), method="newton"), ax=figure.add_subplot())
+    figure.savefig(FOLDER / "released_belt_shapes.svg", metadata={"Date": None})
+
+
 def main() -> None:
     """Draw from a file of curves, or from a run of the tests."""
+    draw_shapes()
     if len(sys.argv) > 1:
         file = Path(sys.argv[1])
         draw(json.loads(file.read_text(encoding="utf-8")))

@@ -301,22 +301,27 @@ def save_all(
     with Parts(refuses=True) as parts:
         drawn = dict[str, Figure]()
         for name in chosen:
-            with parts.part(repeated(results, name, pulley, variable)), figure_style(style):
+            with parts.part(repeated(results, name, pulley, variable, style)), figure_style(style):
                 drawn[name] = FIGURES[name].arrange(results, choice)
         if drawn:
             make_folder(Path(folder))
         for name, page in drawn.items():
-            with parts.part(repeated(results, name, pulley, variable)), figure_style(style), rules({}):
+            with parts.part(repeated(results, name, pulley, variable, style)), figure_style(style), rules({}):
                 parts.completed.append(save(page, paths[name], overwrite))
     return parts.completed
 
 
 def repeated(
-    results: Sequence[Result], name: str, pulley: str | int | None = None, variable: str = Choice().variable
+    results: Sequence[Result],
+    name: str,
+    pulley: str | int | None = None,
+    variable: str = Choice().variable,
+    style: str = SCREEN,
 ) -> str:
     """Python that draws a figure of results again."""
+    drawn = "" if style == SCREEN else f", style={style!r}"
     sources = results[0].source if len(results) == 1 else f"[{', '.join(one.source for one in results)}]"
-    return f"bd.plot.save_all({sources}, 'figures', [{name!r}], {pulley!r}, {variable!r})"
+    return f"bd.plot.save_all({sources}, 'figures', [{name!r}], {pulley!r}, {variable!r}{drawn})"
 
 
 def _number(results: Sequence[Result], pulley: str | int) -> int:

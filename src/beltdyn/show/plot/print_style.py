@@ -16,6 +16,7 @@ from matplotlib.cm import ScalarMappable
 from matplotlib.collections import Collection
 from matplotlib.colors import Colormap, ListedColormap, to_rgba_array
 from matplotlib.figure import Figure
+from matplotlib.font_manager import FontProperties
 from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
 from matplotlib.text import Text
@@ -134,12 +135,17 @@ def finish(page: Figure) -> None:
         if ax.child_axes:  # a second axis has ticks of its own
             ax.tick_params(top=False, right=False, which="both")
         for text in (ax.xaxis.label, *(text for text in ax.texts if text.get_gid() == "note")):
-            text.set_text(_broken(text, page.get_figwidth()))
+            text.set_text(_broken(text.get_text(), text.get_fontproperties(), page.get_figwidth()))
+        place, title = ax.get_subplotspec(), ax.get_title(loc="left")
+        columns = 1 if place is None else place.get_gridspec().ncols
+        for artist in ax.findobj(Text) if title else ():  # changed in place: its distance leaves room for a legend
+            if isinstance(artist, Text) and artist.get_text() == title:
+                artist.set_text(_broken(title, artist.get_fontproperties(), page.get_figwidth() / columns))
 
 
-def _broken(text: Text, width: float) -> str:
+def _broken(text: str, font: FontProperties, width: float) -> str:
     """A text in lines that fit into a width, inches."""
-    lines, font = text.get_text().split("\n"), text.get_fontproperties()
+    lines = text.split("\n")
     needed = [text_to_path.get_text_width_height_descent(line, font, False)[0] / _INCH / _FILLED for line in lines]
     return "\n".join(
         fill(line, int(_SHORTER * len(line) * width / length)) if length > width else line

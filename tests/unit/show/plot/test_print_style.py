@@ -99,6 +99,7 @@ def test_labels_fit_into_a_column() -> None:
     def long_label() -> Figure:
         page = new_figure()
         ax = page.add_subplot()
+        ax.set_title("coupled: arm of tensioner, tensioner, alternator, and more of them than a column has room for")
         ax.set_xlabel("Power lost [W] and its share of the power input, mean over a window that has a long name")
         return page
 
@@ -109,6 +110,7 @@ def test_labels_fit_into_a_column() -> None:
         extent = ax.xaxis.label.get_window_extent()
         assert "\n" in ax.get_xlabel()
         assert extent.width <= page.bbox.width
+        assert "\n" in ax.get_title(loc="left")
 
 
 def test_luminance_and_opacity_stay() -> None:
