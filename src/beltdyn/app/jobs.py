@@ -3,7 +3,7 @@
 import math
 import threading
 import time
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from multiprocessing.connection import Connection
 from multiprocessing.synchronize import Event as SharedEvent
 from pathlib import Path
@@ -42,6 +42,8 @@ class Step(NamedTuple):
 _DRAWN = ("configuration", "slip", "mode_shapes", "mode_shape")
 """Figures whose contents the page shows as charts."""
 _MOST_PICTURES = 2
+_OF_COMPUTATION = ("mesh", "computing")
+"""Beginnings of names of facts about the computation."""
 _STARTING = Step(0.0, "starting", math.nan)
 
 
@@ -213,9 +215,15 @@ def _outcome(found: Any, result: Path) -> Outcome:
     shown = sheet(found)
     faults = dict.fromkeys(map(str, (*shown.errors, *parts.errors)))
     warnings = (*found.warnings, *(line for fault in faults for line in fault.splitlines()))
-    answer = parts.done(lambda: lead([found], found.drive.title), "")
+    answer = parts.done(lambda: lead(found), "") or _first_fact(shown.parts)
     judged = parts.done(lambda: verdict([found]) if key_numbers(found) else ("open", ""), ("open", ""))
     return Outcome(found.status, "", shown.parts, warnings, result, report, written, findings, pictures, answer, judged)
+
+
+def _first_fact(parts: Sequence[Table | Facts]) -> str:
+    """What a sheet says first of the drive, not of its computation."""
+    facts = [fact for part in parts if isinstance(part, Facts) for fact in part.facts]
+    return next((f"{name}: {value}" for name, value in facts if not name.startswith(_OF_COMPUTATION)), "")
 
 
 def _pictures(found: Any, parts: Parts) -> tuple[str, ...]:

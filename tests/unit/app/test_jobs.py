@@ -6,8 +6,9 @@ from pathlib import Path
 
 import pytest
 
-from beltdyn.app.jobs import Job, Outcome, _Teller
+from beltdyn.app.jobs import Job, Outcome, _first_fact, _Teller
 from beltdyn.results import open_result
+from beltdyn.show.tables import Facts, Table
 from beltdyn.solvers.run_progress import Progress
 
 
@@ -79,3 +80,11 @@ def test_closing_ends_the_process(drive_text: str, tmp_path: Path) -> None:
     job.close()
     assert not job._process.is_alive()
     assert job.outcome is not None
+
+
+def test_the_first_fact_is_of_the_drive() -> None:
+    facts = Facts(
+        (("mesh", "20 elements"), ("computing time", "1 s"), ("Largest torque", "308 N m"), ("mesh errors", ""))
+    )
+    assert _first_fact((Table("", ("", "N"), ()), facts)) == "Largest torque: 308 N m"
+    assert _first_fact((Facts((("mesh", "20 elements"),)),)) == ""

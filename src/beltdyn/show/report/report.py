@@ -19,10 +19,11 @@ from beltdyn.parts.text_file import as_text
 from beltdyn.results import Result, Run, StaticResult
 from beltdyn.results.atomic import MARK, atomic_path, is_marked, require_replaceable
 from beltdyn.results.cycles import ends_at_standstill
+from beltdyn.results.limits import key_numbers
 from beltdyn.results.provenance import mesh_facts
 from beltdyn.results.schema import runs_steadily
 from beltdyn.show.notebook import picture
-from beltdyn.show.plot.headline import differing_keys, given_keys, headlines, name_of, names_of_results
+from beltdyn.show.plot.headline import differing_keys, given_keys, headline, name_of, names_of_results
 from beltdyn.show.plot.style import tension_colors
 from beltdyn.show.report.chart import Shown, charted
 from beltdyn.show.report.replay import motion, swinging
@@ -68,6 +69,8 @@ def _document(charts: Mapping[str, Any]) -> dict[str, Any]:
 
 
 _MOST_DIFFERENCES = 40
+_MOST_NUMBERS = 3
+"""Key numbers in the sentence below the title."""
 
 
 def origin(result: Result) -> list[tuple[str, str]]:
@@ -217,7 +220,7 @@ def _page(results: Sequence[Result], parts: Parts) -> str:
             toothed=any(one.drive.belt.teeth is not None for one in results),
             standing=done(lambda: all(map(_stands, results)), False),
             verdict=done(partial(verdict, results), ("open", "No verdict")),
-            lead=done(partial(lead, results, names[0]), ""),
+            lead=done(partial(lead, results[0]), "") if len(results) == 1 else "",
             parts=pages,
             marks=marks,
             together=[*together, *([facts] if facts and facts.rows else [])] if len(results) > 1 else [],
@@ -238,12 +241,15 @@ def _page(results: Sequence[Result], parts: Parts) -> str:
     )
 
 
-def lead(results: Sequence[Result], name: str) -> str:
-    """The sentence below the title: the answer of the analysis, or else the operating point; nothing of several."""
-    if len(results) > 1:
-        return ""
-    answer = str(results[0].dataset.attrs.get("answer", ""))
-    return answer or headlines(results).removeprefix(f"{name}: ")
+def lead(result: Result) -> str:
+    """The sentence below the title: the answer of the analysis, the operating point, or else the first key numbers."""
+    if answer := str(result.dataset.attrs.get("answer", "")):
+        return answer
+    words = headline(result).removeprefix(f"{name_of(result)}: ")
+    if words != result.kind.replace("_", " "):
+        return words
+    numbers = [number for number in key_numbers(result) if np.isfinite(number.value)]
+    return "; ".join(f"{number.name} {value_in_words(number)}" for number in numbers[:_MOST_NUMBERS])
 
 
 def _mark(number: int) -> str:

@@ -358,6 +358,8 @@ def test_a_report_has_what_matters(kind: str, reported: Reported) -> None:
         assert word in text, word
     roots = data(text, "charts").get("items", [{"roots": {}}])[0]["roots"].values()
     assert set(charts) <= set(roots)
+    lead = re.findall(r'<p class="lead">(.*?)</p>', text)
+    assert all(words != result.kind.replace("_", " ") for words in lead), "the sentence below the title is an answer"
     explained = text.partition('id="meaning"')[2].partition("</section>")[0]
     for meaning, kinds in MEANINGS.items():
         assert (meaning in explained) == (kind in kinds), meaning
