@@ -220,3 +220,12 @@ def test_a_tensioner_without_the_mass_of_its_pulley() -> None:
     least, arm = 6e-4 / 0.035**2, 6e-4
     assert f"needs at least {least:.3g} kg at a radius of 35 mm" in text
     assert f"up to {np.sqrt(1.0 + least * 0.075**2 / arm) - 1.0:.0%} too high" in text
+
+
+def test_drums_too_small_for_a_conveyor_belt_at_any_tension() -> None:
+    """ST 1000 needs 400 mm where it carries little (DIN 22101); the fatigue of V-belts says nothing of it."""
+    belt = {"profile": "ST 1000", "width": "0.5 m", "installed_tension": "10 kN"}
+    small = two_pulleys(belt, "390 mm").with_({"pulley[fan].diameter": "400 mm", "pulley[fan].center": [3.0, 0.0]})
+    (text,) = (one for one in told(small) if "diameter" in one)
+    assert text.startswith("the diameter of motor is 390 mm, but at least 400 mm are recommended")
+    assert not any("diameter" in one for one in told(small.with_({"pulley[motor].diameter": "400 mm"})))

@@ -17,6 +17,8 @@ from tests.lumped.seeds import blocks
 GRAVITY, FACTOR, FRICTION, GRIP = 9.81, 1.09, 0.02, 0.4
 CLASSES = {"EP 400/3": (400.0, 10.0), "EP 630/4": (630.0, 10.0), "ST 500": (500.0, 6.7), "ST 1000": (1000.0, 6.7)}
 """Strength, N/mm, and least safety factor in steady running."""
+ROTORS = (2000.0, 1500.0)
+"""Moments of inertia of head and tail with their drives, kg m^2."""
 MOTOR = (4e3, 0.08)
 """Breakdown torque at the tail, N m, and slip."""
 PULL, TENSION = 0.01, 0.01
@@ -83,9 +85,9 @@ class Conveyor:
 
     @property
     def moved(self) -> float:
-        """Mass that moves, kg, without the drums."""
+        """Mass that moves, kg."""
         belt = self.belt.mass_per_length * (2.0 * self.length + 2.0 * np.pi * self.radius)
-        return belt + self.length * (15.0 + 4.0 + self.goods)
+        return belt + self.length * (15.0 + 4.0 + self.goods) + sum(ROTORS) / self.radius**2
 
     def drive(self) -> bd.Drive:
         rise = self.length * np.array([np.cos(self.slope), -np.sin(self.slope)])
@@ -107,13 +109,13 @@ class Conveyor:
                     "center": [0.0, 0.0],
                     "radius": 0.4,
                     "speed": self.speed / self.radius,
-                    "inertia": 80.0,
+                    "inertia": ROTORS[0],
                 },
                 {
                     "name": "tail",
                     "center": rise.tolist(),
                     "radius": 0.4,
-                    "inertia": 50.0,
+                    "inertia": ROTORS[1],
                     "mass": 300.0,
                     "load": [brake, motor] if self.motor else [brake],
                 },
@@ -154,7 +156,7 @@ class ByHand:
         tail = drives / one.radius
         self.pulls = np.array([self.total - tail, tail])
         """Of head and tail."""
-        self.rotors = np.array([80.0, 50.0]) / one.radius**2
+        self.rotors = np.array(ROTORS) / one.radius**2
         self.drives = np.array([True, one.motor])
         belt = one.belt.mass_per_length * (one.length + np.pi * one.radius)
         self.masses = np.array([belt + one.length * (15.0 + one.goods), belt + one.length * 4.0])
