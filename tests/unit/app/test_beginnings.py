@@ -63,6 +63,8 @@ def test_a_hub_begins_with_the_rim_that_it_needs() -> None:
     assert 0.0 < edits[1].value < 1.0
 
 
+FULL_LOADS = {"fan": 2000.0, "power": 2000.0, "generator": 1000.0 / 0.7}
+"""Power at the largest speed of the pulley, W, by the numbers with which these loads begin."""
 DRIVING = ("motor", "servo_motor", "induction_motor", "speed_trim")
 
 
@@ -97,6 +99,7 @@ def check_loads(data: dict[str, Any]) -> None:
             assert abs(power) < 1.0, (kind, number)
         else:
             assert power > 0.0, (kind, number)
+            assert power == pytest.approx(FULL_LOADS.get(kind, power), rel=1e-2), (kind, number)
 
 
 def mirrored(data: dict[str, Any]) -> dict[str, Any]:

@@ -153,6 +153,18 @@ def test_a_timing_drive_is_itself_again() -> None:
     assert again.data["belt"] == before.data["belt"] | {"width": again.data["belt"]["width"]}
 
 
+@pytest.mark.parametrize("profile", ["XH", "T5", "flat-aramid"])
+@pytest.mark.parametrize("name", ["gantry_axis", "printer_axis"])
+def test_a_carriage_stays_on_the_line_of_its_belt(name: str, profile: str) -> None:
+    """Both pulleys are of one size, and the shafts at zero height: whole teeth change the height of the line."""
+    drive = draft(changed_data(dict(example(name).data), edits_of_profile(example(name), profile, HERE)), HERE)
+    if drive.drive is None:
+        assert "beyond its stroke" in drive.told[0].sentence
+        return
+    assert drive.drive.carriage is not None
+    assert drive.drive.carriage.center[1] == pytest.approx(float(drive.drive.radii[0]), abs=2e-6)
+
+
 def test_a_nominal_length_stays_where_it_is_sold() -> None:
     drive = draft(changed_data(SMOOTH, [Edit("remove", ("belt", "installed_tension"))]), HERE)
     sold = next(length for length in PROFILES["SPZ"].lengths if length in PROFILES["SPA"].lengths and length > 1.0)
