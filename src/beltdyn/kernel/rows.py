@@ -88,8 +88,16 @@ class KernelKinds(Registry[K]):
 
 def own_labels() -> list[str]:
     """Labels of all kinds with kernels from outside the package."""
-    families = (one for one in Registry.families if isinstance(one, KernelKinds))
-    return [family.label(kind) for family in families for name, kind in family.items() if family.is_own(name)]
+    return [family.label(kind) for family in _families() for name, kind in family.items() if family.is_own(name)]
+
+
+def _labels_here() -> list[str]:
+    """Labels of all kinds with kernels that this process knows."""
+    return [label for family in _families() for label in family.labelled]
+
+
+def _families() -> list[KernelKinds[Any]]:
+    return [family for family in Registry.families if isinstance(family, KernelKinds)]
 
 
 def kernels_of(kind: Any) -> list[Kernel[..., Any]]:
@@ -162,6 +170,10 @@ class ByKind(Dispatch):
         """The kernel for a row with some fields, which counts the kinds in their order."""
         kinds = tuple(name for name in fields if name in self._functions)
         if kinds not in self._chains:
+            names = list(fields)
+            unknown = sorted({*names[names.index("kind") + 1 :]} - {*self._functions, *_labels_here()})
+            if unknown:  # a process that has not imported their module would take their rows for those of other kinds
+                raise TypeError(f"{self.__name__} knows no kind {', '.join(unknown)}. Import the module of its class.")
             self._chains[kinds] = self._written(kinds)
         return self._chains[kinds]
 

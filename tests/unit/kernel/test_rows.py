@@ -147,6 +147,13 @@ def test_the_kind_of_the_row_chooses(kind: int, numbers: dict[str, dict[str, flo
     assert twice_the_height(shape, 3.0) == 2.0 * expected
 
 
+def test_a_kind_that_this_process_does_not_know_is_refused() -> None:
+    """A process that compiles for another one may lack the module: the row would be taken for one of another kind."""
+    foreign = row(record(kind="i8", line=record(slope="f8"), parabola_1a2b=record(focus="f8")), kind=1)
+    with pytest.raises(TypeError, match="height knows no kind parabola_1a2b"):
+        height(foreign, 3.0)
+
+
 def test_python_runs_a_kernel_and_those_that_it_calls_without_the_compiler() -> None:
     program = """
 import sys
