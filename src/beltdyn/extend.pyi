@@ -13,7 +13,15 @@ if TYPE_CHECKING:  # type checkers take these last: kinds of the package import 
     from beltdyn.machines.links.link import HubLink, LinkTorque
     from beltdyn.machines.loads.load import Load, LoadTorque, SensorSlope, ShaftState, StateRate, nearer_kink
     from beltdyn.machines.profiles.profile import SEGMENT, Profile, Value
-    from beltdyn.machines.tensioners.tensioner import SPRING, Center, MovingTensioner, TensionerForce
+    from beltdyn.machines.tensioners.tensioner import (
+        SPRING,
+        Center,
+        Direction,
+        MovingTensioner,
+        SpringTensioner,
+        TensionerForce,
+        spring_force,
+    )
     from beltdyn.model.simulation import IntegratorKind
     from beltdyn.parts.quantity import quantity
     from beltdyn.results.result import build_result
@@ -30,6 +38,7 @@ __all__ = [
     "Analysis",
     "BatchProgress",
     "Center",
+    "Direction",
     "ElementKind",
     "ErrorControl",
     "FixedSteps",
@@ -50,6 +59,7 @@ __all__ = [
     "Progress",
     "SensorSlope",
     "ShaftState",
+    "SpringTensioner",
     "StandardIntegrator",
     "StateRate",
     "StepError",
@@ -69,4 +79,5 @@ __all__ = [
     "record",
     "records",
     "register",
+    "spring_force",
 ]

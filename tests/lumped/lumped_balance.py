@@ -347,6 +347,7 @@ class Route(NamedTuple):
 def spring_of(drive: Drive, number: int) -> Spring:
     """A spring tensioner of a drive, with its stops, without dry friction."""
     one = drive.moving_tensioners[number]
+    spring = one.spring
     pulley = drive.carried(one)
     center = np.array(drive.centers[pulley])
     reach = float(drive.radii[pulley])
@@ -355,7 +356,7 @@ def spring_of(drive: Drive, number: int) -> Spring:
     stiffness = one.stop_stiffness or 0.0
 
     def force(q: float) -> float:
-        return one.preload - one.rate * q + stiffness * (max(lower - q, 0.0) - max(q - upper, 0.0))
+        return spring["preload"] - spring["rate"] * q + stiffness * (max(lower - q, 0.0) - max(q - upper, 0.0))
 
     if isinstance(one, SlidingTensioner):
         along = np.array(one.direction)

@@ -19,7 +19,8 @@ drive = bd.example("two_pulley")
 schema = bd.model.json_schema()["$defs"]
 assert "smooth" not in schema["Contact"]["properties"]["friction_law"]["enum"]
 
-import cable, hunt_crossley, lobed, permanent_magnet_motor, progressive_coupling, rubber, smooth, tension_ratio
+import cable, gas_spring, hunt_crossley, lobed, permanent_magnet_motor, progressive_coupling, rubber, smooth
+import tension_ratio
 
 schema = bd.model.json_schema()["$defs"]
 assert "smooth" in schema["Contact"]["properties"]["friction_law"]["enum"]
@@ -152,6 +153,19 @@ turning = own.replace(pulley=[driver.replace(speed="12 rad/s"), driven.replace(t
 steady = bd.steady_state(turning)
 print(run.dataset["pulley_speed"].values[-1, 0], steady.dataset["pulley_speed"].values[-1, 1])
 """
+TENSIONER = """
+import numpy as np
+import beltdyn as bd
+import gas_spring
+
+force, column, exponent = 120.0, 0.08, 1.2
+drive = bd.example("two_pulley")
+gas = dict(kind="gas_spring", pulley="driven", direction=[1, 0], mass=0.5)
+gas |= dict(force=force, column=column, exponent=exponent)
+rest = bd.equilibrium(drive.replace(tensioner=[gas])).dataset
+place = rest["tensioner_position"].values.item()
+print(rest["hub_force"].values.reshape(2, 2)[1, 0] / -(force * (column / (column + place)) ** exponent))
+"""
 OPEN = """
 import beltdyn as bd
 run = bd.open_result("run.nc")
@@ -190,6 +204,12 @@ def test_the_examples_are_modules_of_a_script(tmp_path: Path) -> None:
         'friction law "smooth" smooth',
         "tension_ratio True",
     }
+
+
+@pytest.mark.slow
+def test_a_tensioner_of_a_script_is_in_balance_from_an_empty_cache(tmp_path: Path) -> None:
+    """Another process, which does not know it, compiles a part."""
+    assert float(run(tmp_path, TENSIONER)[0]) == pytest.approx(1.0, abs=1e-6)
 
 
 @pytest.mark.slow

@@ -19,6 +19,7 @@ PAGES = sorted((ROOT / "docs" / "extending").glob("*.md"))
 COSTLY = {
     "link",
     "load",
+    "gas_spring",
     "surface",
     "friction_law",
     "normal_law",

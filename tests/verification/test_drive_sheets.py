@@ -270,7 +270,7 @@ def modes_of(drive: Drive, balance: LumpedBalance, state: Balanced) -> FloatArra
         ahead, here, behind = (length(state.positions + sign * moved) for sign in (1.0, 0.0, -1.0))
         stretch[:, count + number] = (ahead - behind) / (2.0 * step)
         bend = pressing @ (ahead - 2.0 * here + behind) / step**2
-        stiffness[count + number, count + number] = one.rate + bend
+        stiffness[count + number, count + number] = one.spring["rate"] + bend
         inertia.append(one.moved_inertia(np.array(drive.centers[spring.pulley]), drive.pulleys[spring.pulley].mass))
     mass = np.diag(np.array(inertia))
     for i in range(count):

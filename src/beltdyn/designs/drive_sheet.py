@@ -523,7 +523,7 @@ class _DriveSheet:
         longer = {"replace": spread + worn, "max": spread, "mean": 0.0, "min": -spread}
         states = balance.under(np.zeros((len(longer), self._radii.size)), 0.0, np.array(list(longer.values()))).states()
         lower, upper = one.stops or (-np.inf, np.inf)
-        free = min(upper, one.preload / one.rate if one.rate else np.inf)
+        free = carrier.free_position
         rows = {}
         if np.isfinite(free):
             rows["free"] = (np.nan, free, 0.0)

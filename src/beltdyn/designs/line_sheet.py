@@ -345,10 +345,10 @@ class _Row:
         return Motions(self.run, np.array(self.span_ends), self.launch)
 
     def _of_tensioners(self) -> Iterator[tuple[str, tuple[Variable, Any]]]:
-        places, ones = [one.position for one in self.means.tensioners], self.drive.moving_tensioners
-        units = "rad" if all(one.turns for one in ones) else "m or rad"
+        places, carriers = [one.position for one in self.means.tensioners], self.prepared.carriers
+        units = "rad" if all(one.tensioner.turns for one in carriers) else "m or rad"
         yield "tensioner_position", (Variable((_TENSIONER,), units, "Tensioner position"), places)
-        forces = [one.preload - one.rate * place for one, place in zip(ones, places, strict=True)]
+        forces = [one.force(place) for one, place in zip(carriers, places, strict=True)]
         yield "tensioner_force", (Variable((_TENSIONER,), "N or N m", "Force of the tensioner"), forces)
 
     @cached_property

@@ -9,9 +9,14 @@ from numpy.typing import ArrayLike
 from beltdyn.arrays import FloatArray
 from beltdyn.kernel import interpreted
 from beltdyn.machines.tensioners import tensioner_row
-from beltdyn.machines.tensioners.tensioner import TENSIONERS, MovingTensioner, Tensioner
+from beltdyn.machines.tensioners.tensioner import TENSIONERS, MovingTensioner, SpringTensioner, Tensioner
 from beltdyn.model.path import Path
 from beltdyn.model.pulley import Pulley
+
+_FARTHEST = 1e3
+"""Position beyond which no spring is followed, m or rad."""
+_SMALLEST = 1e-15
+"""Accuracy of positions, m or rad."""
 
 
 @dataclass(frozen=True)
@@ -65,6 +70,25 @@ class Carrier:
     def force(self, position: float) -> float:
         """Force of spring and stops at a position (m, rad): N, or N m for an arm."""
         return float(interpreted(type(self.tensioner).force_at)(self.constants, position, 0.0).force)
+
+    def forces(self, positions: FloatArray) -> FloatArray:
+        """Forces at positions of any shape."""
+        return np.asarray(np.vectorize(self.force, otypes=[float])(positions))
+
+    def stiffness(self, position: float) -> float:
+        """Force that spring and stops lose in a unit of the position: N/m, or N m/rad for an arm."""
+        return -float(interpreted(type(self.tensioner).force_at)(self.constants, position, 0.0).by_position)
+
+    @property
+    def free_position(self) -> float:
+        """Where the spring has no force, or the upper stop holds it; inf where it pushes without end."""
+        from scipy.optimize import brentq
+
+        lower, upper = self.tensioner.stops or (-_FARTHEST, _FARTHEST)
+        if self.force(upper) > 0.0:
+            return upper if self.tensioner.stops else np.inf
+        pushing = 0.0 if self.force(0.0) > 0.0 else lower
+        return float(brentq(self.force, pushing, upper, xtol=_SMALLEST)) if self.force(pushing) > 0.0 else pushing
 
 
 def carriers_of(tensioners: Sequence[Tensioner], names: Sequence[str], path: Path) -> list[Carrier]:
@@ -123,8 +147,9 @@ def check_sensors(tensioners: Sequence[Tensioner], pulleys: Sequence[Pulley]) ->
             if load.sensed not in moving:
                 choice = f"Choose one of {', '.join(moving)}" if moving else 'Add a [[tensioner]] of kind = "sliding"'
                 raise ValueError(f"{where} must be a pulley that a moving tensioner carries. {choice}")
-            if load.senses_force and not getattr(moving[load.sensed], "rate", 0.0):
+            spring = moving[load.sensed]
+            if load.senses_force and not (isinstance(spring, SpringTensioner) and spring.rate):
                 raise ValueError(
-                    f"{where} measures a force by its spring, but its tensioner has rate = 0. Give the stiffness of "
-                    "the load cell as rate, or control by set_position"
+                    f"{where} measures a force by its spring, but its tensioner has no constant rate. Give the "
+                    "stiffness of the load cell as rate of a tensioner with such a spring, or control by set_position"
                 )

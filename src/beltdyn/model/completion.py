@@ -6,8 +6,9 @@ from typing import NamedTuple
 import numpy as np
 
 from beltdyn.errors import ModelError
-from beltdyn.machines import MovingTensioner, Tensioner
+from beltdyn.machines import Tensioner
 from beltdyn.model.belt import Belt
+from beltdyn.model.carrier import carriers_of
 from beltdyn.model.contact import Contact
 from beltdyn.model.defaults import (
     Choice,
@@ -153,15 +154,15 @@ def _check_estimate(given: Given, nominal: str | None, pulleys: tuple[Pulley, ..
     wanted, length, path = given.belt.installed_tension, estimate.length, estimate.path.length
     if wanted is not None and not 0 < path <= (1 + LARGEST_STRAIN) * length:
         raise ValueError(
-            f"{_asked(given, nominal)} would stretch the belt and press it into the pulleys by more "
+            f"{_asked(given, nominal, estimate.path)} would stretch the belt and press it into the pulleys by more "
             f"than {LARGEST_STRAIN:.0%} of its length. Reduce it, or give the belt an axial stiffness above "
             f"{given.belt.axial_stiffness:.3g} N"
         )
     least = _SMALLEST_STRAIN * given.belt.axial_stiffness
     if wanted is not None and wanted < least:
         raise ValueError(
-            f"{_asked(given, nominal)} would stretch the belt by less than {_SMALLEST_STRAIN:.0e} of its length, which "
-            f"is below rounding. Give at least {least:.1g} N"
+            f"{_asked(given, nominal, estimate.path)} would stretch the belt by less than "
+            f"{_SMALLEST_STRAIN:.0e} of its length, which is below rounding. Give at least {least:.1g} N"
         )
     check_length(given.belt, length, path, tensioned=given.has_springs)
     if given.has_springs:
@@ -173,14 +174,15 @@ def _check_estimate(given: Given, nominal: str | None, pulleys: tuple[Pulley, ..
         )
 
 
-def _asked(given: Given, nominal: str | None) -> str:
+def _asked(given: Given, nominal: str | None, path: Path) -> str:
     """The tension at rest with the key that asks for it."""
     tension = f"{given.belt.installed_tension:.5g} N"
-    one = next((one for one in given.tensioners if isinstance(one, MovingTensioner) and one.pulley == nominal), None)
-    if one is None:
+    carriers = carriers_of(given.tensioners, given.names, path)
+    carrier = next((one for one in carriers if one.tensioner.pulley == nominal), None)
+    if carrier is None:
         return f"belt.installed_tension = {tension}"
-    unit = "N m" if one.turns else "N"
-    return f'preload = {one.preload:.4g} {unit} of the tensioner of "{one.pulley}" is a tension of {tension}, which'
+    unit = "N m" if carrier.tensioner.turns else "N"
+    return f'preload = {carrier.force(0.0):.4g} {unit} of the tensioner of "{nominal}" is a tension of {tension}, which'
 
 
 def _check_place(given: Given, pulleys: tuple[Pulley, ...], path: Path) -> None:

@@ -10,7 +10,7 @@ from pydantic import Field, model_validator
 from beltdyn.arrays import FloatArray
 from beltdyn.errors import ModelError
 from beltdyn.machines.tensioners.sliding import SlidingTensioner
-from beltdyn.machines.tensioners.tensioner import MovingTensioner, Tensioner
+from beltdyn.machines.tensioners.tensioner import MovingTensioner, SpringTensioner, Tensioner
 from beltdyn.model.belt import Belt
 from beltdyn.model.contact import Contact
 from beltdyn.model.path import Path
@@ -143,6 +143,11 @@ def _force(nip: Nip, roller: Pulley, pulley: Pulley, tensioners: Sequence[Tensio
     carrier = next((one for one in tensioners if isinstance(one, MovingTensioner) and one.pulley == nip.roller), None)
     if carrier is None:
         return nip.force
+    if not isinstance(carrier, SpringTensioner):
+        raise ValueError(
+            f'the tensioner of "{nip.roller}" presses the roller of a nip, but has no preload. Use one with a spring '
+            "of constant rate, or give the force of the nip"
+        )
     center, way = np.array(roller.center), np.subtract(pulley.center, roller.center)
     arm = 1.0 if not carrier.turns else carrier.reach(center)
     try:

@@ -360,15 +360,15 @@ def _narrow_teeth(drive: Drive, installation: Installation) -> Iterator[Finding]
 def _off_nominal(drive: Drive, installation: Installation) -> Iterator[Finding]:
     """Spring-loaded tensioners that rest far from the center that is given, where the preload is not that at rest."""
     for carrier, position in zip(prepare(drive).carriers, installation.tensioner_positions.tolist(), strict=True):
-        one, there = carrier.tensioner, carrier.force(position)
-        if not abs(there - one.preload) > _OFF_NOMINAL * abs(one.preload):
+        one, there, nominal = carrier.tensioner, carrier.force(position), carrier.force(0.0)
+        if not abs(there - nominal) > _OFF_NOMINAL * abs(nominal):
             continue
         unit = "N m" if one.turns else "N"
         leverage = abs(float(drive.path.gradient(carrier.pulley) @ carrier.place(0.0)[1]))
         yield Finding(
             f"the tensioner of {one.pulley} rests {one.written(position)} from the given center of its pulley, where "
-            f"its spring gives {there:.4g} {unit}, not preload = {one.preload:.4g} {unit}.",
-            f"If the center is the nominal position, its tension is {one.preload / leverage:.4g} N, not "
+            f"its spring gives {there:.4g} {unit}, not preload = {nominal:.4g} {unit}.",
+            f"If the center is the nominal position, its tension is {nominal / leverage:.4g} N, not "
             f"{installation.tension:.4g} N at rest. preload is the force at the given center, not that of the free "
             "arm.",
             "Give center and preload of the same position, for an arm by free_angle; or omit the length of the belt, "
@@ -381,12 +381,12 @@ def _light_preload(drive: Drive, installation: Installation) -> Iterator[Finding
     name, force = drive.layout.nominal, drive.belt.value_of("measuring_force")
     if name is None or force is None or not installation.tension < _LIGHT * 0.5 * force:
         return
-    one = next(one for one in drive.moving_tensioners if one.pulley == name)
-    unit, usual = "N m" if one.turns else "N", 0.5 * force
+    carrier = next(one for one in prepare(drive).carriers if one.tensioner.pulley == name)
+    unit, usual, preload = "N m" if carrier.tensioner.turns else "N", 0.5 * force, carrier.force(0.0)
     yield Finding(
-        f"preload = {one.preload:.4g} {unit} of the tensioner of {name} gives {installation.tension:.4g} N, but the "
+        f"preload = {preload:.4g} {unit} of the tensioner of {name} gives {installation.tension:.4g} N, but the "
         f"length of this belt is measured under {usual:.4g} N.",
-        f"That tension takes {one.preload * usual / installation.tension:.4g} {unit}; a light belt slips under load.",
+        f"That tension takes {preload * usual / installation.tension:.4g} {unit}; a light belt slips under load.",
         'Check the preload and its unit: "12 N m" is 12,000 N mm.',
     )
 

@@ -164,13 +164,12 @@ class _Sheet:
         self._belts = (_aged(prepared)[0], *_OTHERS)
         self._failures = dict[str, str]()
         self._by_closed_forms = False
-        rate, preload = self._tensioner.rate, self._tensioner.preload
         lower, upper = self._tensioner.stops or (-np.inf, np.inf)
         spring = self._tensioner.spring
         pushes = {name: sense * spring[f"{name}_friction"] for name, sense in (("tensioning", -1.0), ("yielding", 1.0))}
         self._frictions = pushes if any(pushes.values()) else {}
         self._stops = {"upper stop": upper, "lower stop": lower}
-        self._free = min(upper, preload / rate if rate else np.inf)
+        self._free = self._carrier.free_position
         at_lower = self._placed(lower)
         self._shortest = moved(prepared.path, prepared.carriers, at_lower).length if np.isfinite(lower) else np.nan
 
@@ -242,8 +241,8 @@ class _Sheet:
             "slack": length - self._shortest,
         }
         for name, push in self._frictions.items():
-            pushed = self._with(tensioner.replace(preload=tensioner.preload + push), prepared)
             with suppress(ConvergenceError, ModelError):
+                pushed = self._with(tensioner.pushed(push), prepared)
                 row[f"tension_after_{name}"] = self._balanced(pushed).tension
         return row
 

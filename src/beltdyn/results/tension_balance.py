@@ -12,7 +12,6 @@ from typing import NamedTuple, Self
 import numpy as np
 
 from beltdyn.arrays import BoolArray, FloatArray, IntArray
-from beltdyn.machines.tensioners.tensioner import MovingTensioner
 from beltdyn.model import Prepared
 from beltdyn.model.path import span_directions, span_points, wrap_angles
 from beltdyn.results.mechanics import SpanTension, across
@@ -356,7 +355,7 @@ class TensionBalance:
             before, after = path.reaching[one.pulley], path.leaving[one.pulley]
             pull = starting[:, after] - ending[:, before]
             place = self._places[rows, number] + unknowns[:, 1 + number]
-            missing.append(np.sum(pull * shape.slopes[:, number], axis=1) + _spring(one.tensioner, place))
+            missing.append(np.sum(pull * shape.slopes[:, number], axis=1) + one.forces(place))
         return np.column_stack(missing)
 
     def _belt_on(self, rows: IntArray, tension: SpanTension, shape: _Geometry, sag: Sag | None) -> FloatArray:
@@ -436,13 +435,6 @@ def _places(prepared: Prepared, centers: FloatArray) -> FloatArray:
             sense = np.sign(turned(arm) @ along)
             found[:, number] = sense * np.arctan2(here @ turned(arm), here @ arm)
     return found
-
-
-def _spring(tensioner: MovingTensioner, place: FloatArray) -> FloatArray:
-    """Force of spring and stops at places, N or N m."""
-    row = tensioner.spring
-    low, high = (np.maximum(depth, 0.0) for depth in (row["lower"] - place, place - row["upper"]))
-    return np.asarray(row["preload"] - row["rate"] * place + row["stop_stiffness"] * (low - high))
 
 
 def _solved(slopes: FloatArray, off: FloatArray) -> FloatArray:

@@ -469,7 +469,7 @@ def _tensioners(drive: Drive, installation: Installation) -> list[tuple[str, ...
             (
                 tensioner.pulley,
                 f"{carrier.shown_as[0]} {carrier.written(position)}",
-                f"{tensioner.preload - tensioner.rate * position:.4g} {unit}",
+                f"{carrier.force(position):.4g} {unit}",
                 " to ".join(carrier.written(stop) for stop in tensioner.stops or ()),
                 other or "none",
             )

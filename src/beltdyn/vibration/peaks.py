@@ -387,9 +387,7 @@ class _Lumping:
             spring, nominal = one.spring, prepared.path.centers[pulley]
             self._mass[place, place] += one.moved_inertia(nominal, prepared.pulleys[pulley].mass)
             self._damping[place, place] += spring["damping"]
-            self._stiffness[place, place] += spring["rate"]
-            if not spring["lower"] <= position <= spring["upper"]:
-                self._stiffness[place, place] += spring["stop_stiffness"]
+            self._stiffness[place, place] += carrier.stiffness(position)
             for span, sense in ((pulley, -1.0), (pulley - 1, 1.0)):
                 across = along @ along - (self._directions[span] @ along) ** 2
                 turned = sense * float(self._directions[span] @ bend)

@@ -86,14 +86,14 @@ STOPS = ("stops", "stop_stiffness", "stop_damping")
 def test_an_arm_by_its_free_angle_has_the_preload_and_stops_of_its_angles() -> None:
     drive = armed("preload", *STOPS, free_angle=f"{NOMINAL + WOUND} deg", load_stop_angle=f"{NOMINAL - 15.0} deg")
     (arm,) = drive.moving_tensioners
-    assert arm.preload == pytest.approx(11.8)
+    assert arm.spring["preload"] == pytest.approx(11.8)
     assert arm.stops == pytest.approx((radians(-15.0), radians(WOUND)))
     assert arm.arguments["sense"] == "counter-clockwise"
     assert arm.stop_stiffness == pytest.approx(11.8 * 4.0 * 180.0 / pi)
     assert loads(dumps(drive)).moving_tensioners == (arm,)
-    assert drive.with_({"tensioner[tensioner].preload": 12.0}).moving_tensioners[0].preload == 12.0
+    assert drive.with_({"tensioner[tensioner].preload": 12.0}).moving_tensioners[0].spring["preload"] == 12.0
     softer = drive.with_({"tensioner[tensioner].free_angle": radians(NOMINAL + 20.0)}).moving_tensioners[0]
-    assert softer.preload == pytest.approx(8.0)
+    assert softer.spring["preload"] == pytest.approx(8.0)
 
 
 def test_free_angle_preload_and_rate_place_the_arm() -> None:

@@ -109,7 +109,7 @@ def test_dry_friction_holds_a_tensioner_within_a_band(machines: Drive) -> None:
     found, installed = run.dataset, run.drive.replace(contact=run.drive.completed.contact)
     smooth = arm.replace(tensioning_friction=0.0, yielding_friction=0.0)
     for name, sense in (("tensioning", -1.0), ("yielding", 1.0)):
-        preload = arm.preload + sense * getattr(arm, f"{name}_friction")
+        preload = arm.spring["preload"] + sense * arm.spring[f"{name}_friction"]
         other = steady_state(installed.replace(tensioner=[smooth.replace(preload=preload)])).dataset
         end = float(np.atleast_1d(found.attrs[f"tensioner_position_after_{name}"])[0])
         assert end == pytest.approx(float(other.tensioner_position[0, 0]), abs=2e-4)

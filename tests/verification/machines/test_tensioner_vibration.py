@@ -62,7 +62,7 @@ def stiffness(drive: Drive, q: float) -> float:
     before, here, after = (moved(drive.path, [carrier], np.array([q + step])).length for step in (-h, 0.0, h))
     tensions = [tension(drive, carrier, q + step) for step in (-h, 0.0, h)]
     slope, bend = (after - before) / (2 * h), (after - 2 * here + before) / h**2
-    return tensioner.rate + (tensions[2] - tensions[0]) / (2 * h) * slope + tensions[1] * bend
+    return tensioner.spring["rate"] + (tensions[2] - tensions[0]) / (2 * h) * slope + tensions[1] * bend
 
 
 def tension(drive: Drive, carrier: Carrier, q: float) -> float:

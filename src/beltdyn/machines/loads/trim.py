@@ -16,7 +16,7 @@ from beltdyn.kinds import register
 from beltdyn.machines.loads.load import Load, LoadTorque, SensorSlope, ShaftState, StateRate
 from beltdyn.machines.profiles import SpeedProfile, TorqueProfile
 from beltdyn.machines.profiles.profile import Profile
-from beltdyn.machines.tensioners.tensioner import MovingTensioner
+from beltdyn.machines.tensioners.tensioner import MovingTensioner, SpringTensioner
 from beltdyn.parts.quantity import Coordinate, Force, Name, Ratio, Time, TorsionalDamping, quantity
 
 TRIM = record(
@@ -148,6 +148,7 @@ class Trim(Load):
         """As in the base: farther than the set place, m, or less than the set force, N."""
         if self.set_force is None:
             return arm, -(self.set_position or 0.0)
+        assert isinstance(tensioner, SpringTensioner)  # checked with the drive
         return tensioner.rate / arm, self.set_force - tensioner.preload / arm
 
     @property

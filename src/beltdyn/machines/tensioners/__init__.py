@@ -10,6 +10,7 @@ from beltdyn.machines.tensioners.rotary import RotaryTensioner as RotaryTensione
 from beltdyn.machines.tensioners.sliding import SlidingTensioner as SlidingTensioner
 from beltdyn.machines.tensioners.tensioner import TENSIONERS, MovingTensioner, Tensioner
 from beltdyn.machines.tensioners.tensioner import FixedTensioner as FixedTensioner
+from beltdyn.machines.tensioners.tensioner import SpringTensioner as SpringTensioner
 from beltdyn.parts.kind_fields import OneOf
 
 AnyTensioner = Annotated[Tensioner, OneOf(TENSIONERS)]

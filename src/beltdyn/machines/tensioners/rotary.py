@@ -12,7 +12,7 @@ from pydantic.fields import FieldInfo
 from beltdyn.arrays import FloatArray, record
 from beltdyn.kernel import kernel
 from beltdyn.kinds import register
-from beltdyn.machines.tensioners.tensioner import LEAST_LEVERAGE, SPRING, Center, MovingTensioner
+from beltdyn.machines.tensioners.tensioner import LEAST_LEVERAGE, SPRING, Center, SpringTensioner
 from beltdyn.parts.part import Part
 from beltdyn.parts.quantity import (
     Angle,
@@ -80,7 +80,7 @@ def rotary_center(constants: np.record, q: float) -> Center:
 
 
 @register
-class RotaryTensioner(MovingTensioner):
+class RotaryTensioner(SpringTensioner):
     """A pulley on an arm, pressed against the belt by a torsional spring at the pivot.
 
     Examples

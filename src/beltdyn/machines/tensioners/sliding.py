@@ -9,7 +9,7 @@ from pydantic import Field
 from beltdyn.arrays import FloatArray, record
 from beltdyn.kernel import kernel
 from beltdyn.kinds import register
-from beltdyn.machines.tensioners.tensioner import LEAST_LEVERAGE, SPRING, Center, Direction, MovingTensioner
+from beltdyn.machines.tensioners.tensioner import LEAST_LEVERAGE, SPRING, Center, Direction, SpringTensioner
 from beltdyn.parts.quantity import Coordinate, Damping, Force, Length, Mass, Speed, Stiffness
 
 SLIDE = record(
@@ -28,7 +28,7 @@ def sliding_center(constants: np.record, q: float) -> Center:
 
 
 @register
-class SlidingTensioner(MovingTensioner):
+class SlidingTensioner(SpringTensioner):
     """A pulley sliding along a line, pressed by a spring in `direction`.
 
     Examples

@@ -9,6 +9,7 @@ import numpy as np
 from pydantic import AfterValidator, Field, model_validator
 
 from beltdyn.arrays import FloatArray, record
+from beltdyn.errors import ModelError
 from beltdyn.kernel import KernelKinds, kernel
 from beltdyn.kinds import register
 from beltdyn.parts.part import Part
@@ -152,14 +153,10 @@ class MovingTensioner(Tensioner):
     force_at: ClassVar[Callable[[np.record, float, float], TensionerForce]] = spring_force
     """Kernel: generalized force from constants, q and its rate."""
 
-    if TYPE_CHECKING:
-        preload: float
-        rate: float
-
-    creep_speed: float
-    stops: tuple[float, float] | None
-    stop_stiffness: float | None
-    stop_damping: float
+    creep_speed: float = Field(1e-3, gt=0, description="the speed at which dry friction reaches 76 %, in SI units")
+    stops: tuple[float, float] | None = Field(None, description="the lower and upper stops of q, in m or rad")
+    stop_stiffness: float | None = Field(None, gt=0, description="the stiffness of the stops, in SI units")
+    stop_damping: float = Field(0.0, ge=0, description="the damping of the stops, in SI units")
 
     @model_validator(mode="after")
     def _stops_hold_the_nominal_place(self) -> Self:
@@ -233,19 +230,42 @@ class MovingTensioner(Tensioner):
 
     @property
     def spring(self) -> dict[str, float]:
-        """Values of a row of `SPRING`."""
+        """Values of a row of `SPRING`: damper and dry friction, as far as the kind has them, and stops."""
         lower, upper = self.stops or (-np.inf, np.inf)
-        stop_stiffness = self.stop_stiffness or 0.0
-        own = ("preload", "rate", "damping", "tensioning_friction", "yielding_friction", "creep_speed", "stop_damping")
-        return {name: getattr(self, name) for name in own} | {
+        of_motion = ("damping", "tensioning_friction", "yielding_friction", "creep_speed", "stop_damping")
+        return {name: float(getattr(self, name, 0.0)) for name in of_motion} | {
             "lower": lower,
             "upper": upper,
-            "stop_stiffness": stop_stiffness,
+            "stop_stiffness": self.stop_stiffness or 0.0,
         }
+
+    def pushed(self, force: float) -> Self:
+        """The same with a constant force on q besides its own, N or N m; ModelError of a kind that has no such form."""
+        raise ModelError(
+            f'the tensioner of "{self.pulley}" takes no further force: its kind does not define `pushed`, so that its '
+            "tension after friction is left out. Define it, or give the tensioner no dry friction."
+        )
 
     def written(self, position: float) -> str:
         """Format a position, m or rad, with its unit."""
         return f"{np.degrees(position):.4g}°" if self.turns else f"{position:.4g} m"
+
+
+class SpringTensioner(MovingTensioner):
+    """A tensioner with a spring of constant rate: preload - rate q."""
+
+    if TYPE_CHECKING:
+        preload: float
+        rate: float
+
+    @property
+    def spring(self) -> dict[str, float]:
+        """As in the base, with preload and rate."""
+        return super().spring | {"preload": self.preload, "rate": self.rate}
+
+    def pushed(self, force: float) -> Self:
+        """As in the base, by its preload."""
+        return self.replace(preload=self.preload + force)
 
 
 # A tensioner set before the drive runs
