@@ -27,7 +27,7 @@ _USUAL_RUN = 0.4
 """s."""
 _BY_SUPPLY = ("induction_motor",)
 """Loads whose speeds follow from the frequency of the supply."""
-_SHARES = {"cut_in_speed": 0.5, "synchronous_speed": 1.05}
+_SHARES = {"cut_in_speed": 0.3, "synchronous_speed": 1.05}
 """Speeds of loads over that of their pulley."""
 _OF_LOAD = 4
 """Steps of the location of a load: "pulley", its number, "load", its number."""

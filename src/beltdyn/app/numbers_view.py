@@ -294,7 +294,7 @@ class NumbersView:
             self._sliders.set_visibility(what != "rest" and session.draft.drive is not None)
         if session.draft.drive is None:
             self._wanted = self._shown = self._answer = None
-            self._box.clear()
+            self._box.classes(remove="bd-old").clear()
             self._tell(())
             self._say("")
             if not session.document.data.get("pulley"):
@@ -307,6 +307,9 @@ class NumbersView:
         asked = Asked(what, self._tab, session.document.text, session.workspace.folder.root, *factors)
         if asked == self._shown:
             return
+        if self._shown is not None and asked.text != self._shown.text:
+            self._box.classes(add="bd-old")
+            self._tell(())
         self._shown = asked
         if what == "rest":
             self._estimate()
@@ -374,7 +377,7 @@ class NumbersView:
     def _show(self, answer: Answer) -> None:
         self._answer = answer
         self._tell(answer.findings.tensions)
-        self._box.clear()
+        self._box.classes(remove="bd-old").clear()
         with self._box:
             if answer.error:
                 ui.label(in_units(answer.error, self._session.units)).classes("bd-message")

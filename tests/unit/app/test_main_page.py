@@ -305,6 +305,38 @@ def test_what_an_answer_waits_for_is_said(workspace: Workspace, monkeypatch: pyt
     go(workspace, journey)
 
 
+def test_numbers_of_the_drive_before_an_edit_are_marked(workspace: Workspace) -> None:
+    """Until those of the present drive are there."""
+    edited, computed = asyncio.Event(), asyncio.Event()
+
+    class Waits(Told):
+        async def ask(self, asked: Asked) -> Answer:
+            if edited.is_set():
+                await computed.wait()
+            return await super().ask(asked)
+
+    workspace.calculator = Waits()
+
+    def is_marked(user: User) -> bool:
+        return any("bd-old" in one.classes for one in user.find(kind=ui.column, marker="numbers").elements)
+
+    async def journey(user: User) -> None:
+        with user:
+            marked(user, "what").value = "running"
+        await user.should_see("running, computed in 0.12 s")
+        assert not is_marked(user)
+        edited.set()
+        enter(user, "belt.ribs", "8")
+        await user.should_see("computing …")
+        assert is_marked(user)
+        assert canvas(user)["tensions"] == []
+        computed.set()
+        await user.should_see("running, computed in 0.12 s")
+        assert not is_marked(user)
+
+    go(workspace, journey)
+
+
 def test_an_analysis_can_be_started_only_of_a_drive(workspace: Workspace) -> None:
     async def journey(user: User) -> None:
         with user:
