@@ -10,7 +10,6 @@ from cyclopts import Parameter
 
 from beltdyn.cli.console import show, show_facts, show_paragraphs, show_table
 from beltdyn.cli.new import refuse_existing, write_text
-from beltdyn.parts.messages import plain
 
 if TYPE_CHECKING:
     from beltdyn.designs.selection import Proposal
@@ -94,6 +93,8 @@ def _list(entries: "dict[str, Entry]") -> None:
 
 
 def _rows(entries: "Iterable[tuple[str, Entry]]") -> Iterator[tuple[str, ...]]:
+    from beltdyn.parts.messages import plain
+
     for kind, group in groupby(entries, key=lambda item: item[1].kind):
         yield (kind,)
         for name, entry in group:
@@ -141,6 +142,7 @@ def _show(profile: str, entry: "Entry") -> None:
 def _values(entry: "Entry") -> Iterator[tuple[str, str]]:
     """The values of a profile in the catalogue."""
     from beltdyn.model.belt_form import DAMPING_TIMES, LOSSES
+    from beltdyn.parts.messages import plain
 
     yield "width", f"{1e3 * entry.width:.4g} mm{', the pitch or datum width' * entry.is_v_belt}"
     yield "thickness", f"{1e3 * entry.thickness:.4g} mm"
@@ -193,6 +195,8 @@ def _values(entry: "Entry") -> Iterator[tuple[str, str]]:
 
 def _consequences(entry: "Entry") -> Iterator[tuple[str, str]]:
     """Values derived from those of a profile."""
+    from beltdyn.parts.messages import plain
+
     offset, length = 1e3 * entry.pitch_offset, _LENGTHS[entry.pulley_diameter]
     line = f"{offset:.3g} mm outside" if offset else "at that diameter"
     more = f"{2 * pi * offset:.3g} mm longer (2π × {offset:.3g} mm)" if offset else "of that length"

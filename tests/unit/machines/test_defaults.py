@@ -27,7 +27,14 @@ SCALES = {
     ("RotaryTensioner", "center_of_mass"): 0.5,
 }
 """Defaults that are not zero, as the reference has them."""
-CREEP_SPEEDS = {"Idlers": 0.01, "Guide": 0.01, "Holdback": 1e-3, "RotaryTensioner": 0.01, "SlidingTensioner": 1e-3}
+CREEP_SPEEDS = {
+    "Idlers": 0.01,
+    "Guide": 0.01,
+    "Holdback": 1e-3,
+    "MovingTensioner": 1e-3,
+    "RotaryTensioner": 0.01,
+    "SlidingTensioner": 1e-3,
+}
 """Speeds at which smoothed dry friction reaches 76 %; of loads on shafts 0.1 rad/s."""
 
 

@@ -184,7 +184,7 @@ def test_a_trim_has_one_sensor(changed: dict[str, Any], told: str) -> None:
     [
         ([], r'load\[1\].sensor = "cell" of pulley "last" must be a pulley that a moving tensioner carries. Add a'),
         ([{"pulley": "other"}], "Choose one of other"),
-        ([{"pulley": "cell"}], "measures a force by its spring, but its tensioner has rate = 0"),
+        ([{"pulley": "cell"}], "measures a force by its spring, but its tensioner has no constant rate"),
     ],
 )
 def test_sensors_are_tensioners(tensioners: list[dict[str, Any]], told: str) -> None:
