@@ -8,8 +8,14 @@ from numpy.typing import ArrayLike
 
 from beltdyn.arrays import FloatArray
 from beltdyn.kernel import interpreted
-from beltdyn.machines.tensioners import tensioner_row
-from beltdyn.machines.tensioners.tensioner import TENSIONERS, MovingTensioner, SpringTensioner, Tensioner
+from beltdyn.machines.tensioners import fill_forces, tensioner_row
+from beltdyn.machines.tensioners.tensioner import (
+    TENSIONERS,
+    MovingTensioner,
+    SpringTensioner,
+    Tensioner,
+    TensionerForce,
+)
 from beltdyn.model.path import Path
 from beltdyn.model.pulley import Pulley
 
@@ -69,15 +75,21 @@ class Carrier:
 
     def force(self, position: float) -> float:
         """Force of spring and stops at a position (m, rad): N, or N m for an arm."""
-        return float(interpreted(type(self.tensioner).force_at)(self.constants, position, 0.0).force)
+        return float(self._at(position).force)
 
-    def forces(self, positions: FloatArray) -> FloatArray:
-        """Forces at positions of any shape."""
-        return np.asarray(np.vectorize(self.force, otypes=[float])(positions))
+    def forces(self, positions: ArrayLike) -> FloatArray:
+        """Forces at positions of any shape, compiled."""
+        places = np.array(positions, dtype=float, ndmin=1)
+        forces = np.empty_like(places)
+        fill_forces(self.row, places.ravel(), forces.ravel())
+        return forces.reshape(np.shape(positions))
 
     def stiffness(self, position: float) -> float:
         """Force that spring and stops lose in a unit of the position: N/m, or N m/rad for an arm."""
-        return -float(interpreted(type(self.tensioner).force_at)(self.constants, position, 0.0).by_position)
+        return -float(self._at(position).by_position)
+
+    def _at(self, position: float) -> TensionerForce:
+        return interpreted(type(self.tensioner).force_at)(self.constants, position, 0.0)
 
     @property
     def free_position(self) -> float:

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from beltdyn.errors import ModelError
-from beltdyn.model import Drive, FixedTensioner, Path, RotaryTensioner, SlidingTensioner, loads
+from beltdyn.model import Drive, FixedTensioner, Path, RotaryTensioner, SlidingTensioner, loads, prepare
 
 SLIDING = {"kind": "sliding", "pulley": "driven", "direction": (1.0, 0.0), "preload": 50.0, "mass": 0.2}
 ROTARY = {"kind": "rotary", "pulley": "driven", "pivot": (0.191441, 0.2), "preload": 5.0, "inertia": 1e-3}
@@ -94,3 +94,13 @@ def test_gradient_of_the_path_is_the_difference_of_its_directions(pulley: int, a
     step[pulley, axis] = 1e-5
     numeric = (Path(centers + step, radii).length - Path(centers - step, radii).length) / 2e-5
     assert Path(centers, radii).gradient(pulley)[axis] == pytest.approx(numeric, abs=1e-9)
+
+
+@pytest.mark.parametrize("tensioner", [SLIDING | {"rate": 3e3}, ROTARY | {"rate": 8.0}], ids=["slide", "arm"])
+def test_forces_of_many_positions_are_those_of_each_with_stops(drive: Drive, tensioner: dict[str, Any]) -> None:
+    held = tensioner | {"stops": (-0.01, 0.02), "stop_stiffness": 5e3}
+    (carrier,) = prepare(drive.replace(tensioner=[held])).carriers
+    positions = np.linspace(-0.02, 0.03, 12).reshape(3, 4)
+    each = [carrier.force(position) for position in positions.ravel().tolist()]
+    np.testing.assert_allclose(carrier.forces(positions).ravel(), each, rtol=1e-14)
+    assert carrier.forces(0.015) == pytest.approx(carrier.force(0.015), rel=1e-14)

@@ -5,7 +5,7 @@ from typing import Annotated
 import numpy as np
 
 from beltdyn.arrays import FloatArray, row
-from beltdyn.kernel import KindRows, choice
+from beltdyn.kernel import KindRows, choice, kernel
 from beltdyn.machines.tensioners.rotary import RotaryTensioner as RotaryTensioner
 from beltdyn.machines.tensioners.sliding import SlidingTensioner as SlidingTensioner
 from beltdyn.machines.tensioners.tensioner import TENSIONERS, MovingTensioner, Tensioner
@@ -33,6 +33,13 @@ TENSIONER = TENSIONER_ROWS.row_type()
 
 tensioner_center = choice("tensioner_center", TENSIONERS.functions("center_at", _moves), ["q"])
 tensioner_force = choice("tensioner_force", TENSIONERS.functions("force_at", _moves), ["q", "velocity"])
+
+
+@kernel
+def fill_forces(tensioner: np.record, positions: FloatArray, forces: FloatArray) -> None:
+    """Overwrite forces, N or N m, with those of spring and stops at rest; `tensioner`: a row; positions in m or rad."""
+    for number in range(positions.size):
+        forces[number] = tensioner_force(tensioner, positions[number], 0.0).force
 
 
 def tensioner_row(tensioner: MovingTensioner, pulley: int, center: FloatArray, gradient: FloatArray) -> np.record:
