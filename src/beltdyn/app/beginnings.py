@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 
 from beltdyn.app import placing
-from beltdyn.app.forms import Field, fields, schema_of, value_at
+from beltdyn.app.forms import Field, fields, pulley_at, schema_of, value_at
 from beltdyn.errors import ModelError
 from beltdyn.machines.loads.brake import Holdback
 from beltdyn.machines.loads.load import LOADS, Load
@@ -72,7 +72,7 @@ def _speed(drive: Drive | None, data: Mapping[str, Any], location: Location) -> 
     if drive is None or drive.driver is None or location[0] != "pulley":
         return 0.0
     try:
-        number = drive.number_of(value_at(data, (*location[:2], "name")))
+        number = pulley_at(drive, data, location)
     except ModelError:
         return 0.0
     radii, end = np.abs(drive.path.radii), drive.simulation.end

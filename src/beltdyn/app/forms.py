@@ -292,6 +292,11 @@ def value_at(data: Any, location: Location) -> Any:
     return data
 
 
+def pulley_at(drive: Drive, data: Mapping[str, Any], location: Location) -> int:
+    """Number of the pulley to which a location belongs: a drive counts counter-clockwise, a file in either order."""
+    return drive.number_of(value_at(data, (*location[:2], "name")))
+
+
 def _tagged(locations: ErrorLocation, data: Mapping[str, Any], location: Location) -> Location:
     """The location as errors have it: with the kind behind each group that has one."""
     tagged: Location = ()

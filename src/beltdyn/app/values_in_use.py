@@ -3,7 +3,7 @@
 from collections.abc import Mapping
 from typing import Any
 
-from beltdyn.app.forms import value_at
+from beltdyn.app.forms import pulley_at
 from beltdyn.errors import ModelError
 from beltdyn.model import Drive, estimate_at_rest, prepare
 from beltdyn.model.pulley import flat_friction_on
@@ -33,8 +33,8 @@ def in_use(drive: Drive | None, data: Mapping[str, Any], location: Location) -> 
 def _part(drive: Drive, data: Mapping[str, Any], location: Location) -> tuple[Any, Location]:
     """A part of the completed drive, and the rest of a location in it."""
     completed, group = drive.completed, location[0]
-    if group == "pulley":  # a drive has its pulleys counter-clockwise, a file in either order
-        return completed.pulleys[drive.number_of(value_at(data, (*location[:2], "name")))], location[2:]
+    if group == "pulley":
+        return completed.pulleys[pulley_at(drive, data, location)], location[2:]
     if group == "tensioner":
         return completed.tensioners[int(location[1])], location[2:]
     if group == "simulation":
