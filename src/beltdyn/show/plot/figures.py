@@ -23,7 +23,7 @@ from beltdyn.results.cycles import ends_at_standstill
 from beltdyn.results.schema import runs_steadily
 from beltdyn.show.plot.gaps import explain_empty, first_failure, gaps, mark_isolated
 from beltdyn.show.plot.headline import headlines, overlay, write_headline
-from beltdyn.show.plot.print_style import PRINT, SCREEN, figure_style, rules
+from beltdyn.show.plot.print_style import PRINT, SCREEN, figure_style, require_style, rules
 from beltdyn.show.plot.style import one_panel, show_enough, styled
 
 P = ParamSpec("P")
@@ -278,8 +278,8 @@ def save_all(
     >>> [path.name for path in bd.plot.save_all(run, "figures", figures=["speeds"])]
     ['speeds.png']
     """
-    with figure_style(style):  # an unknown one is refused before anything is drawn
-        results = [run] if isinstance(run, Result) else list(run)
+    require_style(style)
+    results = [run] if isinstance(run, Result) else list(run)
     for result in results:
         if isinstance(result, Run):
             result.require_output()
@@ -295,7 +295,7 @@ def save_all(
             raise ModelError(f"figure {name!r} is unknown. Choose from {', '.join(known)}.")
         require_results(name, results)
     choice = Choice(None if pulley is None else _number(results, pulley), variable)
-    paths = {name: Path(folder) / f"{name}.{_FORMATS.get(style, '')}" for name in chosen}
+    paths = {name: Path(folder) / f"{name}.{_FORMATS[style]}" for name in chosen}
     for path in paths.values():
         require_replaceable(path, is_marked, overwrite)
     with Parts(refuses=True) as parts:

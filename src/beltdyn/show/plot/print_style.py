@@ -90,6 +90,12 @@ def prints() -> bool:
     return _style.get() == PRINT
 
 
+def require_style(name: str) -> None:
+    """Refuse a name that is none of a style."""
+    if name not in STYLES:
+        raise ModelError(f'style = "{name}" is unknown. Choose {" or ".join(STYLES)}.')
+
+
 @contextmanager
 def figure_style(name: str) -> Iterator[None]:
     """Draw all figures in a style meanwhile.
@@ -112,8 +118,7 @@ def figure_style(name: str) -> Iterator[None]:
     >>> print(f"{25.4 * ax.figure.get_figwidth():.0f} mm")
     84 mm
     """
-    if name not in STYLES:
-        raise ModelError(f'style = "{name}" is unknown. Choose {" or ".join(STYLES)}.')
+    require_style(name)
     before = _style.set(name)
     try:
         yield
