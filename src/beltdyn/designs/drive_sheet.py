@@ -538,7 +538,7 @@ class _DriveSheet:
         paths = [self._path_at(0, position) for position in positions.tolist()]
         hub = [tension * (after - before) for tension, (before, after) in zip(tensions.tolist(), paths, strict=True)]
         rates = [float((before - after) @ way) for (before, after), (_, way) in zip(paths, places, strict=True)]
-        turns, units, force = one.turns, "rad" if one.turns else "m", "N m" if one.turns else "N"
+        turns, units, force = one.turns, "rad" if one.turns else "m", one.force_unit
         self.coordinates["state"] = (Variable(_STATE, "1", "Position", "str"), list(rows))
         self.variables |= {
             "state_belt_length": (Variable(_STATE, "m", "Belt length"), lengths),

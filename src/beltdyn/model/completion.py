@@ -181,7 +181,7 @@ def _asked(given: Given, nominal: str | None, path: Path) -> str:
     carrier = next((one for one in carriers if one.tensioner.pulley == nominal), None)
     if carrier is None:
         return f"belt.installed_tension = {tension}"
-    unit = "N m" if carrier.tensioner.turns else "N"
+    unit = carrier.tensioner.force_unit
     return f'preload = {carrier.force(0.0):.4g} {unit} of the tensioner of "{nominal}" is a tension of {tension}, which'
 
 

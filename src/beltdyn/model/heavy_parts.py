@@ -77,7 +77,7 @@ def heavy_tensioner(prepared: Prepared) -> Finding | None:
         pulls = -mass * float(gravity @ carrier.place(position)[1])
         if carrier.presses or not pulls > max(pushes, 0.0):
             continue
-        unit, needed = "N m" if tensioner.turns else "N", beyond(carrier.force(0.0), carrier.force(0.0) + pulls, 3)
+        unit, needed = tensioner.force_unit, beyond(carrier.force(0.0), carrier.force(0.0) + pulls, 3)
         return Finding(
             f'the weight of the tensioner of "{tensioner.pulley}" pulls it from the belt with {plain(pulls)} {unit}; '
             f"where the belt has its tension, its spring pushes with {plain(pushes)} {unit}.",

@@ -363,7 +363,7 @@ def _off_nominal(drive: Drive, installation: Installation) -> Iterator[Finding]:
         one, there, nominal = carrier.tensioner, carrier.force(position), carrier.force(0.0)
         if not abs(there - nominal) > _OFF_NOMINAL * abs(nominal):
             continue
-        unit = "N m" if one.turns else "N"
+        unit = one.force_unit
         leverage = abs(float(drive.path.gradient(carrier.pulley) @ carrier.place(0.0)[1]))
         yield Finding(
             f"the tensioner of {one.pulley} rests {one.written(position)} from the given center of its pulley, where "
@@ -382,7 +382,7 @@ def _light_preload(drive: Drive, installation: Installation) -> Iterator[Finding
     if name is None or force is None or not installation.tension < _LIGHT * 0.5 * force:
         return
     carrier = next(one for one in prepare(drive).carriers if one.tensioner.pulley == name)
-    unit, usual, preload = "N m" if carrier.tensioner.turns else "N", 0.5 * force, carrier.force(0.0)
+    unit, usual, preload = carrier.tensioner.force_unit, 0.5 * force, carrier.force(0.0)
     yield Finding(
         f"preload = {preload:.4g} {unit} of the tensioner of {name} gives {installation.tension:.4g} N, but the "
         f"length of this belt is measured under {usual:.4g} N.",

@@ -342,7 +342,7 @@ def _no_balance(situation: _Situation, start: float) -> str:
     one, excess, tension = situation.carrier, situation.excess(start), situation.belt.installed_tension
     name = one.tensioner.pulley
     if tension is not None:
-        unit = "N m" if one.tensioner.turns else "N"
+        unit = one.tensioner.force_unit
         return (
             f'belt.installed_tension = {tension:.5g} N does not balance the tensioner of "{name}": its spring gives '
             f"{one.force(start):.5g} {unit}, that tension needs {one.force(start) - excess:.5g} {unit}. Set its "

@@ -369,7 +369,7 @@ def _tensioners(at: "xr.Dataset", where: str, result: Result) -> Table:
     for one, place, force in zip(
         result.drive.moving_tensioners, at["tensioner_position"].values, at["tensioner_force"].values, strict=True
     ):
-        unit = "N m" if one.turns else "N"
+        unit = one.force_unit
         stops = " to ".join(one.written(stop) for stop in one.stops or ()) or "none"
         place = place if abs(place) > _NOTHING else 0.0
         rows.append((one.pulley, one.written(float(place)), f"{plain(float(force), 4)} {unit}", stops))

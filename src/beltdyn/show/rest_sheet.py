@@ -464,7 +464,7 @@ def _tensioners(drive: Drive, installation: Installation) -> list[tuple[str, ...
     others = _others(drive, installation, carriers)
     for carrier, position, other in zip(carriers, installation.tensioner_positions.tolist(), others, strict=True):
         tensioner = carrier.tensioner
-        unit = "N m" if tensioner.turns else "N"
+        unit = tensioner.force_unit
         rows.append(
             (
                 tensioner.pulley,

@@ -246,6 +246,11 @@ class MovingTensioner(Tensioner):
             "tension after friction is left out. Define it, or give the tensioner no dry friction."
         )
 
+    @property
+    def force_unit(self) -> str:
+        """Unit of forces on q."""
+        return "N m" if self.turns else "N"
+
     def written(self, position: float) -> str:
         """Format a position, m or rad, with its unit."""
         return f"{np.degrees(position):.4g}°" if self.turns else f"{position:.4g} m"
