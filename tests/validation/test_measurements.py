@@ -6,7 +6,7 @@ from types import ModuleType
 
 import pytest
 
-SCRIPT = Path(__file__).parents[2] / "docs" / "measure.py"
+SCRIPT = Path(__file__).parents[2] / "docs" / "scripts" / "measure.py"
 
 
 def loaded() -> ModuleType:

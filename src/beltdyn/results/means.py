@@ -150,7 +150,7 @@ class SpanSummary:
     --------
     >>> span = bd.summarize(run).spans[0]
     >>> print(f"{span.name}: {span.lowest:.1f} to {span.highest:.1f} N")
-    driver-driven: 27.5 to 28.2 N
+    driver-driven: 27.4 to 27.7 N
     """
 
     name: str

@@ -7,12 +7,12 @@ from typing import Annotated, NamedTuple, get_type_hints
 import numpy as np
 
 from beltdyn.arrays import FloatArray, IntArray, blank, record
-from beltdyn.contact.contact_zone import combine, fill_bernstein
+from beltdyn.contact.contact_zone import combine, fill_bernstein, fill_bernstein_rates
 from beltdyn.contact.law import PulleyState
-from beltdyn.elements import ELEMENTS
 from beltdyn.kernel import kernel
 from beltdyn.system.arrays import PENALTY_ENERGY, SPRING_ENERGY, BodyForces, System
 from beltdyn.system.element_state import element_workspace
+from beltdyn.system.state import element_kind
 
 # Wrap angle of the belt on a pulley, from the first place where it touches to the last
 
@@ -181,6 +181,10 @@ class Samples(NamedTuple):
     """Of the sampling points, m/s, shape (n c, 2)."""
     bending: float
     """N m^2: times the square of the curvature, what a bent belt takes off the axial force of its centerline."""
+    mean: FloatArray
+    """Weights of the sampling points in the mean over a curve, shape (c,)."""
+    transmitted: FloatArray
+    """Weights of the same in the force that a curve transmits, shape (curves of an element, c)."""
     weight: FloatArray
     """Length of the free belt in each span."""
     is_open: bool
@@ -237,8 +241,27 @@ def _bending(system: System) -> float:
     A span that pulls with T is an elastica: its axial force is T - EI kappa^2 / 2, and the stretch that elements take
     for the axial force differs by e EI kappa^2.
     """
-    kind = next(kind for kind in ELEMENTS.values() if kind.element is type(system.element))
-    return float(system.element.section.bending * (0.5 - kind.bent_strain))
+    return float(system.element.section.bending * (0.5 - element_kind(system).bent_strain))
+
+
+def _transmitted(system: System) -> FloatArray:
+    """Weights of the points of a curve in the force that it transmits, shape (curves of an element, points).
+
+    A curve transmits the integral of N dS, with the axial force N and the shape function S that moves its end. Within
+    coarse elements beside arcs N swings about that force, and the swing has a mean. Points at the ends of a cubic,
+    where dS vanishes, cannot tell: there the force is the mean.
+    """
+    kind, (points, weights) = element_kind(system), system.contact
+    shares = np.empty((kind.curves, points.size))
+    for curve, control in enumerate(kind.control(1.0)):
+        first = int(np.flatnonzero(control[0])[0])
+        end = control[:, first + 1 :] @ np.asarray(kind.shift)[first + 1 :]
+        for point, xi in enumerate(points):
+            rates = np.empty(end.size)
+            fill_bernstein_rates(xi, rates)
+            shares[curve, point] = weights[point] * (rates @ end)
+    total = shares.sum(axis=1, keepdims=True)
+    return np.where(total > 0.5, shares / np.where(total > 0.5, total, 1.0), weights / weights.sum())
 
 
 def new_samples(system: System) -> Samples:
@@ -249,6 +272,8 @@ def new_samples(system: System) -> Samples:
         speed=np.zeros(points),
         velocity=np.zeros((points, 2)),
         bending=_bending(system),
+        mean=system.contact.weights / system.contact.weights.sum(),
+        transmitted=_transmitted(system),
         weight=np.zeros(span_count(system)),
         is_open=_is_open(system),
         leaving=np.cumsum(system.pulleys.beside == 0) - 1,

@@ -282,10 +282,11 @@ def _observe_spans(system: System, samples: Samples, result: Observations, k: in
                 tension += share * samples.tension[row]
                 speed += share * samples.speed[row]
             if row % points == 0 and _is_free(row, points, samples, result, k):
-                end, share = _mean(system, row, points, samples.tension), system.length[row // (points * curves)]
+                share = system.length[row // (points * curves)]
+                end = _over_curve(samples.transmitted[row // points % curves], samples.tension, row)
                 free_length += share
                 free_tension += share * end
-                free_speed += share * _mean(system, row, points, samples.speed)
+                free_speed += share * _over_curve(samples.mean, samples.speed, row)
                 start = end if largest < least else start
                 largest, least = max(largest, end), min(least, end)
             continue
@@ -326,13 +327,12 @@ def _is_free(first: int, points: int, samples: Samples, result: Observations, k:
 
 
 @kernel(inline=True)
-def _mean(system: System, first: int, points: int, values: FloatArray) -> float:
-    """Mean over a curve: within coarse elements at the ends of arcs, the tension of points swings about it."""
-    total = weight = 0.0
-    for point in range(points):
-        total += system.contact.weights[point] * values[first + point]
-        weight += system.contact.weights[point]
-    return total / weight
+def _over_curve(weights: FloatArray, values: FloatArray, first: int) -> float:
+    """Weighted sum over the points of a curve, the first of which has a row."""
+    total = 0.0
+    for point in range(weights.size):
+        total += weights[point] * values[first + point]
+    return total
 
 
 @kernel(inline=True)

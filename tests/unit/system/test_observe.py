@@ -66,9 +66,26 @@ def test_potential_energy_falls_by_the_weight_of_what_moves(
 
 def test_tension(fine: Drive, seen: tuple[float, Observations]) -> None:
     expected = install(fine).tension
-    estimate = 5e-3  # bending stiffness and round corners, which the estimate leaves out
+    estimate = 6e-3  # bending stiffness and round corners, which the estimate leaves out: 5.5e-3 with 480 elements
     np.testing.assert_allclose(seen[1].span_tension[0], expected, rtol=estimate)
     np.testing.assert_allclose(seen[1].belt_tension[0], expected, rtol=0.05)  # spread of a cubic belt over its arcs
+
+
+@pytest.mark.parametrize(
+    ("discretization", "missing"), [("ancf", 1e-4), ("quintic", 1e-3), ("truss", 1e-4), ("three-node-beam", 1e-4)]
+)
+@pytest.mark.parametrize("elements", [36, 50])
+def test_spans_pull_at_hubs_on_coarse_meshes(drive: Drive, discretization: str, elements: int, missing: float) -> None:
+    """At rest each of two parallel spans pulls with half of the hub load, at its ends as on the mean.
+
+    The mean of an axial force that swings within elements beside arcs errs by up to 1.2 %, that of quintic ones, whose
+    bending swings too, by 0.3 %.
+    """
+    belt = drive.belt.model_dump() | {"elements": elements, "discretization": discretization}
+    system = drive_system(prepare(coarse := Drive(**drive.model_dump(by_alias=True) | {"belt": belt})))
+    here = see(system, (state := find_equilibrium(system, laid(system, coarse.path)).state).position, state.velocity)
+    for name in ("span_tension", "span_tension_at_start", "span_tension_at_end"):
+        np.testing.assert_allclose(getattr(here, name)[0], 0.5 * here.hub_force[0, 0, 0], rtol=missing, err_msg=name)
 
 
 @pytest.mark.parametrize("seen", [0.0], ids=["at rest"], indirect=True)

@@ -415,13 +415,14 @@ def test_a_varying_draw_of_a_pair_varies_the_tension() -> None:
 def test_rollers_swing_on_their_covers() -> None:
     """Frequency to 1 %, sqrt(2 K a / m); damping to 5 %, 3 pi / 64 eta a w / v, with little friction, which adds to it.
 
-    A damper c = 3 pi / 32 eta K a / v on the foundation loses what hysteresis does while the web passes.
+    A damper c = 3 pi / 32 eta K a / v on the foundation loses what hysteresis does while the web passes. On the same
+    mesh, that of the slope of friction found first, a Campbell diagram agrees; from mesh to mesh it moves by 3e-4.
     """
     mass, losses = 40.0, {"upper": 0.1, "lower": 0.05}
     little = {
         f"pulley[{name}].{key}": value for name in losses for key, value in (("friction", 0.03), ("torque", -1.0))
     }
-    run = bd.steady_state(bd.load(EXAMPLES / "calender.toml").with_(little))
+    run = bd.steady_state(bd.steady_state(bd.load(EXAMPLES / "calender.toml").with_(little)).drive)
     nips, prepared = bd.derived.nips(run), run.prepared
     found = bd.modes(run, count=30).dataset
     campbell = bd.campbell(run.drive, speed="40 rpm", count=30).dataset.isel(speed=0)
