@@ -40,7 +40,7 @@ ABSENT = r"belt\.compression_set|.*\.(mass|center_of_mass|moving_mass)|.*\.creep
 RUNS = r"simulation\.(?!duration).*|.*\.inertia|tensioner.*\.damping|.*\.(schedule|speed)\.(start|end)|.*_friction"
 TRAVELLING = r"(belt|contact)\.(integration|quadrature_points|sampling)|belt\.shear_correction"
 MOTION = (
-    r"pulley.*\.(torque|load|speed|harmonics|hub|friction).*|.*\.(damping|creep_ratio|standstill_creep|moment_arm)|"
+    r"pulley.*\.(torque|load|speed|harmonics|hub|friction).*|.*\.(damping|creep_ratio|standstill_creep|moment_arm|slip_radius)|"
     r"belt\..*(damping_time|loss_factor)|.*friction.*|belt\.wedge_angle|belt\.contact_stiffness|contact\.normal_law|rotation|simulation\.duration"
 )
 ALWAYS = (TEXTS, JUDGED, SOLD, OUT_OF_PLANE, ABSENT)

@@ -28,8 +28,8 @@ def look(drive: Drive) -> None:
 
 
 def balance(drive: Drive) -> None:
-    """Find the equilibrium of a drive, as `beltdyn static` does, on a coarse mesh."""
-    coarse = drive.replace(belt=drive.belt.replace(elements=min(drive.elements, COARSE)))
+    """Find the equilibrium of a drive, as `beltdyn static` does, on a coarse mesh of equal elements."""
+    coarse = drive.replace(belt=drive.belt.replace(elements=min(drive.belt.elements or COARSE, COARSE)))
     assert isinstance(equilibrium(coarse).warnings, list)
 
 
