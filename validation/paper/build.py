@@ -75,7 +75,8 @@ def build_paper(
     forecast = Forecast(cases, progress)
     runs = run_all(cases, folder / RUNS, forecast.runs)
     names = _timed(parts, runs)
-    runs.take_times(names, forecast.timed([runs[name].dataset.attrs["cpu_time"] for name in names], REPEATS))
+    expected = {name: float(runs[name].dataset.attrs["cpu_time"]) for name in names}
+    runs.take_times(names, folder / RUNS, forecast.timed(expected, REPEATS))
     sections = tuple(_section(part, runs) for part in parts)
     facts = _facts(time.perf_counter() - begun, folder, runs)
     write_page(folder / PAGE, sections, runs.failures, facts)

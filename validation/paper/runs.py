@@ -2,17 +2,21 @@
 
 from collections.abc import Callable, Iterable, Iterator, Mapping
 from pathlib import Path
+from tempfile import TemporaryDirectory
 
+import h5py
 import numpy as np
 
 from beltdyn.analyses import Analysis
 from beltdyn.arrays import FloatArray
-from beltdyn.designs.batch import analyse_all
+from beltdyn.designs.batch import analyse_all, simulate_all
+from beltdyn.designs.processes import Ending
+from beltdyn.errors import SimulationError
 from beltdyn.model import Drive
 from beltdyn.results import Run
 from beltdyn.results.atomic import make_folder
+from beltdyn.results.schema import attribute
 from beltdyn.solvers.run_progress import BatchProgress
-from beltdyn.transient.simulate import simulate
 from validation.paper.kept import open_kept
 
 REPEATS = 2
@@ -77,15 +81,20 @@ class Runs(Mapping[str, Run]):
     def take_times(
         self,
         names: Iterable[str],
+        folder: Path,
         progress: Callable[[BatchProgress], None] | None = None,
         repeats: int = REPEATS,
     ) -> None:
-        """Time some runs, one at a time and in turns, so that a change of the machine's speed meets them all.
+        """Take the processor times of some runs, side by side and in turns.
+
+        A core is as busy in all of them, and a change of the machine's speed from turn to turn meets them all.
 
         Parameters
         ----------
         names : iterable of str
             Names of runs, each of which is timed once however often it is named.
+        folder : Path
+            Where the timed runs are written for a while.
         progress : callable, optional
             Told of the runs.
         repeats : int
@@ -93,18 +102,21 @@ class Runs(Mapping[str, Run]):
 
         Raises
         ------
+        SimulationError
+            If a run fails.
         KeyboardInterrupt
             After Ctrl-C.
         """
         distinct = list(dict.fromkeys(map(self.name_of, names)))
-        drives = [_without_outputs(self[name].drive) for name in distinct]
+        drives = {name: _without_outputs(self[name].drive) for name in distinct}
         times = np.zeros((repeats, len(drives)))
-        for done, (turn, number) in enumerate(np.ndindex(*times.shape)):
-            if progress is not None:
-                progress(BatchProgress(done, times.size, {Path(distinct[number]): 0.0}, kind="timed runs"))
-            times[turn, number] = _cpu_time(drives[number])
-        if progress is not None:
-            progress(BatchProgress(times.size, times.size, {}, kind="timed runs"))
+        for turn in range(repeats):
+
+            def tell(batch: BatchProgress, before: int = turn * len(drives)) -> None:
+                if progress is not None:
+                    progress(BatchProgress(before + batch.done, times.size, batch.running, kind="timed runs"))
+
+            times[turn] = _cpu_times(drives, folder, tell)
         self._times |= dict(zip(distinct, times.T, strict=True))
 
     def cpu_times(self, names: Iterable[str]) -> dict[str, FloatArray]:
@@ -118,12 +130,28 @@ def _without_outputs(drive: Drive) -> Drive:
     return drive.replace(simulation=settings.replace(output_interval=settings.duration, field_interval=None))
 
 
-def _cpu_time(drive: Drive) -> float:
+def _cpu_times(drives: Mapping[str, Drive], folder: Path, progress: Callable[[BatchProgress], None]) -> list[float]:
+    """Processor times of runs side by side, s."""
+    with TemporaryDirectory(dir=folder) as place:
+        paths = {Path(place) / f"{name}.nc": drive for name, drive in drives.items()}
+        endings = simulate_all(paths, progress)
+        _end_if_interrupted(endings)
+        for ending in endings.values():
+            if ending.error:
+                raise SimulationError(ending.error)
+        return [_cpu_time(path) for path in paths]
+
+
+def _cpu_time(path: Path) -> float:
     """Processor time of a run, s."""
-    run = simulate(drive)
-    if run.status != "completed":
+    with h5py.File(path, "r") as file:
+        return attribute(file, "cpu_time", np.nan)
+
+
+def _end_if_interrupted(endings: Mapping[Path, Ending]) -> None:
+    """End all after Ctrl-C."""
+    if any(ending.status in ("interrupted", "not started") for ending in endings.values()):
         raise KeyboardInterrupt
-    return float(run.dataset.attrs["cpu_time"])
 
 
 def _with_fields(drive: Drive) -> Drive:
@@ -173,7 +201,6 @@ def run_all(
     paths = {name: folder / f"{name}.nc" for name in distinct}
     wanted = {paths[name]: _with_fields(drive) for name, drive in distinct.items()}
     endings = analyse_all(PAPER_RUN, wanted, progress, jobs)
-    if any(ending.status in ("interrupted", "not started") for ending in endings.values()):
-        raise KeyboardInterrupt
+    _end_if_interrupted(endings)
     failures = {name: endings[path].error for name, path in paths.items() if endings[path].error}
     return Runs({name: path for name, path in paths.items() if name not in failures}, drives, failures, same)

@@ -2,7 +2,7 @@
 
 A module has two functions: ``cases() -> dict[str, Drive]`` names what is to be run, and
 ``section(runs) -> Section`` judges the results. A third, ``timed(runs) -> list[str]``, names runs whose computing time
-it compares: these run again, one at a time.  `SECTIONS` lists the modules in the order of the page.
+it compares: these run again, in turns.  `SECTIONS` lists the modules in the order of the page.
 """
 
 from collections.abc import Mapping

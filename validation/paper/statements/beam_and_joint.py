@@ -210,7 +210,7 @@ def _effort(runs: Runs) -> Statement:
         criterion="In every repetition an iteration takes less than twice as long. It does not hold if it takes more "
         "in every one, and is undecided in between.",
         findings=[finding(case) for case in _CASES],
-        remark=f"Both forms were run {REPEATS} times more in turns, one run at a time and without outputs. Numbers are "
+        remark=f"Both forms were run {REPEATS} times more in turns, side by side and without outputs. Numbers are "
         "the median and the range of processor times.",
     )
 

@@ -296,7 +296,7 @@ def _time(runs: Runs, comparisons: Sequence[Comparison]) -> Statement:
         "shortest of theirs. Where they overlap it is undecided.",
         findings=_findings(comparisons, finding),
         remark=f"A check of our own: the paper gives no times, and says why. The two meshes on either side of a target "
-        f"were run {REPEATS} times more in turns, one run at a time and without outputs, and their times interpolated; "
+        f"were run {REPEATS} times more in turns, side by side and without outputs, and their times interpolated; "
         "numbers are the median and the range. Nodes that enter and leave contact end steps early, the more of them "
         "the fewer and heavier they are.",
     )

@@ -35,15 +35,19 @@ def test_a_share_grows_by_the_time_of_what_has_ended() -> None:
     assert shares[-1] == pytest.approx(0.75)
 
 
-def test_timed_runs_take_what_they_took_before() -> None:
+def test_timed_runs_take_what_they_took_before(monkeypatch: pytest.MonkeyPatch) -> None:
+    """In two turns, the long run first."""
+    monkeypatch.setattr("validation.paper.forecast.usable_cores", lambda: 2)
     told = list[BatchProgress]()
-    timed = Forecast({}, told.append).timed([3.0, 1.0], repeats=2)
-    for done in range(5):
-        timed(BatchProgress(done, 4, {}, kind="timed runs"))
+    timed = Forecast({}, told.append).timed({"long": 3.0, "short": 1.0}, repeats=2)
+    for turn in (0, 2):
+        timed(BatchProgress(turn, 4, {Path("long.nc"): 0.0}, kind="timed runs"))
+        timed(BatchProgress(turn + 1, 4, {Path("short.nc"): 0.0}, kind="timed runs"))
+    timed(BatchProgress(4, 4, {}, kind="timed runs"))
     assert [one.share for one in told] == pytest.approx([0.0, 3 / 8, 4 / 8, 7 / 8, 1.0], abs=0.01)
 
 
 def test_nothing_to_tell_and_nothing_to_time() -> None:
     forecast = Forecast({}, None)
     forecast.runs(BatchProgress(0, 0, {}))
-    forecast.timed([], 2)(BatchProgress(0, 0, {}))
+    forecast.timed({}, 2)(BatchProgress(0, 0, {}))

@@ -1,3 +1,4 @@
+from collections.abc import Callable, Mapping
 from pathlib import Path
 
 import numpy as np
@@ -5,8 +6,8 @@ import pytest
 import xarray as xr
 
 from beltdyn.designs.processes import Ending
+from beltdyn.errors import SimulationError
 from beltdyn.model import Drive, load
-from beltdyn.results import Run
 from beltdyn.solvers.run_progress import BatchProgress
 from validation.paper.runs import RunMissingError, Runs, run_all
 from validation.published import two_pulley
@@ -59,27 +60,48 @@ def kept(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> Runs:
     return Runs(paths, {"one": short(0.01), "two": short(0.02)}, {"bad": "why"}, {"first": "one"})
 
 
-def test_times_are_taken_in_turns_once_each_without_outputs(kept: Runs, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_times_are_taken_in_turns_once_each_without_outputs(
+    kept: Runs, monkeypatch: pytest.MonkeyPatch, tmp_path: Path
+) -> None:
     done: list[tuple[float, float]] = []
 
-    def simulate(drive: Drive) -> Run:
-        settings = drive.simulation
-        done.append((settings.duration, settings.output_interval))
-        return Run(xr.Dataset(attrs={"status": "completed", "cpu_time": float(len(done))}), drive)
+    def simulate_all(drives: Mapping[Path, Drive], progress: Callable[[BatchProgress], None]) -> dict[Path, Ending]:
+        for file, drive in drives.items():
+            progress(BatchProgress(len(done) % len(drives), len(drives), {file: 0.0}))
+            done.append((drive.simulation.duration, drive.simulation.output_interval))
+            xr.Dataset(attrs={"cpu_time": float(len(done))}).to_netcdf(file, engine="h5netcdf")
+        return dict.fromkeys(drives, Ending("completed"))
 
-    monkeypatch.setattr("validation.paper.runs.simulate", simulate)
+    monkeypatch.setattr("validation.paper.runs.simulate_all", simulate_all)
     told = list[BatchProgress]()
-    kept.take_times(["two", "one", "first", "two"], told.append, repeats=3)
+    kept.take_times(["two", "one", "first", "two"], tmp_path, told.append, repeats=3)
     assert done == [(0.02, 0.02), (0.01, 0.01)] * 3
-    assert [one.done for one in told] == list(range(7))
+    assert [one.done for one in told] == list(range(6))
     assert {(one.total, one.kind) for one in told} == {(6, "timed runs")}
+    assert not list(tmp_path.iterdir())
     times = kept.cpu_times(["two", "first"])
     np.testing.assert_array_equal(times["two"], [1.0, 3.0, 5.0])
     np.testing.assert_array_equal(times["first"], [2.0, 4.0, 6.0])
 
 
-def test_timing_that_is_interrupted_ends_all(kept: Runs, monkeypatch: pytest.MonkeyPatch) -> None:
-    interrupted = Run(xr.Dataset(attrs={"status": "interrupted"}), short(0.01))
-    monkeypatch.setattr("validation.paper.runs.simulate", lambda _: interrupted)
-    with pytest.raises(KeyboardInterrupt):
-        kept.take_times(["one"])
+@pytest.mark.parametrize(
+    ("ending", "error"),
+    [(Ending("interrupted"), KeyboardInterrupt), (Ending("failed", "it diverges"), SimulationError)],
+)
+def test_timing_that_is_interrupted_or_fails_ends_all(
+    kept: Runs, monkeypatch: pytest.MonkeyPatch, tmp_path: Path, ending: Ending, error: type[BaseException]
+) -> None:
+    monkeypatch.setattr("validation.paper.runs.simulate_all", lambda drives, _: dict.fromkeys(drives, ending))
+    with pytest.raises(error):
+        kept.take_times(["one"], tmp_path)
+
+
+@pytest.mark.slow
+def test_processor_times_of_runs_side_by_side(tmp_path: Path) -> None:
+    """A run twice as long takes longer in each turn."""
+    runs = run_all({"one": short(0.1), "two": short(0.4)}, tmp_path)
+    runs.take_times(["one", "two"], tmp_path)
+    times = runs.cpu_times(["one", "two"])
+    assert times["one"].shape == (2,)
+    assert (times["one"] > 0.0).all()
+    assert (times["one"] < times["two"]).all()
