@@ -7,6 +7,8 @@ STAMP := .venv/.installed
 SHIPPED := src/beltdyn/kernel/shipped
 PARALLEL := --numprocesses auto --dist worksteal
 BY_FILE := --numprocesses auto --dist loadfile
+# s, a test that computes hundreds of runs at first is no test that hangs
+LONG := --override-ini faulthandler_timeout=7200
 
 # processes that tests start would read all sources anew
 unexport PYTHONDONTWRITEBYTECODE
@@ -34,18 +36,19 @@ paper: install ## the paper's statements beside our results, in beltdyn-paper/pa
 test: install ## linters, types, layers, unit and verification tests
 	$(MAKE) --no-print-directory --jobs=2 lint quick
 
-lint: install ## linters, types, layers
+lint: install ## linters, types, layers, and that the tests of `make validate` can be read
 	$(BIN)/ruff check .
 	$(BIN)/ruff format --check .
 	$(BIN)/mypy
 	$(BIN)/lint-imports
+	$(BIN)/pytest -qqq --collect-only $(wildcard tests/validation)
 
 quick: install ## unit and verification tests but the slow ones
 	$(BIN)/pytest $(PARALLEL) -m "not slow" $(wildcard tests/unit tests/verification tests/fuzz)
 
 validate: install ## slow verification tests and comparisons with the literature
-	$(BIN)/pytest $(PARALLEL) -m slow $(wildcard tests/unit tests/verification tests/fuzz)
-	$(if $(wildcard tests/validation),$(BIN)/pytest $(BY_FILE) tests/validation)
+	$(BIN)/pytest $(PARALLEL) $(LONG) -m slow $(wildcard tests/unit tests/verification tests/fuzz)
+	$(if $(wildcard tests/validation),$(BIN)/pytest $(BY_FILE) $(LONG) tests/validation)
 	$(MAKE) compatibility
 
 compatibility: ## kernels with the oldest Numba, the last one known and the newest, each in an environment of its own
