@@ -8,7 +8,7 @@ from nicegui.elements.mixins.validation_element import ValidationElement
 
 from beltdyn.app import placing
 from beltdyn.app.beginnings import edits_of_entry, edits_of_group, edits_of_kind
-from beltdyn.app.forms import Field, fields, in_units, kinds, shown, unit_in, value_at
+from beltdyn.app.forms import Field, fields, in_units, in_words, kinds, shown, unit_in, value_at
 from beltdyn.app.profile_change import edits_of_profile
 from beltdyn.app.session import Session
 from beltdyn.app.values_in_use import in_use
@@ -170,7 +170,7 @@ class FormView:
 
     def _label(self, field: Field) -> str:
         """The name of a choice, with what holds where it is left open."""
-        name, value = _in_words(field.key), self._in_use(field)
+        name, value = field.label, self._in_use(field)
         if not value or self._shown(field) is not None:
             return name
         return f"{name} ({'default' if value == field.default else 'in use'}: {value})"
@@ -178,7 +178,7 @@ class FormView:
     def _build_field(self, row: Row) -> None:
         field = row.field
         assert field is not None
-        label, units = field.key.replace("_", " "), self._session.units
+        label, units = field.label, self._session.units
         usual = field.usual(units)
         if field.form == "flag":
             widget: Any = ui.checkbox(label, on_change=lambda event: self._enter(field, event.value))
@@ -206,11 +206,9 @@ class FormView:
     def _build_group(self, row: Row) -> None:
         assert row.field is not None
         if not row.kinds:
-            widget: Any = ui.checkbox(
-                _in_words(row.field.key), on_change=lambda event: self._give(row.location, event.value)
-            )
+            widget: Any = ui.checkbox(row.field.label, on_change=lambda event: self._give(row.location, event.value))
         else:
-            widget = self._kinds(row, _in_words(row.field.key), clearable=True)
+            widget = self._kinds(row, row.field.label, clearable=True)
         with widget:
             ui.tooltip(row.field.hint).props("max-width=320px delay=600")
         self._widgets[row.location] = widget.mark(".".join(map(str, row.location)))
@@ -232,7 +230,7 @@ class FormView:
 
         group = value_at(self._session.document.data, row.location)
         widget = ui.select(
-            {kind: _in_words(kind) for kind in row.kinds},
+            {kind: in_words(kind) for kind in row.kinds},
             label=label,
             value=_kind_of(group) if _kind_of(group) in row.kinds else None,
             clearable=clearable,
@@ -251,7 +249,7 @@ class FormView:
             return
         with button, ui.menu():
             for kind in row.kinds:
-                item = ui.menu_item(_in_words(kind), on_click=lambda kind=kind: add(kind))
+                item = ui.menu_item(in_words(kind), on_click=lambda kind=kind: add(kind))
                 item.mark(f"add:{key}:{kind}")
 
     def _build_more(self, row: Row) -> None:
@@ -282,11 +280,6 @@ class FormView:
     def _give(self, location: Location, given: bool) -> None:
         if not self._filling and given != (value_at(self._session.document.data, location) is not None):
             self._apply(edits_of_group(self._session.document.data, location) if given else [Edit("remove", location)])
-
-
-def _in_words(kind: str) -> str:
-    """The name of a kind without underscores."""
-    return kind.replace("_", " ")
 
 
 def _kind_of(group: Any) -> str | None:

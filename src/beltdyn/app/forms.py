@@ -167,6 +167,8 @@ class Field(NamedTuple):
     """SI unit of what a profile gives over time."""
     example: Any = None
     """A usual number of a required key, where its kind names one."""
+    label: str = ""
+    """The key in words."""
 
     @property
     def key(self) -> str:
@@ -352,7 +354,19 @@ def _field(
         value,
         described_unit(hint) if form == "group" else "",
         next(iter(schema.get("examples", ())), None),
+        _label(data, location),
     )
+
+
+def in_words(key: str) -> str:
+    """A key or the name of a kind without underscores."""
+    return key.replace("_", " ")
+
+
+def _label(data: Mapping[str, Any], location: Location) -> str:
+    """A key in words; the number of a profile that is sold by ribs counts belts, where these are V-belts."""
+    entry = entry_of(value_at(data, ("belt", "profile"))) if location == ("belt", "ribs") else None
+    return f"{entry.piece}s" if entry is not None else in_words(str(location[-1]))
 
 
 def _choices(schema: Mapping[str, Any]) -> tuple[str, ...]:

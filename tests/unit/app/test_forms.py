@@ -39,6 +39,14 @@ def test_a_belt_is_asked_for_the_keys_of_its_profile(profile: str) -> None:
     assert "nominal_length" not in toothed
 
 
+@pytest.mark.parametrize(("profile", "label"), [("PK", "ribs"), ("SPB", "belts"), ("XPZ", "belts")])
+def test_what_a_profile_is_counted_in(profile: str, label: str) -> None:
+    """V-belts have no ribs; a key of any other group has its own name."""
+    (counted,) = (one for one in fields({"belt": {"profile": profile}}, ("belt",)) if one.key == "ribs")
+    assert counted.label == label
+    assert {one.key: one.label for one in fields({"belt": {}}, ("contact",))}["creep_ratio"] == "creep ratio"
+
+
 @pytest.mark.parametrize("profile", ["EP 400/3 5+2", "a profile of a catalogue of one's own"])
 def test_a_profile_that_is_not_listed_is_shown(profile: str) -> None:
     shown = next(one for one in fields({"belt": {"profile": profile}}, ("belt",)) if one.key == "profile")
