@@ -25,4 +25,4 @@ class WheelHook(BuildHookInterface[Any]):
         lacks_kernels = build_data.get("infer_tag") and not any(name.endswith(".kernel") for name in names)
         if "beltdyn/__init__.py" not in names or lacks_kernels:
             Path(artifact_path).unlink()
-            raise RuntimeError("The wheel lacks beltdyn or its compiled kernels. See `packages` and `artifacts`.")
+            raise RuntimeError("The wheel lacks beltdyn or its compiled kernels. See its packages in pyproject.toml.")

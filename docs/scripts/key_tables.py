@@ -67,7 +67,7 @@ def kinds(registry: Mapping[str, Any]) -> str:
         "class|`kind`||keys",
         (
             (
-                f"`bd.{part.__name__}`",
+                f"`bd.model.{part.__name__}`",
                 f"`{name}`",
                 _purpose(part),
                 ", ".join(f"`{key}`" for key in list(part.keys()) if key != "kind"),

@@ -301,7 +301,7 @@ def new_step(method: Method, start: float, length: float, stop: float) -> Step:
 def try_step(
     system: System, settings: Settings, method: Method, state: IntegratorState, step: Step, equations: Equations
 ) -> int:
-    """Solve the equations of motion at the end of a step, from the first guess of `alpha_predictor`.
+    """Solve the equations of motion at the end of a step, from the first guess of `predict`.
 
     The unknown is the change of the position.  Where a change jumps over a kink of contact or friction, the residual
     along it turns against it; then only the part up to the balance is kept: forces of friction and contact resist

@@ -1,9 +1,9 @@
 """Whether a belt flutters where it slides: how far vibrations could grow in a run.
 
 While a belt slides, vibrations near the frequency of the belt on its penalty springs may take energy from what drives
-the pulley and grow (`theory.sliding_flutter`).  How fast, the equations of motion say, linearized at states of the run;
-the integral of that over the time of sliding is the logarithm of the factor by which a vibration grows.  What grows in
-a piece of belt stops growing when that has passed the arc on which it slides.
+the pulley and grow (tests/verification/theory/test_sliding_flutter.py).  How fast, the equations of motion say,
+linearized at states of the run; the integral of that over the time of sliding is the logarithm of the factor by which a
+vibration grows.  What grows in a piece of belt stops growing when that has passed the arc on which it slides.
 """
 
 from collections.abc import Callable, Mapping

@@ -88,7 +88,7 @@ class FirstOrder:
         return y[..., : self._half], y[..., self._half : 2 * self._half], y[..., 2 * self._half :]
 
     def body_forces_at(self, time: FloatArray, position: FloatArray, velocity: FloatArray) -> BodyForces:
-        """Body forces at states; see `state_forces.body_forces_at`.
+        """Body forces at states; see `system.body_forces.body_forces_at`.
 
         The prescribed motion is written into the states: a solver's integral of it has its errors.
         """

@@ -1,4 +1,4 @@
-"""Hysteresis of stretch and bending in an element: its law is in `elements.hysteretic`.
+"""Hysteresis of stretch and bending in an element: its law is `elements.planar_curve.hysteretic`.
 
 Of an element with the reference length L it takes two strains, both of them means over the element: the elongation
 
@@ -8,7 +8,7 @@ beyond a strain eps_0 of reference, and the curvature kappa = (theta_j - theta_i
 at both ends.  Bending without tension shortens the centerline by b kappa^2, which is no stretch: it is added to eps.
 Means know no waves of the strain within an element, and a strain that passes from one element to the next loses the
 same on any travelling mesh.  In a staying mesh nothing passes from element to element, and means would jump there:
-bending is damped point by point (`elements.planar_curve_damping`), and rows are of stretch alone.
+bending is damped point by point (`elements.planar_curve.add_curve_damping`), and rows are of stretch alone.
 """
 
 from math import atan2, comb
