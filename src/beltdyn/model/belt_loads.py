@@ -53,7 +53,7 @@ class BeltLoads(NamedTuple):
         """Power drawn from the belt by each pulley, W, and belt speed, m/s, at the highest speed of the driver."""
         pulley, radii = self.pulleys[self.driver], path.radii
         if pulley.speed is None:
-            speed = pulley.driven_speed() * pulley.turning
+            speed = pulley.motor_speed
         else:
             values = pulley.speed.at(np.linspace(self.begin, self.end, _INSTANTS))
             speed = float(values[np.argmax(np.abs(values))])

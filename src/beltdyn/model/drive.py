@@ -395,7 +395,7 @@ class Drive(Part):
         if driver is None:
             return 1
         if driver.speed is None:
-            fastest = max((load.driven_speed for load in driver.load), key=abs)
+            fastest = driver.motor_speed
         else:
             values = driver.speed.at(np.linspace(self.simulation.begin, self.simulation.end, 1001))
             fastest = float(values[np.argmax(np.abs(values))])

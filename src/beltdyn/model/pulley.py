@@ -310,7 +310,12 @@ class Pulley(Part):
         """
         if self.speed is not None:
             return self.speed.largest(duration)
-        return max((abs(load.driven_speed) for load in self.load), default=0.0)
+        return abs(self.motor_speed)
+
+    @property
+    def motor_speed(self) -> float:
+        """Speed up to which the fastest of its motors drives the shaft, with its sign, rad/s; zero without a motor."""
+        return max((load.driven_speed for load in self.load), key=abs, default=0.0)
 
     @model_validator(mode="after")
     def _surface_holds_the_shaft(self) -> Self:

@@ -233,7 +233,7 @@ class Load(Part):
 
     @property
     def driven_speed(self) -> float:
-        """Speed up to which it drives the shaft, rad/s; zero for a load."""
+        """Speed up to which it drives the shaft, with its sign, rad/s; zero for a load."""
         return 0.0
 
 

@@ -179,8 +179,8 @@ class ServoMotor(Load):
 
     @property
     def driven_speed(self) -> float:
-        """The largest set speed, rad/s."""
-        return self.speed.largest()
+        """The set speed of largest magnitude, rad/s."""
+        return self.speed.extreme()
 
 
 GENERATOR = record(

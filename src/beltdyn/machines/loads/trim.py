@@ -202,8 +202,8 @@ class SpeedTrim(Trim):
 
     @property
     def driven_speed(self) -> float:
-        """The largest set speed, rad/s."""
-        return self.speed.largest()
+        """The set speed of largest magnitude, rad/s."""
+        return self.speed.extreme()
 
 
 @register

@@ -14,7 +14,7 @@ from typing import Any, ClassVar, Generic, Literal, NamedTuple, Self
 import numpy as np
 from pydantic import ConfigDict, Field, ValidationInfo, model_validator
 
-from beltdyn.arrays import Records, records
+from beltdyn.arrays import FloatArray, Records, records
 from beltdyn.kinds import register
 from beltdyn.machines.profiles.profile import SEGMENT, Profile, Value
 from beltdyn.parts.quantity import Angle, AngularAcceleration, AngularJerk, AngularSpeed, Time
@@ -219,8 +219,8 @@ class PositionTable(Profile[Value], Generic[Value]):
         """Begin and end of the motion, s; in between the acceleration has no jumps."""
         return self.times[0], self.times[-1]
 
-    def largest(self, duration: float = np.inf) -> float:
-        """As in the base, with the extremes of the parabolas between points."""
+    def _bends(self, end: float) -> FloatArray:
+        """Those of the parabolas between points."""
         segments = self.segments()
         bends = np.divide(
             -segments.slope, segments.curvature, out=np.zeros(len(segments)), where=segments.curvature != 0
@@ -228,5 +228,4 @@ class PositionTable(Profile[Value], Generic[Value]):
         with np.errstate(invalid="ignore"):
             inside = segments.start + bends
         ends = np.append(segments.start[1:], np.inf)
-        kept = (bends > 0.0) & (inside < ends) & (inside <= duration) & (inside > 0.0)
-        return max(super().largest(duration), float(np.max(np.abs(self.at(inside[kept])), initial=0.0)))
+        return np.asarray(inside[(bends > 0.0) & (inside < ends) & (inside <= end) & (inside > 0.0)])

@@ -14,6 +14,9 @@ from beltdyn.kernel import interpreted, kernel
 from beltdyn.kinds import Registry
 from beltdyn.parts.part import Part
 
+_ROUNDING = 1e-9
+"""Relative difference up to which two values of a profile count as equal."""
+
 Value = TypeVar("Value", bound=float, default=float)
 
 SEGMENT = record(
@@ -104,21 +107,32 @@ class Profile(Part, Generic[Value]):
         return np.asarray(interpreted(segment_value)(segments[k], since, t))
 
     def largest(self, duration: float = np.inf) -> float:
-        """Largest absolute value from time zero to a time, s.
+        """Largest absolute value from time zero to a time, s."""
+        return abs(self.extreme(duration))
+
+    def extreme(self, duration: float = np.inf) -> float:
+        """Value of largest magnitude from time zero to a time, s; of equal ones the first.
 
         It is at an end, or at the start of a piece, before or after a jump: within a piece all kinds are monotonic,
         and the last piece is constant.
         """
         starts = self.segments().start
         end = min(duration, max(2.0 * starts[-1], 1.0))
-        ends = np.concatenate([[0.0, end], starts[(starts > 0.0) & (starts < end)]])
-        return float(np.max(np.abs(self.around(ends, end))))
+        ends = np.concatenate([[0.0, *starts[(starts > 0.0) & (starts < end)], end], self._bends(end)])
+        values = self.around(np.sort(ends), end)
+        sizes = np.abs(values)
+        return float(values[np.argmax(sizes >= (1.0 - _ROUNDING) * sizes.max())])
+
+    def _bends(self, _end: float) -> FloatArray:
+        """Instants after time zero up to an end at which a piece has an extreme, s; by default none."""
+        return np.empty(0)
 
     def around(self, times: FloatArray, end: float = np.inf) -> FloatArray:
         """Values at times (s) and just after them, up to an end (s): before and after a jump."""
         with np.errstate(under="ignore"):  # just after zero
             after = np.nextafter(times, np.inf)
-        return self.at(np.concatenate([times, after[after <= end]]))
+        values = self.at(np.stack([times, np.minimum(after, end)], axis=1))
+        return np.asarray(values.ravel())
 
 
 PROFILES = Registry[type[Profile]]("profile", Profile)

@@ -131,6 +131,8 @@ def test_largest_value_sees_pulses_jumps_and_ends() -> None:
     assert pulse.largest(1.0) == pytest.approx(7.0)
     assert pulse.largest(0.4) == 1.0
     assert Step(time=0.5, before=9.0, value=-2.0).largest(1.0) == 9.0
+    assert Step(time=0.5, before=-9.0, value=9.0).extreme(1.0) == -9.0  # the first of equal ones
+    assert Step(time=0.5, before=1.0, value=-2.0).extreme(1.0) == -2.0
     assert Step(time=0.5, before=1.0, value=-2.0).largest(1.0) == 2.0
     assert Step(time=0.5, before=1.0, value=-2.0).largest(0.5) == 1.0
     assert CosineRampPublished(start=0.2, end=0.4, value=-3.0).largest(2.0) == pytest.approx(3.0)
