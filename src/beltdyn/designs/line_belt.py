@@ -127,9 +127,4 @@ def take_up(prepared: Prepared, variables: Values, wear: float | None) -> tuple[
 
 def _room(prepared: Prepared) -> float | None:
     """Travel that the frame leaves to the first tensioner along a line, m; None where it is not stated."""
-    for one in prepared.drive.tensioners:
-        if getattr(one, "direction", None) is not None:
-            travel: float | None = getattr(one, "travel", None)
-            stops = getattr(one, "stops", None)
-            return travel if travel is not None or stops is None else stops[1] - stops[0]
-    return None
+    return next((one.frame_travel for one in prepared.drive.tensioners if not one.turns), None)

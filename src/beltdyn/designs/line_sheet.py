@@ -412,9 +412,9 @@ def take_up_ratio(prepared: Prepared) -> float:
     """Change of the path's length over the travel of the first tensioner along a line; not a number without one."""
     path = prepared.installation.path
     for one in prepared.drive.tensioners:
-        along = getattr(one, "direction", None)
-        if along is not None:
-            return abs(float(np.dot(path.gradient(prepared.drive.carried(one)), along)))
+        if not one.turns:
+            pulley = prepared.drive.carried(one)
+            return abs(one.leverage(path.centers[pulley], path.gradient(pulley)))
     return np.nan
 
 

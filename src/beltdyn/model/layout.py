@@ -205,7 +205,7 @@ def fixed_tensioner(tensioners: tuple[Tensioner, ...]) -> FixedTensioner:
 
 def leverage(path: Path, pulley: int, tensioner: FixedTensioner) -> float:
     """Change of the path length per meter of take-up, m."""
-    return float(path.gradient(pulley) @ np.array(tensioner.direction))
+    return tensioner.leverage(path.centers[pulley], path.gradient(pulley))
 
 
 def with_take_up(tensioners: tuple[Tensioner, ...], distance: float) -> tuple[Tensioner, ...]:

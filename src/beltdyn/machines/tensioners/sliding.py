@@ -60,6 +60,11 @@ class SlidingTensioner(SpringTensioner):
     stop_stiffness: Stiffness | None = Field(None, gt=0, description="the stiffness of the stops, in N/m")
     stop_damping: Damping = Field(0.0, ge=0, description="the damping of the stops, in N*s/m")
 
+    @property
+    def frame_travel(self) -> float | None:
+        """As in the base."""
+        return super().frame_travel if self.travel is None else self.travel
+
     def leverage(self, center: FloatArray, gradient: FloatArray) -> float:
         """As in the base, along `direction`."""
         found = float(gradient @ np.array(self.direction))

@@ -129,7 +129,37 @@ class Tensioner(Part):
     if TYPE_CHECKING:
         kind: str
 
+    turns: ClassVar[bool] = False
+    """Whether it turns about a pivot, with numbers in rad and N m, in place of m and N along a line."""
+
     pulley: Name = Field(description="the name of its pulley")
+
+    @abstractmethod
+    def leverage(self, center: FloatArray, gradient: FloatArray) -> float:
+        """Lengthening of the path per motion of the pulley's center, dL/ds.
+
+        Parameters
+        ----------
+        center : ndarray, shape (2,), m
+            Nominal center of the pulley.
+        gradient : ndarray, shape (2,)
+            Derivative of the length of the path with respect to the center.
+
+        Returns
+        -------
+        float
+            Meter of path for a meter along the line, or along the arc of the arm turned counter-clockwise.
+
+        Raises
+        ------
+        ValueError
+            If the tensioner cannot tension the belt.
+        """
+
+    @property
+    def frame_travel(self) -> float | None:
+        """Travel that the frame leaves to a take-up, m or rad; None where it is not stated."""
+        return None
 
     @property
     def anchor(self) -> tuple[float, float] | None:
@@ -144,8 +174,6 @@ class MovingTensioner(Tensioner):
     N m about a pivot.
     """
 
-    turns: ClassVar[bool] = False
-    """Whether q is an angle: then numbers are in rad and N m, in place of m and N."""
     constants: ClassVar[np.dtype[np.void]]
     """Record of its constants, with a field `spring` where the force is that of `spring_force`."""
     center_at: ClassVar[Callable[[np.record, float], Center]]
@@ -176,27 +204,10 @@ class MovingTensioner(Tensioner):
             raise ValueError("stop_stiffness is missing, but stops are springs. Give stop_stiffness")
         return self
 
-    @abstractmethod
-    def leverage(self, center: FloatArray, gradient: FloatArray) -> float:
-        """Lengthening of the path per motion of the pulley's center, dL/ds.
-
-        Parameters
-        ----------
-        center : ndarray, shape (2,), m
-            Nominal center of the pulley.
-        gradient : ndarray, shape (2,)
-            Derivative of the length of the path with respect to the center.
-
-        Returns
-        -------
-        float
-            Meter of path for a meter along the line, or along the arc of the arm turned counter-clockwise.
-
-        Raises
-        ------
-        ValueError
-            If the tensioner cannot tension the belt.
-        """
+    @property
+    def frame_travel(self) -> float | None:
+        """By default from stop to stop."""
+        return None if self.stops is None else self.stops[1] - self.stops[0]
 
     @abstractmethod
     def values(self, center: FloatArray, gradient: FloatArray) -> Mapping[str, Any]:
@@ -296,3 +307,12 @@ class FixedTensioner(Tensioner):
     travel: Length | None = Field(
         None, gt=0, description="the travel that the frame leaves to a take-up, for the sheet, in m"
     )
+
+    @property
+    def frame_travel(self) -> float | None:
+        """As in the base."""
+        return self.travel
+
+    def leverage(self, center: FloatArray, gradient: FloatArray) -> float:
+        """As in the base, of whatever sign."""
+        return float(gradient @ np.array(self.direction))
