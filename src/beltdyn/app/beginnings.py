@@ -22,9 +22,9 @@ _OF_UNITS = {"rad/s": "1500 rpm", "N*m": "5 N m", "N": "100 N", "Pa": "5 MPa", "
 _OPPOSING = "-5 N m"
 """Torque on a pulley that turns counter-clockwise."""
 _TIMES = {"start": (0.02,), "end": (0.2,), "time": (0.1,), "times": (0.0, 0.2)}
-"""Instants of profiles, s; of shorter runs than `_USUAL_RUN` they are earlier."""
-_USUAL_RUN = 0.4
-"""s."""
+"""Instants of profiles, s; of shorter runs than `_USUAL_DURATION` they are earlier."""
+_USUAL_DURATION = 0.4
+"""Duration of a run, s, for which the instants of profiles are proposed as they stand."""
 _BY_SUPPLY = ("induction_motor",)
 """Loads whose speeds follow from the frequency of the supply."""
 _SHARES = {"cut_in_speed": 0.3, "synchronous_speed": 1.05}
@@ -151,8 +151,8 @@ def _example(data: Mapping[str, Any], location: Location) -> dict[str, Any]:
 def _usual(one: Field, data: Mapping[str, Any], drive: Drive | None) -> Any:
     """A usual value of a required key."""
     if one.key in _TIMES:
-        run = _USUAL_RUN if drive is None else min(drive.simulation.end - drive.simulation.begin, _USUAL_RUN)
-        instants = [run / _USUAL_RUN * instant for instant in _TIMES[one.key]]
+        run = _USUAL_DURATION if drive is None else min(drive.simulation.end - drive.simulation.begin, _USUAL_DURATION)
+        instants = [run / _USUAL_DURATION * instant for instant in _TIMES[one.key]]
         return instants if one.key == "times" else instants[0]
     if one.key in ("value", "values"):
         rises_to = _level(one, data, drive)

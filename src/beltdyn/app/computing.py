@@ -71,8 +71,9 @@ class Counter:
         self.tell((0, 0))
 
 
-_MODES = 6
-_MOST_TABS = 8
+_MODE_COUNT = 6
+"""Number of the lowest modes that are computed of a draft: as many as the page draws at most."""
+_MAX_TABS = 8
 """Number of tabs with a cached steady running."""
 
 
@@ -192,7 +193,7 @@ def _running(asked: Asked) -> Shown:
 def _modes(asked: Asked) -> Shown:
     from beltdyn.vibration.modes import modes
 
-    found = modes(_steady(asked).drive, about=_steady(asked), count=_MODES)
+    found = modes(_steady(asked).drive, about=_steady(asked), count=_MODE_COUNT)
     return sheet(found).parts, tuple(found.warnings), of_modes(found)
 
 
@@ -217,7 +218,7 @@ def _steady(asked: Asked) -> Run:
         run = steady_state(drive)
     _known.pop(asked.tab, None)
     _known[asked.tab] = known._replace(run=run)
-    while len(_known) > _MOST_TABS:
+    while len(_known) > _MAX_TABS:
         _known.pop(next(iter(_known)))
     return run
 

@@ -6,19 +6,20 @@ from typing import NamedTuple
 
 import numpy as np
 
-from beltdyn.app.scene import MILLIMETRES
+from beltdyn.app.scene import MILLIMETERS
 from beltdyn.model import Drive, Installation, Path
 from beltdyn.results import Result, Run, summarize
 from beltdyn.show.notebook import outline
 
-_POINTS = 240
+_TENSION_POINTS = 240
 """Points of the tension around the belt."""
-_MOST_SHAPES = 6
-_LIGHT = 0.5
+_MAX_SHAPES = 6
+"""Number of mode shapes drawn at most, those of the lowest modes: more would make the page long."""
+_LIGHT_DAMPING = 0.5
 """Damping ratio below which a mode can resonate."""
-_EVERY = 3
+_POINT_STRIDE = 3
 """Points of the belt for each that is drawn of a mode."""
-_DECADES = 1e3
+_UNLOADED_SAFETY = 1e3
 """Slip safety above which a pulley is as good as unloaded."""
 
 
@@ -131,7 +132,7 @@ def in_running(run: Run) -> Findings:
     summary = summarize(run)
     names = tuple(one.name for one in summary.pulleys)
     loads = [one.hub_load for one in summary.pulleys]
-    safeties = _up_to(_DECADES, (one.least_safety for one in summary.pulleys))
+    safeties = _up_to(_UNLOADED_SAFETY, (one.least_safety for one in summary.pulleys))
     balance, spans = summary.balance, summary.spans
     figures = []
     if balance.power_in > 0.0:
@@ -146,7 +147,7 @@ def in_running(run: Run) -> Findings:
         Column("tension ratio", "", _plain(one.tension_ratio for one in summary.pulleys)),
         Column("allowed ratio", "", _plain(one.allowed_tension_ratio for one in summary.pulleys)),
         *(
-            Column(name, "", tuple(_up_to(_DECADES, values)), run.drive.limits.least_slip_safety or 1.0)
+            Column(name, "", tuple(_up_to(_UNLOADED_SAFETY, values)), run.drive.limits.least_slip_safety or 1.0)
             for name, values in (
                 ("slip safety, own load", (one.own_load_safety for one in summary.pulleys)),
                 ("slip safety, all loads", (one.slip_safety for one in summary.pulleys)),
@@ -182,8 +183,8 @@ def of_modes(result: Result) -> Findings:
     from beltdyn.show.plot.vibration import shown_modes
 
     damping = result.dataset["damping_ratio"]
-    light = [number for number in shown_modes(result) if float(damping.sel(mode=number)) < _LIGHT]
-    shapes = tuple(_shape(result, number) for number in light[:_MOST_SHAPES])
+    light = [number for number in shown_modes(result) if float(damping.sel(mode=number)) < _LIGHT_DAMPING]
+    shapes = tuple(_shape(result, number) for number in light[:_MAX_SHAPES])
     if not shapes:
         return Findings()
     least = min(shapes, key=lambda one: one.damping)
@@ -261,7 +262,7 @@ def _along(run: Run) -> Around | None:
         return None
     _, tension, _ = along_belt(run, run.fields_at())
     path = run.drive.path
-    every = max(len(tension) // _POINTS, 1)
+    every = max(len(tension) // _TENSION_POINTS, 1)
     places = np.linspace(0.0, path.length, len(tension), endpoint=bool(run.drive.ends))
     if not run.drive.ends:
         places, tension = np.append(places, path.length), np.append(tension, tension[:1])
@@ -280,18 +281,18 @@ def _shape(result: Result, number: int) -> Shape:
     low, high = (drive.path.centers - reach).min(axis=0), (drive.path.centers + reach).max(axis=0)
     if drive.path.ends is not None:
         low, high = np.minimum(low, drive.path.ends.min(axis=0)), np.maximum(high, drive.path.ends.max(axis=0))
-    left, top = MILLIMETRES * float(low[0]), -MILLIMETRES * float(high[1])
-    width, height = (MILLIMETRES * float(one) for one in high - low)
-    points = "L".join(f"{x:.1f} {y:.1f}" for x, y in MILLIMETRES * belt[::_EVERY] * (1.0, -1.0))
+    left, top = MILLIMETERS * float(low[0]), -MILLIMETERS * float(high[1])
+    width, height = (MILLIMETERS * float(one) for one in high - low)
+    points = "L".join(f"{x:.1f} {y:.1f}" for x, y in MILLIMETERS * belt[::_POINT_STRIDE] * (1.0, -1.0))
     return Shape(
         float(one["frequency"]),
         float(one["damping_ratio"]),
         f"{one['kind'].values}: {one['moving_parts'].values}",
         (left, top, width, height),
-        outline(drive.path, lambda x, y: (MILLIMETRES * x, -MILLIMETRES * y), MILLIMETRES),
+        outline(drive.path, lambda x, y: (MILLIMETERS * x, -MILLIMETERS * y), MILLIMETERS),
         f"M{points}" + "Z" * (not drive.ends),
         tuple(
-            (MILLIMETRES * float(x), -MILLIMETRES * float(y), MILLIMETRES * abs(float(radius)), -float(angle))
+            (MILLIMETERS * float(x), -MILLIMETERS * float(y), MILLIMETERS * abs(float(radius)), -float(angle))
             for (x, y), radius, angle in zip(centers, drive.path.radii, angles, strict=True)
         ),
     )

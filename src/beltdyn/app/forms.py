@@ -23,7 +23,8 @@ SYSTEMS: Mapping[System, str] = MappingProxyType({"mm": "mm, rpm, N", "SI": "SI 
 _PLAIN = re.compile(r"[+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?")
 _NOT_CONVERTED = re.compile(r"±|\+/?-|\b(?:c?cw|(?:counter-)?clockwise)$")
 """Tolerances and senses of rotation are shown as they are given."""
-_DIGITS = 7
+_SIGNIFICANT_DIGITS = 7
+"""Significant digits of a value in a field: they hide rounding of the conversion of units. Messages have two fewer."""
 
 
 class Unit(NamedTuple):
@@ -64,7 +65,7 @@ def shown(value: Any, si: str, system: System) -> str:
     number = _number(value, si)
     if number is None or not si:
         return "" if value is None else repr(value) if isinstance(value, float) else str(value)
-    return f"{number / unit_in(system, si).size:.{_DIGITS}g}"
+    return f"{number / unit_in(system, si).size:.{_SIGNIFICANT_DIGITS}g}"
 
 
 def _number(value: Any, si: str) -> float | None:
@@ -99,7 +100,7 @@ def in_units(sentence: str, system: System) -> str:
     """A message or a hint with its lengths, speeds and angles in the units of the page."""
 
     def converted(numbers: str, unit: Unit) -> str:
-        return re.sub(_NUMBER, lambda number: f"{float(number[0]) / unit.size:.{_DIGITS - 2}g}", numbers)
+        return re.sub(_NUMBER, lambda number: f"{float(number[0]) / unit.size:.{_SIGNIFICANT_DIGITS - 2}g}", numbers)
 
     def measured(match: re.Match[str]) -> str:
         unit = unit_in(system, match["unit"].replace("kg m", "kg*m"))

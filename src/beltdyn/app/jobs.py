@@ -20,9 +20,9 @@ from beltdyn.show.tables import Facts, Table
 if TYPE_CHECKING:
     from beltdyn.app.watching import Glimpse
 
-_GRACE = 5.0
+_GRACE_PERIOD = 5.0
 """Time for a cancelled analysis to close its file, s."""
-_OFTEN = 0.1
+_PROGRESS_INTERVAL = 0.1
 """Interval of progress reports, s."""
 
 
@@ -41,7 +41,8 @@ class Step(NamedTuple):
 
 _DRAWN = ("configuration", "slip", "mode_shapes", "mode_shape")
 """Figures whose contents the page shows as charts."""
-_MOST_PICTURES = 2
+_MAX_PICTURES = 2
+"""Figures of a result on the page at most, beside those that it draws as charts: the report has all."""
 _OF_COMPUTATION = ("mesh", "computing")
 """Beginnings of names of facts about the computation."""
 _STARTING = Step(0.0, "starting", math.nan)
@@ -113,11 +114,11 @@ class Job:
     def close(self) -> None:
         """End the process at once."""
         self._stop.set()
-        self._process.join(_GRACE if self.outcome is not None else 0.0)
+        self._process.join(_GRACE_PERIOD if self.outcome is not None else 0.0)
         if self._process.is_alive():
             self._process.kill()
             self._process.join()
-        self._listener.join(_GRACE)
+        self._listener.join(_GRACE_PERIOD)
         self._heard.close()
         if self.outcome is None:
             self.outcome = Outcome("interrupted")
@@ -157,7 +158,7 @@ class _Teller:
     def tell(self, progress: Any) -> None:
         """Report progress, and take snapshots of a run."""
         now = time.perf_counter()
-        if now - self._last < _OFTEN:
+        if now - self._last < _PROGRESS_INTERVAL:
             return
         self._last = now
         if progress.phase == "integrating":
@@ -230,7 +231,7 @@ def _pictures(found: Any, parts: Parts) -> tuple[str, ...]:
     """The first figures of a result as a report has them, but for those that the page draws itself."""
     from beltdyn.show.plot.figures import FIGURES, Choice, chosen_by_default, data_uri, repeated
 
-    names = [name for name in chosen_by_default([found]) if name not in _DRAWN][:_MOST_PICTURES]
+    names = [name for name in chosen_by_default([found]) if name not in _DRAWN][:_MAX_PICTURES]
     drawn = (
         parts.done(lambda name=name: data_uri(FIGURES[name].arrange(found, Choice())), "", repeated([found], name))  # type: ignore[misc]
         for name in names

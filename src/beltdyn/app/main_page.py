@@ -13,7 +13,7 @@ from beltdyn.app.form_view import FormView
 from beltdyn.app.forms import SYSTEMS, Unit, in_units, unit_in
 from beltdyn.app.pulley_table import TableDialog
 from beltdyn.app.results_view import ResultsView
-from beltdyn.app.scene import MILLIMETRES, groups, scene
+from beltdyn.app.scene import MILLIMETERS, groups, scene
 from beltdyn.app.session import Session
 from beltdyn.app.workspace import EMPTY, STARTS, Example, Workspace, examples, thumbnail
 from beltdyn.errors import BeltdynError
@@ -69,7 +69,7 @@ class Canvas(Element, component="canvas.js"):
 
     def measure(self, unit: Unit) -> None:
         """Show lengths in a unit."""
-        self.props["unit"] = {"name": unit.shown, "size": MILLIMETRES * unit.size}
+        self.props["unit"] = {"name": unit.shown, "size": MILLIMETERS * unit.size}
         self.update()
 
     def fit(self) -> None:

@@ -23,14 +23,17 @@ from beltdyn.show.tables import Facts, Table
 _WIDTH, _HEIGHT = 400.0, 165.0
 """Size of the chart of tensions, in its own units."""
 _LEFT, _RIGHT, _TOP, _BASE = 40.0, 394.0, 28.0, 143.0
-_LINES = (11.0, 22.0)
+"""Edges of the area of the curve, in units of the chart: names stand above it, numbers to its left, and words below."""
+_NAME_LINES = (11.0, 22.0)
 """Where names of pulleys stand, on two lines lest they lie on each other."""
-_LONGEST = 14
+_MAX_NAME_LENGTH = 14
 """Letters of a name."""
-_TICKS = 4
-_LETTER = 5.6
+_TICK_INTERVALS = 4
+"""Intervals between the rules of the tension axis, at most before it is extended to whole steps."""
+_LETTER_WIDTH = 5.6
 """Width of a letter."""
-_BIG = 1e4
+_MAX_PLAIN_THOUSANDS = 1e4
+"""Size of a number from which on it is written as a power of ten, in thousands: below, it has at most seven digits."""
 
 
 def charts(found: Findings, system: System) -> str:
@@ -60,7 +63,7 @@ def number_in(value: float, unit: str, system: System) -> tuple[str, str]:
 def _digits(value: float) -> str:
     """A number with three or four digits, and never as a power of ten where it is a usual one."""
     if abs(value) >= 1e3:
-        return f"{value:.0f}" if abs(value) < _BIG * 1e3 else f"{value:.3g}"
+        return f"{value:.0f}" if abs(value) < _MAX_PLAIN_THOUSANDS * 1e3 else f"{value:.3g}"
     return f"{value:.3g}"
 
 
@@ -117,18 +120,18 @@ def tension_chart(around: Around, system: System) -> str:
 
 def _arcs(around: Around, axes: _Axes) -> Iterator[str]:
     """The arcs on pulleys, and the names that have room."""
-    taken = [-math.inf] * len(_LINES)
+    taken = [-math.inf] * len(_NAME_LINES)
     for name, begin, stop in around.arcs:
         left, right = axes.x(begin), axes.x(stop)
         size = f'width="{right - left:.1f}" height="{axes.base - _TOP}"'
         yield f'<rect class="bd-arc" x="{left:.1f}" y="{_TOP}" {size}/>'
-        label = shorten(name, _LONGEST)
-        half = 0.5 * _LETTER * len(label)
+        label = shorten(name, _MAX_NAME_LENGTH)
+        half = 0.5 * _LETTER_WIDTH * len(label)
         middle = min(max(0.5 * (left + right), _LEFT + half), _RIGHT - half)
         line = next((number for number, end in enumerate(taken) if middle - half > end), None)
         if line is not None:
             taken[line] = middle + half
-            at = f'x="{middle:.1f}" y="{_LINES[line]}"'
+            at = f'x="{middle:.1f}" y="{_NAME_LINES[line]}"'
             yield f'<text class="bd-tick" {at} text-anchor="middle">{escape(label)}</text>'
 
 
@@ -148,7 +151,7 @@ def _svg(box: str, kind: str, told: str, parts: Sequence[str]) -> str:
 def _nice(least: float, largest: float) -> tuple[float, float, float]:
     """Limits of an axis from zero, or from below where there is less, and the step of its numbers."""
     low, high = min(least, 0.0), max(largest, 1e-9)
-    rough = (high - low) / _TICKS
+    rough = (high - low) / _TICK_INTERVALS
     power = 10.0 ** math.floor(math.log10(rough))
     step = next(one * power for one in (1.0, 2.0, 2.5, 5.0, 10.0) if one * power >= rough * 0.999)
     return math.floor(low / step) * step, math.ceil(1.02 * high / step) * step, step
@@ -228,8 +231,11 @@ def _row(tag: str, cells: Sequence[str]) -> str:
 
 
 TITLES = {"rest": "At rest", "running": "Running", "modes": "Modes"}
-_PERCENT, _MINUTE = 0.01, 60.0
-_OFTEN, _SOON = 0.5, 2.0
+_PERCENT = 0.01
+"""One percent: the sliders of speed and load are in %, their factors are not."""
+_MINUTE = 60.0
+"""One minute, s: computing times from it on are shown in whole seconds."""
+_POLLING_INTERVAL, _BUSY_DELAY = 0.5, 2.0
 """Polling interval of a pending answer, and delay before its state is shown, s."""
 
 
@@ -272,7 +278,7 @@ class NumbersView:
             self._state = ui.label().classes("bd-state").props('role="status"').mark("state")
         self._box = ui.column().classes("w-full gap-2").mark("numbers")
         self._begun = 0.0
-        self._timer = ui.timer(_OFTEN, self._say_why, active=False)
+        self._timer = ui.timer(_POLLING_INTERVAL, self._say_why, active=False)
 
     def _slider(self, name: str, low: int, high: int) -> Slider:
         with ui.column().classes("gap-0 grow"):
@@ -361,11 +367,11 @@ class NumbersView:
             return
         counted = self._calculator.compiling
         self._bar.props(remove="indeterminate") if counted else self._bar.props("indeterminate")
-        self._bar.set_visibility(counted is not None or waited > _SOON)
+        self._bar.set_visibility(counted is not None or waited > _BUSY_DELAY)
         if counted:
             self._bar.value = counted[0] / counted[1]
             self._say(in_words(counted))
-        elif waited > _SOON:
+        elif waited > _BUSY_DELAY:
             self._say(f"computing …: {waited:.0f} s")
 
     def _say(self, text: str) -> None:

@@ -14,14 +14,16 @@ from beltdyn.parts.quantity import written_like
 from beltdyn.parts.toml_edits import Edit, Location
 
 _FIRST_RADIUS = 0.05
-_SMALLEST_RADIUS = 0.005
-_LARGEST_SHARE = 0.45
+"""Radius of the first pulley of a drive, m: its diameter is a fifth of the width of an empty canvas."""
+_MIN_RADIUS = 0.005
+"""Least radius of a new pulley that has little room, m; a tenth of it limits pulleys that are made smaller by hand."""
+_MAX_DISTANCE_SHARE = 0.45
 """Largest radius of a new pulley, over the distance of its center from other pulleys' surfaces."""
-_DISK = 0.02 * 2700.0
-"""Mass per square meter of an aluminum disk 20 mm thick, kg, assumed for a new pulley."""
-_ARM = 2.5
+_SURFACE_DENSITY = 0.02 * 2700.0
+"""Mass per area of an aluminum disk 20 mm thick, kg/m², assumed for a new pulley."""
+_ARM_RATIO = 2.5
 """Length of the arm of a new tensioner, over the radius of its pulley."""
-_TENSION = 300.0
+_DEFAULT_TENSION = 300.0
 """Default tension for the spring of a new tensioner, N."""
 DRIVER = {"kind": "cosine_ramp", "start": 0.02, "end": 0.2, "value": "1500 rpm"}
 
@@ -82,7 +84,7 @@ def _point(data: Mapping[str, Any], location: tuple[int | str, ...], given: obje
 
 def resize(data: Mapping[str, Any], number: int, radius: float) -> list[Edit]:
     """Set the radius of a pulley, m, or its diameter or teeth if these are given."""
-    one, radius = groups(data, "pulley")[number], max(radius, _SMALLEST_RADIUS / 10)
+    one, radius = groups(data, "pulley")[number], max(radius, _MIN_RADIUS / 10)
     if "teeth" in one and (toothed := toothing_in(data)) is not None:
         toothing, offset = toothed
         return [Edit("set", ("pulley", number, "teeth"), toothing.teeth_about(radius, offset))]
@@ -145,19 +147,21 @@ def new_tensioner(draft: Draft, number: int, kind: str, place: int) -> list[Edit
         gradient = (float(along[0]), float(along[1]))
     leverage = math.hypot(*gradient) or 1.0
     direction = [round(each / leverage, 4) for each in gradient]
-    tension = draft.drive.belt.installed_tension or _TENSION if draft.drive is not None else _TENSION
+    tension = draft.drive.belt.installed_tension or _DEFAULT_TENSION if draft.drive is not None else _DEFAULT_TENSION
     made: dict[str, Any] = {"kind": kind, "pulley": str(pulley.get("name", ""))}
     if kind == "fixed":
         made |= {"direction": direction}
     elif kind == "sliding":
         made |= {"direction": direction, "preload": f"{tension * leverage:.3g} N"}
     else:
-        arm = _ARM * one.radius
+        arm = _ARM_RATIO * one.radius
         pivot = [one.x - arm * direction[1], one.y + arm * direction[0]]
         made |= {"pivot": [float(f"{each:.4g}") for each in pivot], "preload": f"{tension * leverage * arm:.3g} N m"}
     edits = [Edit("insert", ("tensioner", place), made)]
     if kind != "fixed" and not pulley.get("mass"):
-        edits.append(Edit("set", ("pulley", number, "mass"), float(f"{_DISK * math.pi * one.radius**2:.2g}")))
+        edits.append(
+            Edit("set", ("pulley", number, "mass"), float(f"{_SURFACE_DENSITY * math.pi * one.radius**2:.2g}"))
+        )
     return edits
 
 
@@ -172,7 +176,7 @@ def rim(data: Mapping[str, Any], hub: Location) -> list[Edit]:
 
 def inertia_of_disk(radius: float) -> float:
     """Inertia of an aluminum disk of the size of a pulley, kg m^2."""
-    return float(f"{_DISK * math.pi / 2 * radius**4:.2g}")
+    return float(f"{_SURFACE_DENSITY * math.pi / 2 * radius**4:.2g}")
 
 
 def add(draft: Draft, x: float, y: float, base: Any = None) -> list[Edit]:
@@ -232,7 +236,7 @@ def _radius_at(found: Sequence[Circle], x: float, y: float) -> float:
     if not found:
         return _FIRST_RADIUS
     room = min(math.hypot(x - one.x, y - one.y) - one.radius for one in found)
-    radius = min(min(one.radius for one in found), max(_LARGEST_SHARE * 2 * room, _SMALLEST_RADIUS))
+    radius = min(min(one.radius for one in found), max(_MAX_DISTANCE_SHARE * 2 * room, _MIN_RADIUS))
     return float(f"{radius:.2g}")
 
 

@@ -58,7 +58,8 @@ _COLUMNS: Mapping[str, _Column] = MappingProxyType(
         **dict.fromkeys(("torque", "load"), _Column("torque", "N*m", "N m")),
     }
 )
-_MOST_ON_BACK = 3
+_MAX_OUTSIDE_PULLEYS = 3
+"""Pulleys on the back of the belt that are tried at most: the number of combinations grows steeply with them."""
 _KNOWN = "name, x, y, diameter or radius, side, inertia, speed, torque"
 
 
@@ -152,7 +153,7 @@ def _number(line: int, key: str, cell: str, si: str, unit: str) -> str:
 def _on_back(pulleys: Sequence[Mapping[str, Any]]) -> tuple[int, ...]:
     """Numbers of the fewest pulleys on the back with which a belt runs around all; none if no such are found."""
     data = parse_toml(EMPTY)
-    for count in range(min(len(pulleys), _MOST_ON_BACK) + 1):
+    for count in range(min(len(pulleys), _MAX_OUTSIDE_PULLEYS) + 1):
         for chosen in combinations(range(len(pulleys)), count):
             tried = [{**one, **({"side": "outside"} if place in chosen else {})} for place, one in enumerate(pulleys)]
             completed = [_completed(one, place == 0) for place, one in enumerate(tried)]

@@ -43,7 +43,7 @@ _SUFFIXES = {"table": (".csv",), "measured": (".csv",), "study": (".toml",), "co
 _RARE = ("at", "force_tolerance", "elements", "sobol", "settling", "friction", "tolerance", "wear", "light_load")
 """Options shown on request."""
 _QUOTED = re.compile(r'"([^"]+)"')
-_SLOWEST, _FASTEST = 0.3, 1.2
+_MIN_SPEED_RATIO, _MAX_SPEED_RATIO = 0.3, 1.2
 """The range of speeds that is proposed, over that of the drive."""
 
 
@@ -132,7 +132,7 @@ def proposal(option: Option, drive: Drive | None) -> str:
     if option.name == "pulley":
         return drive.pulleys[number].name
     speed = RPM * abs(given_speed(drive, number))
-    low, high = (f"{factor * speed:.2g}" for factor in (_SLOWEST, _FASTEST))
+    low, high = (f"{factor * speed:.2g}" for factor in (_MIN_SPEED_RATIO, _MAX_SPEED_RATIO))
     low, high = (f"{float(one):.0f}" for one in (low, high))
     return {"speed": f"{low}..{high} rpm", "from_": f"{low} rpm", "to": f"{high} rpm"}[option.name]
 
@@ -154,7 +154,7 @@ def _takes_unit(annotation: Any) -> bool:
     return {float, str} <= set(options.option_types(annotation))
 
 
-_OFTEN = 0.25
+_POLLING_INTERVAL = 0.25
 """Polling interval of an analysis, s."""
 
 
@@ -184,7 +184,7 @@ class AnalysisView:
         self._state = ui.label().classes("bd-state").props('role="status"').mark("progress")
         self._box = ui.column().classes("w-full gap-1 bd-tables").mark("watched")
         self._results = ui.column().classes("w-full gap-1")
-        self._timer = ui.timer(_OFTEN, self._look, active=session.job is not None)
+        self._timer = ui.timer(_POLLING_INTERVAL, self._look, active=session.job is not None)
         self._show_outcomes()
         self._ask_options()
         self.update()
@@ -376,13 +376,13 @@ class AnalysisView:
         ui.download.file(outcome.report)
         facts = [f"{fact}: {value}" for part in outcome.parts if isinstance(part, Facts) for fact, value in part.facts]
         answer = [in_units(words, self._session.units) for words in (outcome.answer, outcome.verdict[1])]
-        body = "\n".join([*answer, *facts[:_MOST_FACTS], "", f"Report attached: {outcome.report.name}"])
+        body = "\n".join([*answer, *facts[:_MAX_FACTS], "", f"Report attached: {outcome.report.name}"])
         subject = f"{(self._session.name or 'drive').removesuffix('.toml')}: {name.replace('_', ' ')}"
         ui.run_javascript(f"window.location.href = {json.dumps(mail_address(subject, body))}")
 
 
 _MARKS = {"pass": "✓", "fail": "✗", "open": "·"}
-_MOST_FACTS = 8
+_MAX_FACTS = 8
 """Numbers in a mail; all are in the report."""
 
 

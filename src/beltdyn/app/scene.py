@@ -14,14 +14,15 @@ from beltdyn.model.toothing import FEWEST_TEETH, MOST_TEETH, Toothing
 from beltdyn.parts.quantity import to_si
 from beltdyn.show.notebook import outline
 
-MILLIMETRES = 1e3
-_EMPTY = (-250.0, -150.0, 250.0, 150.0)
+MILLIMETERS = 1e3
+"""Millimeters in a meter: the canvas is drawn in mm, and drives are in m."""
+_EMPTY_EXTENT = (-250.0, -150.0, 250.0, 150.0)
 """Extent of an empty canvas, mm."""
-_FEW = 2
-"""Number of pulleys above which they alone set the extent."""
-_SMALLEST = 60.0
+_MIN_PULLEYS = 2
+"""Number of pulleys from which on they alone set the extent: the first one stands on an empty canvas."""
+_MIN_EXTENT = 60.0
 """Least shorter side of the extent, mm."""
-_SEEN = 0.004
+_VISIBLE_TRAVEL = 0.004
 """Travel of a tensioner over the size of the drive above which its rest position is drawn separately."""
 
 
@@ -42,7 +43,7 @@ def length_in(value: object) -> float | None:
         number = to_si(value, "m") if isinstance(value, str) else float(value)  # type: ignore[arg-type]
     except (TypeError, ValueError, OverflowError):
         return None
-    return number if math.isfinite(number) and abs(number) < MILLIMETRES**2 else None
+    return number if math.isfinite(number) and abs(number) < MILLIMETERS**2 else None
 
 
 def circles(data: Mapping[str, Any]) -> list[Circle]:
@@ -105,7 +106,7 @@ def scene(draft: Draft, *, settled: bool = True) -> dict[str, Any]:
         "pulleys": pulleys,
         "valid": drive is not None,
         "belt": _line(path),
-        "thickness": MILLIMETRES * thickness,
+        "thickness": MILLIMETERS * thickness,
         "rest": _line(rest),
         "ghosts": [] if drive is None or rest is None else _ghosts(drive, rest),
         "spans": [] if drive is None else _spans(drive.path),
@@ -133,13 +134,13 @@ def _rest(drive: Drive) -> Path | None:
         return None
     path = prepare(drive).installation.path
     way = float(np.abs(path.centers - drive.path.centers).max())
-    return path if way > _SEEN * float(np.ptp(path.centers, axis=0).max()) else None
+    return path if way > _VISIBLE_TRAVEL * float(np.ptp(path.centers, axis=0).max()) else None
 
 
 def _ghosts(drive: Drive, rest: Path) -> list[dict[str, float]]:
     """Pulleys of tensioners at rest."""
     places = [(rest.centers[one.pulley].tolist(), drive.pulleys[one.pulley].radius) for one in prepare(drive).carriers]
-    return [dict(zip("xyr", (*_place(*center), MILLIMETRES * radius), strict=True)) for center, radius in places]
+    return [dict(zip("xyr", (*_place(*center), MILLIMETERS * radius), strict=True)) for center, radius in places]
 
 
 def _pulley(one: Circle, drive: Drive | None, draft: Draft) -> dict[str, Any]:
@@ -149,7 +150,7 @@ def _pulley(one: Circle, drive: Drive | None, draft: Draft) -> dict[str, Any]:
         "name": one.name,
         "x": x,
         "y": y,
-        "r": MILLIMETRES * one.radius,
+        "r": MILLIMETERS * one.radius,
         "outside": one.side == "outside",
         "drives": bool(groups(draft.data, "pulley")[one.number].get("speed")),
         "sense": 0,
@@ -191,7 +192,7 @@ def _spans(path: Path) -> list[dict[str, Any]]:
             "y": y,
             "right": right,
             "down": -up,
-            "length": MILLIMETRES * length,
+            "length": MILLIMETERS * length,
             "ends": [*_place(*start), *_place(*end)],
         }
         for (x, y), (right, up), length, (start, end) in zip(
@@ -234,16 +235,16 @@ def _extent(pulleys: Sequence[dict[str, Any]], tensioners: Sequence[dict[str, An
     points += [tuple(one["pivot"]) for one in tensioners if "pivot" in one]
     if path is not None and path.ends is not None:
         points += [_place(*end) for end in path.ends.tolist()]
-    if len(pulleys) < _FEW:
-        points += [_EMPTY[:2], _EMPTY[2:]]
+    if len(pulleys) < _MIN_PULLEYS:
+        points += [_EMPTY_EXTENT[:2], _EMPTY_EXTENT[2:]]
     low, high = np.min(points, axis=0), np.max(points, axis=0)
-    middle, half = (low + high) / 2, np.maximum((high - low) / 2, _SMALLEST / 2)
+    middle, half = (low + high) / 2, np.maximum((high - low) / 2, _MIN_EXTENT / 2)
     return [*(middle - half).tolist(), *(middle + half).tolist()]
 
 
 def _place(x: float, y: float) -> tuple[float, float]:
-    return MILLIMETRES * x, -MILLIMETRES * y
+    return MILLIMETERS * x, -MILLIMETERS * y
 
 
 def _line(path: Path | None) -> str:
-    return "" if path is None else outline(path, _place, MILLIMETRES)
+    return "" if path is None else outline(path, _place, MILLIMETERS)

@@ -18,7 +18,8 @@ from beltdyn.parts.toml_edits import Edit, changed_data, changed_text
 
 # The drive file during editing: data, text with comments, and history
 
-_MOST_STATES = 200
+_MAX_STATES = 200
+"""Number of states of a drive file that are kept to be undone: older ones are dropped, to limit memory."""
 
 
 class State(NamedTuple):
@@ -92,7 +93,7 @@ class Document:
     def _append(self, state: State) -> None:
         del self._states[self._place + 1 :]
         self._states.append(state)
-        del self._states[:-_MOST_STATES]
+        del self._states[:-_MAX_STATES]
         self._place = len(self._states) - 1
 
     def _text_with(self, edits: Sequence[Edit], data: dict[str, Any]) -> str:
@@ -104,9 +105,10 @@ class Document:
         return text
 
 
-_FARTHEST = 1e3
+_MAX_COORDINATE = 1e3
 """Largest coordinate accepted from the canvas, m."""
-_MOST_RESULTS = 5
+_MAX_OUTCOMES = 5
+"""Number of outcomes of analyses that are kept: the files of older ones are deleted, to limit disk space."""
 _ON_PULLEYS: Mapping[str, Callable[[Mapping[str, Any], int, Mapping[str, float]], list[Edit]]] = {
     "move": lambda data, number, to: placing.move(data, number, to["x"], to["y"]),
     "size": lambda data, number, to: placing.resize(data, number, to["radius"]),
@@ -216,11 +218,11 @@ class Session:
         self.job = None
         self.workspace.jobs.discard(job)
         self.outcomes.insert(0, (job.name, job.outcome))
-        for _, gone in self.outcomes[_MOST_RESULTS:]:
+        for _, gone in self.outcomes[_MAX_OUTCOMES:]:
             for file in (gone.result, gone.report, gone.best):
                 if file is not None:
                     file.unlink(missing_ok=True)
-        del self.outcomes[_MOST_RESULTS:]
+        del self.outcomes[_MAX_OUTCOMES:]
         return None
 
     def start(self, text: str, name: str | None = None) -> None:
@@ -249,5 +251,5 @@ class Session:
 def _metres(value: object) -> float | None:
     """A number that the browser sent, if it is one."""
     if isinstance(value, int | float) and not isinstance(value, bool) and math.isfinite(value):
-        return float(value) if abs(value) < _FARTHEST else None
+        return float(value) if abs(value) < _MAX_COORDINATE else None
     return None

@@ -11,7 +11,7 @@ import numpy as np
 import xarray as xr
 from matplotlib.colors import to_hex
 
-from beltdyn.app.scene import MILLIMETRES
+from beltdyn.app.scene import MILLIMETERS
 from beltdyn.arrays import FloatArray
 from beltdyn.parts.quantity import RPM
 from beltdyn.results import RECORDED, Run, open_run
@@ -19,18 +19,18 @@ from beltdyn.show.plot.style import tension_colors
 from beltdyn.show.report.replay import along_belt
 from beltdyn.show.tables import Table
 
-_REFRESH = 0.4
+_MIN_INTERVAL = 0.4
 """Least interval of snapshots, s."""
-_SHARE = 10.0
+_INTERVAL_OVER_COST = 10.0
 """Least interval of snapshots over the cost of one."""
-_LONGEST = 3.0
+_MAX_INTERVAL = 3.0
 """Interval of snapshots after which one is taken, whatever it costs: the first one loads libraries, s."""
 _SEEN = (
     *("pulley_speed", "pulley_angle", "pulley_torque", "hub_force", "pulley_center"),
     *("nodal_coordinates", "body_position", "belt_tension", "normal_force"),
 )
 """What is read."""
-_PIECES = 60
+_PIECE_COUNT = 60
 """Number of separately colored pieces of the belt."""
 
 
@@ -72,7 +72,7 @@ class Watcher:
             return _glimpse(self._run(values))
         finally:
             spent = time.perf_counter() - begun
-            self._next = begun + min(max(_REFRESH, _SHARE * spent), _LONGEST)
+            self._next = begun + min(max(_MIN_INTERVAL, _INTERVAL_OVER_COST * spent), _MAX_INTERVAL)
 
     def _run(self, values: Mapping[str, FloatArray]) -> Run:
         """A run of one instant; what all instants share is read once, which takes longest."""
@@ -112,8 +112,8 @@ def _glimpse(run: Run) -> Glimpse:
 
 def _pieces(places: Any, shares: Any) -> list[dict[str, str]]:
     """The belt in pieces, each with the color of its tension."""
-    drawn, colors = MILLIMETRES * places * (1.0, -1.0), tension_colors()
-    bounds = np.linspace(0, len(places) - 1, _PIECES + 1).round().astype(int).tolist()
+    drawn, colors = MILLIMETERS * places * (1.0, -1.0), tension_colors()
+    bounds = np.linspace(0, len(places) - 1, _PIECE_COUNT + 1).round().astype(int).tolist()
     return [
         {
             "d": "M" + "L".join(f"{x:.2f} {y:.2f}" for x, y in drawn[first : last + 1]),
@@ -129,9 +129,9 @@ def _pulleys(run: Run, instant: xr.Dataset) -> list[dict[str, float]]:
     centers, angles = instant["pulley_center"].values, instant["pulley_angle"].values
     return [
         {
-            "x": MILLIMETRES * float(x),
-            "y": -MILLIMETRES * float(y),
-            "r": MILLIMETRES * one.radius,
+            "x": MILLIMETERS * float(x),
+            "y": -MILLIMETERS * float(y),
+            "r": MILLIMETERS * one.radius,
             "angle": -float(np.degrees(angle)),
         }
         for one, (x, y), angle in zip(run.drive.pulleys, centers, angles, strict=True)

@@ -19,10 +19,12 @@ from beltdyn.show.notebook import picture
 # The only folder that the page reads and writes
 
 _SUFFIX = ".toml"
-_DEEPEST = 3
+_MAX_DEPTH = 3
 """Largest depth of subfolders."""
-_MOST_FILES = 200
-_MOST_FOLDERS = 500
+_MAX_FILES = 200
+"""Number of files in a list at most: the search ends there, so that the page need not wait for it."""
+_MAX_FOLDERS = 500
+"""Number of folders after which no subfolders are searched: a large folder must not delay the page."""
 
 
 class Folder:
@@ -41,16 +43,16 @@ class Folder:
         for looked, (place, folders, names) in enumerate(os.walk(self.root)):
             here = Path(place).relative_to(self.root)
             folders[:] = sorted(one for one in folders if not one.startswith((".", "_")))
-            if len(here.parts) >= _DEEPEST or looked > _MOST_FOLDERS:
+            if len(here.parts) >= _MAX_DEPTH or looked > _MAX_FOLDERS:
                 folders.clear()
             found += [
                 (here / name).as_posix()
                 for name in sorted(names)
                 if name.endswith(suffixes) and not name.startswith(".") and self._holds(here / name)
             ]
-            if len(found) >= _MOST_FILES:
+            if len(found) >= _MAX_FILES:
                 break
-        return sorted(found[:_MOST_FILES], key=lambda name: (name.count("/"), name))
+        return sorted(found[:_MAX_FILES], key=lambda name: (name.count("/"), name))
 
     def path(self, name: str) -> Path:
         """The path of a file by its name."""

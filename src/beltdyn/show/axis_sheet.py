@@ -21,7 +21,8 @@ if TYPE_CHECKING:
     import xarray as xr
 
 _MICROMETERS = 1e6
-_UNDAMPED = 0.002
+"""Micrometers in a meter: errors of position of a carriage are shown in µm."""
+_UNDAMPED_RATE = 0.002
 """Decay rate over the frequency below which a vibration takes 350 periods to halve: what steps leave of rounding."""
 
 
@@ -59,7 +60,7 @@ def _ringing(run: Run, recorded: Recorded, since: BoolArray) -> tuple[str, str]:
     steps = np.asarray(recorded["step_size"])[since][:-1]
     real, _ = real_decay(decay, time, steps, run.drive.simulation.spectral_radius)
     size = f"{_MICROMETERS * decay.amplitude:.2g} µm at {real.frequency:.4g} Hz"
-    if real.rate < _UNDAMPED * real.frequency:
+    if real.rate < _UNDAMPED_RATE * real.frequency:
         return size, "hardly dies away: give the belt its losses, or the guide its friction"
     return size, f"dies away with {real.rate:.2g} 1/s, by half in {math.log(2.0) / real.rate:.2g} s"
 

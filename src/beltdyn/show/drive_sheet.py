@@ -21,6 +21,7 @@ if TYPE_CHECKING:
     import xarray as xr
 
 _DEGREES = 180.0 / np.pi
+"""Degrees in a radian: angles are shown in degrees."""
 CENTER_DISTANCES = ("center_distance", "fitting_allowance", "tensioning_allowance")
 _NO_FIT = "does not fit"
 _STATES = {

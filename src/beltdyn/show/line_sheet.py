@@ -21,9 +21,10 @@ if TYPE_CHECKING:
     import xarray as xr
 
 _DEGREES = 180.0 / np.pi
-_HOUR = 3.6
-"""kg/s in t/h."""
-_NOTHING = 1e-9
+"""Degrees in a radian: angles are shown in degrees."""
+_TONNES_PER_HOUR = 3.6
+"""Tonnes per hour in 1 kg/s: conveyed mass flows are shown in t/h."""
+_ROUNDING = 1e-9
 """Of the largest power, or m and rad of a position, below which it is rounding."""
 
 
@@ -114,7 +115,7 @@ def _points(dataset: "xr.Dataset") -> Table:
         *("tension\nmin N", "max N", "slip\nsafety"),
     )
     if "goods_mass" in dataset and dataset["goods_mass"].values.any():
-        flow = _HOUR * (dataset["goods_mass"] * dataset["belt_speed"]).max("span").values
+        flow = _TONNES_PER_HOUR * (dataset["goods_mass"] * dataset["belt_speed"]).max("span").values
         lifting = dataset["lifting_power"].values / watts
         falls = bool(lifting.max() < 0.0)  # then goods put power in
         columns += [aligned((-lifting if falls else lifting).tolist(), 4), aligned(flow.tolist(), 4)]
@@ -229,7 +230,7 @@ def _drives(at: "xr.Dataset", where: str) -> Table:
     )
     sums = np.nansum(pulls, axis=1, keepdims=True)
     shares = np.divide(
-        pulls, sums, out=np.full_like(pulls, np.nan), where=np.abs(sums) > _NOTHING * np.nanmax(np.abs(pulls))
+        pulls, sums, out=np.full_like(pulls, np.nan), where=np.abs(sums) > _ROUNDING * np.nanmax(np.abs(pulls))
     )
     allowed = at["allowed_tension_ratio"].values[powered]
     rows = [
@@ -268,7 +269,7 @@ def _idlers(at: "xr.Dataset", where: str) -> Table:
 def _pulleys(at: "xr.Dataset", where: str, stands: BoolArray) -> Table:
     """Diameter, speed, torque, power and hub load of each pulley."""
     power, (unit, watts) = at["power"].values, power_unit(at["power"].values)
-    power = np.where(np.abs(power) > _NOTHING * np.max(np.abs(power), initial=1.0), power, 0.0)
+    power = np.where(np.abs(power) > _ROUNDING * np.max(np.abs(power), initial=1.0), power, 0.0)
     columns: list[Sequence[str]] = [
         [str(one) for one in at["pulley"].values],
         aligned((1e3 * at["pitch_diameter"].values).tolist(), 5),
@@ -371,7 +372,7 @@ def _tensioners(at: "xr.Dataset", where: str, result: Result) -> Table:
     ):
         unit = one.force_unit
         stops = " to ".join(one.written(stop) for stop in one.stops or ()) or "none"
-        place = place if abs(place) > _NOTHING else 0.0
+        place = place if abs(place) > _ROUNDING else 0.0
         rows.append((one.pulley, one.written(float(place)), f"{plain(float(force), 4)} {unit}", stops))
     return Table(f"Tensioners{where}", ("", "position", "force", "stops"), tuple(rows))
 

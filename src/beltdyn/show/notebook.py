@@ -20,17 +20,17 @@ from beltdyn.show.sheet import sheet
 
 # A drive as a small vector picture: its pulleys and the path of its belt, as text in SVG
 
-_SIZE = 360.0
+_PICTURE_SIZE = 360.0
 """Longer side of the picture, pixels."""
 _MARGIN = 0.06
 """Room around the drive, over its longer side."""
-_LETTER, _GAP = 6.0, 5.0
+_LETTER_WIDTH, _NAME_GAP = 6.0, 5.0
 """Width of a letter of names, and their distance from a pulley, pixels."""
-_INSIDE = 2.0
+_ARC_DISTANCE = 2.0
 """Least distance of a name from the arc around it, pixels."""
-_LONGEST_GAP = 15.0
+_MAX_GAP = 15.0
 """Longest gap between pulleys that is drawn in its length, in diameters of the largest pulley: 20 pixels for that."""
-_LEVEL = 0.7
+_BESIDE_COSINE = 0.7
 """Cosine above which a name stands beside its pulley, and not above or below."""
 
 
@@ -68,7 +68,7 @@ def picture(drive: Drive) -> Picture:
     path = shortened(drive.path)
     reach = abs(path.radii)[:, None]
     points = np.concatenate([path.centers - reach, path.centers + reach, *([] if path.ends is None else [path.ends])])
-    scale = _SIZE / float(max(np.ptp(points, axis=0)))
+    scale = _PICTURE_SIZE / float(max(np.ptp(points, axis=0)))
 
     def on_page(x: float, y: float) -> tuple[float, float]:
         return scale * x, -scale * y
@@ -76,7 +76,7 @@ def picture(drive: Drive) -> Picture:
     circles = [_circle(path, number, pulley, scale, on_page) for number, pulley in enumerate(drive.pulleys)]
     names = [box for one in circles for box in _name_box(one)]
     corners = np.concatenate([scale * points * [1.0, -1.0], *names])
-    room = _MARGIN * _SIZE
+    room = _MARGIN * _PICTURE_SIZE
     left, top = (float(one) for one in corners.min(axis=0) - room)
     width, height = (float(one) for one in np.ptp(corners, axis=0) + 2.0 * room)
     moved = tuple(
@@ -91,11 +91,11 @@ def picture(drive: Drive) -> Picture:
 
 
 def shortened(path: Path) -> Path:
-    """The path with its longest gap between pulleys cut to `_LONGEST_GAP`, as by break lines, and others across it."""
+    """The path with its longest gap between pulleys cut to `_MAX_GAP`, as by break lines, and others across it."""
     radii, ends = abs(path.radii), np.empty((0, 2)) if path.ends is None else path.ends
     points, sizes = np.concatenate([path.centers, ends]), np.concatenate([radii, np.zeros(len(ends))])
     largest, diameter = np.array([_gaps(one, sizes)[1].max(initial=0.0) for one in points.T]), 2.0 * float(radii.max())
-    ratio = _LONGEST_GAP * diameter / max(float(largest.max()), diameter)
+    ratio = _MAX_GAP * diameter / max(float(largest.max()), diameter)
     if ratio >= 1.0:
         return path
     limits = np.maximum(ratio * largest, diameter)
@@ -124,23 +124,23 @@ def _circle(
     """A pulley with its name, beyond its arc where the circle is too small."""
     (x, y), radius = on_page(*path.centers[number].tolist()), scale * pulley.radius
     right, up = path.clear_way(number) or (0.0, -1.0)
-    half = _LETTER * len(pulley.name) / 2.0
-    outside = float(half > radius - _INSIDE)
-    away = radius + _GAP + half * (abs(right) > _LEVEL)
+    half = _LETTER_WIDTH * len(pulley.name) / 2.0
+    outside = float(half > radius - _ARC_DISTANCE)
+    away = radius + _NAME_GAP + half * (abs(right) > _BESIDE_COSINE)
     return Circle(
         pulley.name,
         x,
         y,
         radius,
         pulley.prescribed,
-        (x + outside * right * away, y - outside * up * (radius + 2.0 * _GAP)),
+        (x + outside * right * away, y - outside * up * (radius + 2.0 * _NAME_GAP)),
     )
 
 
 def _name_box(circle: Circle) -> list[FloatArray]:
     """Two corners of the name of a pulley that stands beyond its arc; none of one within."""
-    (x, y), half = circle.label, _LETTER * len(circle.name) / 2.0
-    return [] if (x, y) == (circle.x, circle.y) else [np.array([[x - half, y - _GAP], [x + half, y + _GAP]])]
+    (x, y), half = circle.label, _LETTER_WIDTH * len(circle.name) / 2.0
+    return [] if (x, y) == (circle.x, circle.y) else [np.array([[x - half, y - _NAME_GAP], [x + half, y + _NAME_GAP]])]
 
 
 def outline(path: Path, place: Callable[[float, float], tuple[float, float]], scale: float) -> str:

@@ -16,6 +16,7 @@ if TYPE_CHECKING:
     import xarray as xr
 
 _DEGREES = 180.0 / np.pi
+"""Degrees in a radian: angles are shown in degrees."""
 _PERCENT = "utilization of the rated power"
 _SHOWN = {"m": ("mm", 1e3)}
 _UNITS = {"diameter": ("mm", 1e3), "wrap_angle": ("°", _DEGREES), "width_needed": ("mm", 1e3)}

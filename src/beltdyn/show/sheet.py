@@ -33,7 +33,8 @@ if TYPE_CHECKING:
 # The sheet of a study: number of points, and range of each input and result
 
 _DIGITS = 5
-_MOST = 40
+"""Significant digits of numbers in the sheet of a study: changes of 0.01 % are seen, and columns stay narrow."""
+_MAX_RESULTS = 40
 """Results in the table."""
 
 
@@ -44,7 +45,7 @@ def _study_pieces(dataset: "xr.Dataset") -> Iterator[Callable[[], Pieces]]:
     yield lambda: (Facts(tuple(_facts(dataset, names))),)
     yield lambda: (Table("", ("number", "", "min", "max"), tuple(_row(dataset[path]) for path in numbers)),)
     if names:
-        yield lambda: (_table_of_results(dataset, names[:_MOST]),)
+        yield lambda: (_table_of_results(dataset, names[:_MAX_RESULTS]),)
 
 
 def _table_of_results(dataset: "xr.Dataset", names: Sequence[str]) -> Table:
@@ -62,8 +63,8 @@ def _facts(dataset: "xr.Dataset", names: list[str]) -> list[tuple[str, str]]:
         facts = [("points", f"{done} of {dataset.sizes['point']}")]
     if done:
         facts.append(("computing time", f"{np.nansum(seconds):.3g} s, {np.nanmean(seconds):.3g} s per point"))
-    if len(names) > _MOST:
-        facts.append(("results", f"{len(names)}, {_MOST} shown"))
+    if len(names) > _MAX_RESULTS:
+        facts.append(("results", f"{len(names)}, {_MAX_RESULTS} shown"))
     return facts
 
 
@@ -108,9 +109,9 @@ _LARGEST_MARGIN = 100.0
 """Margin to a jump that is shown."""
 _LEAST_SHARE = 0.01
 """Share of the power input from which a shaft is named."""
-_NOTHING = 1e-9
+_ROUNDING_POWER = 1e-9
 """Power below which it is rounding, W."""
-_KILOWATTS = 1e4
+_MIN_KILOWATT_POWER = 1e4
 """Power from which powers are shown in kW, W."""
 
 
@@ -238,7 +239,7 @@ _OF_FRICTION = ("slip", "elastic\ncreep", "slip\narc", "tension\nratio", "ratio\
 
 def power_unit(powers: ArrayLike) -> tuple[str, float]:
     """Unit in which powers (W) are shown, and its size in W."""
-    return ("kW", 1e3) if np.fmax.reduce(np.abs(np.asarray(powers)), axis=None) >= _KILOWATTS else ("W", 1.0)
+    return ("kW", 1e3) if np.fmax.reduce(np.abs(np.asarray(powers)), axis=None) >= _MIN_KILOWATT_POWER else ("W", 1.0)
 
 
 def safeties(values: FloatArray) -> list[str]:
@@ -310,9 +311,9 @@ def _span_rows(summary: Summary) -> Iterable[tuple[str, ...]]:
 
 def _watts(power: float, digits: int = 4) -> str:
     """A power in W or kW with the given significant digits, but at least to the unit."""
-    if abs(power) < _NOTHING:
+    if abs(power) < _ROUNDING_POWER:
         return "0 W"
-    value, unit = (power / 1e3, "kW") if abs(power) >= _KILOWATTS else (power, "W")
+    value, unit = (power / 1e3, "kW") if abs(power) >= _MIN_KILOWATT_POWER else (power, "W")
     return f"{value:.{digits}g} {unit}" if abs(value) < 10.0**digits - 0.5 else f"{value:.0f} {unit}"
 
 
@@ -421,6 +422,7 @@ def _comparison_row(one: Compared) -> tuple[str, ...]:
 
 
 _SHEET_DIGITS = 5
+"""Significant digits of numbers in other sheets: changes of 0.01 % are seen, and columns stay narrow."""
 _FIRST_PART = re.compile("[,:]")
 _AMONG_WARNINGS = frozenset({"failure"})
 """Variables of long texts, which warnings quote."""

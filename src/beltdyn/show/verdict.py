@@ -11,7 +11,7 @@ from beltdyn.results.limits import KeyNumber, judging_commands, key_numbers
 from beltdyn.results.result import Result
 from beltdyn.results.run import Run
 
-_WHOLE, _HUGE = 1e4, 1e9
+_MIN_PLAIN, _MAX_PLAIN = 1e4, 1e9
 """Between these a number is written without an exponent."""
 
 
@@ -137,5 +137,5 @@ def in_unit(value: float, unit: str, sign: str = "") -> str:
     if unit == "%":
         return f"{100.0 * value:{sign}.3g} %"
     rounded = float(f"{value:.4g}")
-    number = f"{rounded:{sign}.0f}" if _WHOLE <= abs(rounded) < _HUGE else f"{value:{sign}.4g}"
+    number = f"{rounded:{sign}.0f}" if _MIN_PLAIN <= abs(rounded) < _MAX_PLAIN else f"{value:{sign}.4g}"
     return f"{number} {unit}".removesuffix(" 1")

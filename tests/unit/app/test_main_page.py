@@ -284,8 +284,8 @@ def test_numbers_follow_speed_and_load(workspace: Workspace) -> None:
 
 def test_what_an_answer_waits_for_is_said(workspace: Workspace, monkeypatch: pytest.MonkeyPatch) -> None:
     """Kernels are compiled once on a machine, which takes longer than any answer."""
-    monkeypatch.setattr(numbers_view, "_SOON", 0.0)
-    monkeypatch.setattr(numbers_view, "_OFTEN", 0.05)
+    monkeypatch.setattr(numbers_view, "_BUSY_DELAY", 0.0)
+    monkeypatch.setattr(numbers_view, "_POLLING_INTERVAL", 0.05)
     compiled = asyncio.Event()
 
     class Compiles(Told):

@@ -20,10 +20,11 @@ from beltdyn.results.atomic import MARK, atomic_path, is_marked, require_replace
 from beltdyn.show.plot.drive_picture import DrivePicture, size_of
 from beltdyn.show.plot.style import new_figure, spread, styled
 
-_DPI = 100
+_RESOLUTION = 100
+"""Resolution of the pictures of an animation, pixels per inch: a drive 7 inches wide has 700 pixels."""
 _EVEN = ("-vf", "pad=ceil(iw/2)*2:ceil(ih/2)*2", "-pix_fmt", "yuv420p")
 """Widths and heights of pictures must be even, and all players know these colors."""
-_UNEVEN = 0.02
+_STEP_TOLERANCE = 0.02
 """Part of a step of the angle by which outputs may lie further apart, as where the speed has ripple."""
 
 
@@ -95,7 +96,7 @@ def film(figure: Figure, path: Path, frame_rate: int, overwrite: bool) -> Iterat
             writer.grab_frame()
             figure.set_layout_engine("none")
 
-        with atomic_path(path, is_marked, overwrite) as temporary, writer.saving(figure, str(temporary), _DPI):
+        with atomic_path(path, is_marked, overwrite) as temporary, writer.saving(figure, str(temporary), _RESOLUTION):
             yield take
 
 
@@ -118,7 +119,7 @@ def _instants(
         raise ModelError(f"{per_turn} pictures per turn must be 1 or more.")
     turned = np.abs(run.dataset["pulley_angle"][:, 0].sel(time=inside).values) / (2.0 * np.pi)
     largest = float(np.max(np.diff(turned))) if inside.size > 1 else np.inf
-    if largest * per_turn > 1.0 + _UNEVEN:
+    if largest * per_turn > 1.0 + _STEP_TOLERANCE:
         most = f"take {int(1.0 / largest)} a turn or fewer, or " if largest < 1.0 else ""
         raise ModelError(
             f"{per_turn} pictures per turn need more outputs along the belt: between two of them "

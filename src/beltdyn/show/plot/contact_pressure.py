@@ -55,8 +55,9 @@ def unwrap(belt_coordinate: FloatArray, touching: BoolArray, length: float, spee
 
 
 Kind = Literal["normal", "friction"]
-_KILO = 1e3
-_ALIKE = 4.0
+_KILOPASCAL = 1e3
+"""One kilopascal, Pa: contact stresses are shown in kPa."""
+_SAME_SCALE_RATIO = 4.0
 """Radii over each other up to which pressures have one scale."""
 
 
@@ -78,7 +79,7 @@ def _kinds_by_pulleys(draw: Callable[..., Axes], run: Result, choice: Choice) ->
 def _by_pulleys(draw: Callable[..., Axes], run: Result, choice: Choice) -> Figure:
     """Lay out a panel for each pulley, with one legend for all."""
     radii = [pulley.radius for pulley in run.drive.pulleys]
-    alike = max(radii) < _ALIKE * min(radii)
+    alike = max(radii) < _SAME_SCALE_RATIO * min(radii)
     page = panels([[partial(draw, run, name) for name in row] for row in _pulleys(run, choice)], sharey=alike)
     named = [
         Line2D([], [], color=INK, label="pressure"),
@@ -191,7 +192,7 @@ def contact_pressure(
     angle = np.degrees(arc["angle"].values)
     parts = (("pressure", color(number), "-"), ("shear", INK, dash(1)))
     for part, tint, style in parts[: 1 if isinstance(run, StaticResult) else 2]:  # at rest nothing rubs
-        ax.plot(angle, arc[part] / _KILO, color=tint, linestyle=style, label=str(arc[part].attrs["long_name"]))
+        ax.plot(angle, arc[part] / _KILOPASCAL, color=tint, linestyle=style, label=str(arc[part].attrs["long_name"]))
     ax.margins(x=0.0)
     _shade_sliding(ax, angle, arc["sliding"].values)
     ax.axhline(0.0, color="0.4", linewidth=0.8, zorder=1)
@@ -415,7 +416,7 @@ def nip_pressure(run: Run, roller: str | int | None = None, time: float | None =
     for face in profile["face"].values.tolist():
         number, own = run.drive.number_of(face), profile.sel(face=face)
         for part, style in (("pressure", "-"), ("shear", dash(1))):
-            values = own[part] / _KILO
+            values = own[part] / _KILOPASCAL
             ax.plot(1e3 * own["distance"], values, color=color(number), linestyle=style, label=f"{part}, {face}")
     ax.axhline(0.0, color="0.4", linewidth=0.8, zorder=1)
     ax.set(xlabel=f"{profile['distance'].attrs['long_name']} [mm]", ylabel="Stress in the nip [kPa]")
@@ -424,9 +425,9 @@ def nip_pressure(run: Run, roller: str | int | None = None, time: float | None =
     return ax
 
 
-_MULTIPLES = 3
+_MESH_MULTIPLES = 3
 """Multiples of the meshing order that are marked."""
-_ORDERS = 1.15
+_ORDER_RANGE_RATIO = 1.15
 """Largest order shown, over the last one marked."""
 
 
@@ -569,9 +570,9 @@ def transmission_orders(run: Run, reference: str | int | None = None, ax: Axes |
     for name in moving:
         number = run.drive.number_of(name)
         found = derived.order_spectrum(error.sel(pulley=name), angle)
-        shown = found["order"].values <= _ORDERS * _MULTIPLES * meshing
+        shown = found["order"].values <= _ORDER_RANGE_RATIO * _MESH_MULTIPLES * meshing
         ax.semilogy(found["order"].values[shown], 1e6 * found.values[shown], color=color(number), label=name)
-    for multiple in range(1, _MULTIPLES + 1):
+    for multiple in range(1, _MESH_MULTIPLES + 1):
         ax.axvline(multiple * meshing, color="0.6", linewidth=0.8, linestyle="--", zorder=1)
     ax.set(
         xlabel=f"Order of {run.drive.pulleys[first].name}; dashed: meshing order {meshing} and multiples",

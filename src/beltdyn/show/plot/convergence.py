@@ -11,11 +11,11 @@ from beltdyn.results import Result
 from beltdyn.show.plot.figures import figure
 from beltdyn.show.plot.style import axes_or_new, color, dash, name_lines, note, set_log_scale
 
-_MOST_LINES = 10
+_MAX_LINES = 10
 """Results in one figure: as many as there are colors."""
 _ROUNDING = 1e-10
 """Relative difference below which there is nothing to draw."""
-_SIZE = (7.0, 4.8)
+_FIGURE_SIZE = (7.0, 4.8)
 """Width and height, inches: long names stand above the axes."""
 _MARKERS = "osD^v"
 """Of the results in turn."""
@@ -100,9 +100,9 @@ def _draw(result: Result, level: str, axis: str, of: str | None, ax: Axes | None
         raise ModelError(f'"{of}" is not a result. Choose one of {", ".join(names)}.')
     differences, orders = dataset[f"{level}_error"].values[:, :-1], dataset[f"{level}_order"].values[:, -1]
     chosen = [row for row, name in enumerate(names) if of in (None, name) and np.any(differences[row] > _ROUNDING)]
-    ax = axes_or_new(ax, _SIZE)
+    ax = axes_or_new(ax, _FIGURE_SIZE)
     sizes = dataset[axis].values
-    for number, row in enumerate(chosen[:_MOST_LINES]):
+    for number, row in enumerate(chosen[:_MAX_LINES]):
         order = "" if np.isnan(orders[row]) else f", order {orders[row]:.2g}"
         ax.plot(
             sizes[:-1],
@@ -121,7 +121,7 @@ def _draw(result: Result, level: str, axis: str, of: str | None, ax: Axes | None
         ax.invert_xaxis()
     finest = f"{sizes[-1]:g} elements" if axis == "elements" else f"tolerance {sizes[-1]:g}"
     ax.set(xlabel=str(dataset[axis].attrs["long_name"]), ylabel=f"Difference from {finest}, relative")
-    if len(chosen) > _MOST_LINES:
-        note(ax, f"the first {_MOST_LINES} of {len(chosen)} results")
+    if len(chosen) > _MAX_LINES:
+        note(ax, f"the first {_MAX_LINES} of {len(chosen)} results")
     name_lines(ax)
     return ax

@@ -17,13 +17,15 @@ from beltdyn.show.plot.style import INK, axes_or_new, color, dash, name_lines, n
 
 # Tornado figures: sensitivity of results to the parameters of a drive
 
-_BARS = 10
-_MOST = 4
+_MAX_BARS = 10
+"""Bars of a tornado figure at most, those of the largest effects: each needs a line for its name."""
+_MAX_PANELS = 4
+"""Panels of a page at most, one for each result: two rows of two."""
 
 
 def _all_panels(draw: Callable[..., Axes], result: Result, choice: Choice) -> Figure:
     """Lay out a panel for each result, of four at most."""
-    names = [str(name) for name in result.dataset["result"].values][:_MOST]
+    names = [str(name) for name in result.dataset["result"].values][:_MAX_PANELS]
     return panels(rows([partial(draw, result, name) for name in names]), sharey=False)
 
 
@@ -110,7 +112,7 @@ def _tornado(result: Result, of: str | None, variable: str, words: str, ax: Axes
     chosen = result.dataset.sel(result=name)
     effects = np.nan_to_num(chosen[variable].values)
     labels = [str(path) for path in chosen["number"].values]
-    largest = [int(k) for k in np.argsort(-np.abs(effects), kind="stable")[:_BARS][::-1]]
+    largest = [int(k) for k in np.argsort(-np.abs(effects), kind="stable")[:_MAX_BARS][::-1]]
     if variable == "contribution":
         largest = [k for k in largest if effects[k] != 0.0]
     unit, value = str(chosen["unit"].values), float(chosen["value"])
@@ -129,7 +131,7 @@ def _tornado(result: Result, of: str | None, variable: str, words: str, ax: Axes
     return ax
 
 
-_KEPT = 1e-4
+_LIMIT_TOLERANCE = 1e-4
 """Permitted violation of a limit, relative."""
 
 
@@ -169,7 +171,7 @@ def optimization(result: Result, *, ax: Axes | None = None) -> Axes:
     dataset, ax = result.dataset, axes_or_new(ax)
     goal, beyond = dataset["design_goal"].values, dataset["design_violation"].values
     number, runs = np.arange(1, goal.size + 1), np.isfinite(goal)
-    kept = runs & (beyond <= _KEPT)
+    kept = runs & (beyond <= _LIMIT_TOLERANCE)
     most = str(dataset.attrs["title"]).rpartition(": ")[2].startswith("maximize")
     best = (np.fmax if most else np.fmin).accumulate(np.where(kept, goal, np.nan))
     ax.step(number, best, where="post", color=INK, linewidth=1.0, label="best so far")
@@ -221,8 +223,9 @@ def _require_curves(result: Result) -> None:
         )
 
 
-_HIGHEST_SAFETY = 10.0
-_MOST_SPANS = 6
+_MAX_SAFETY = 10.0
+"""Slip safety at the upper end of the axis, 1, unless all pulleys are above it: larger ones are far from slip."""
+_MAX_CURVES = 6
 """Pulleys or spans that are drawn: those nearest to a limit."""
 
 
@@ -258,9 +261,9 @@ def sheet_slip_safety(result: Result, ax: Axes | None = None) -> Axes:
     speed = RPM * dataset["speed"].values
     nominal, least = (dataset[f"{name}_over_speed"].values for name in ("slip_safety", "least_slip_safety"))
     lowest = np.nan_to_num(np.fmin.reduce(least, axis=0), nan=np.inf)
-    worst = np.argsort(lowest, kind="stable")[:_MOST_SPANS]
-    safe = _HIGHEST_SAFETY <= lowest[worst[0]] < np.inf
-    top = 1.1 * float(np.nanmax(nominal[:, worst[0]])) if safe else _HIGHEST_SAFETY
+    worst = np.argsort(lowest, kind="stable")[:_MAX_CURVES]
+    safe = _MAX_SAFETY <= lowest[worst[0]] < np.inf
+    top = 1.1 * float(np.nanmax(nominal[:, worst[0]])) if safe else _MAX_SAFETY
     loaded = worst[lowest[worst] < top].tolist()
     for number, pulley in enumerate(sorted(loaded)):
         tint, name = color(number), str(dataset["pulley"].values[pulley])
@@ -374,9 +377,10 @@ def _speed_label(result: Result) -> str:
 
 _HISTORIES = {"tension": ("Tension [N]", 1.0), "bending_strain": ("Bending strain inside [%]", 100.0)}
 """Variables over a turn, with their labels and factors."""
-_MOST_ROWS = 6
+_MAX_ROWS = 6
 """Rows of the table that are drawn: those with most damage."""
-_WIDTH = 0.8
+_GROUP_WIDTH = 0.8
+"""Width of the bars of a pulley, over the distance from one pulley to the next: the rest is a gap."""
 
 
 def _both(draw: Callable[..., Axes], result: Result, choice: Choice) -> Figure:
@@ -424,7 +428,7 @@ def belt_history(result: Result, variable: str = "tension", *, ax: Axes | None =
     title, factor = _HISTORIES[variable]
     place = dataset["place"].values
     damage = next(dataset[name] for name in ("cord_damage_rate", "rib_damage_rate") if name in dataset)
-    worst = np.argsort(-np.nan_to_num(damage.values))[:_MOST_ROWS]
+    worst = np.argsort(-np.nan_to_num(damage.values))[:_MAX_ROWS]
     for number, row in enumerate(sorted(worst.tolist())):
         label = f"row {int(dataset['row'][row])}" if dataset.sizes["row"] > 1 else None
         ax.plot(place, factor * dataset[variable].values[row], color=color(number), linestyle=dash(number), label=label)
@@ -465,7 +469,7 @@ def damage_shares(result: Result, ax: Axes | None = None) -> Axes:
     dataset, ax = result.dataset, axes_or_new(ax)
     names = [str(name) for name in dataset["pulley"].values]
     known = [what for what in ("cord", "rib") if f"{what}_share" in dataset]
-    width, places = _WIDTH / max(len(known), 1), np.arange(len(names))
+    width, places = _GROUP_WIDTH / max(len(known), 1), np.arange(len(names))
     for number, what in enumerate(known):
         left = places + (number - 0.5 * (len(known) - 1)) * width
         ax.bar(left, 100.0 * dataset[f"{what}_share"].values, width, color=color(number), label=f"{what}s")

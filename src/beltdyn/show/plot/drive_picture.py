@@ -45,8 +45,9 @@ TENSIONER = "#4a5361"
 """Color of all that belongs to tensioners."""
 LINE: dict[str, Any] = {"color": TENSIONER, "linewidth": 2.0, "zorder": 4}
 """How arms and lines of sliding are drawn."""
-_POINTS = 20
-_SCALE_TICKS = 4
+_WAY_POINTS = 20
+"""Number of points of the way between stops: those of an arm lie on an arc, which must look smooth."""
+_MAX_SCALE_TICKS = 4
 """Most ticks of the scale of tension."""
 
 
@@ -83,7 +84,7 @@ def draw_stops(ax: Axes, drive: Drive, carrier: Carrier) -> None:
     if carrier.tensioner.stops is None:
         return
     lower, upper = carrier.tensioner.stops
-    way = np.array([carrier.place(position)[0] for position in np.linspace(lower, upper, _POINTS)])
+    way = np.array([carrier.place(position)[0] for position in np.linspace(lower, upper, _WAY_POINTS)])
     ax.plot(*way.T, color=TENSIONER, linewidth=1.2, linestyle=":", zorder=4)
     radius = drive.pulleys[carrier.pulley].radius
     for center, name in ((way[0], "lower stop"), (way[-1], "upper stop")):
@@ -93,22 +94,31 @@ def draw_stops(ax: Axes, drive: Drive, carrier: Carrier) -> None:
 
 
 _ARROW_RADIUS = 0.62
+"""Radius of the arrow of rotation, over that of the pulley: it lies inside the mark on the rim."""
 _ARROW_ANGLE = np.radians(60.0)
-_MARK = (0.84, 0.97)
-_ROOMY = 0.13
-_STEEP = 0.4
-_WIDE, _HIGH, _NARROWEST = 7.0, 6.0, 4.0
+"""Half the angle of the arrow of rotation, rad: it extends equally to both sides of the top."""
+_MARK_RADII = (0.84, 0.97)
+"""Radii of both ends of the mark that turns with a pulley, over that of the pulley: it lies just inside the rim."""
+_MIN_LABEL_RADIUS = 0.13
+"""Radius of a pulley, over the extent of the drive, above which its name has room inside."""
+_CENTERED_COMPONENT = 0.4
+"""Component of the direction of a text, a unit vector, up to which it is centered; beyond, its edge is at its point."""
+_USUAL_WIDTH, _MAX_HEIGHT, _MIN_WIDTH = 7.0, 6.0, 4.0
 """Width of a drive that is not long, and the greatest height and the least width of any, inches."""
-_LONG, _LONGEST = 0.25, 13.0
+_LONG_DRIVE_RATIO, _MAX_WIDTH = 0.25, 13.0
 """Height over width below which a drive is long, and drawn wider; the greatest width, inches."""
-_BESIDE, _WORDS = 1.0, 2.2
+_WORDS_WIDTH, _WORDS_HEIGHT = 1.0, 2.2
 """What words take of the width and of the height of a figure, inches."""
-_MARGIN = 0.04
-_ROUNDS = 8
-_HEADED = 1.6
+_MARGIN_SHARE = 0.04
+"""Margin around the drive and its texts, over the longer side of their extent."""
+_LAYOUT_ITERATIONS = 8
+"""Iterations of limits and the meters that texts cover: each depends on the other, as letters keep their size."""
+_ENLARGEMENT = 1.6
 """How much larger letters may get against the drive, when a headline takes its share of the figure."""
-_POINTS_AN_INCH, _TICK = 72.0, 50.0
-"""What a number below the axis takes of its width, points."""
+_POINTS_PER_INCH = 72.0
+"""Points in an inch: letters are measured in points, and figures in inches."""
+_TICK_WIDTH = 50.0
+"""Width that a number below the axis takes, points."""
 
 
 class DrivePicture:
@@ -140,7 +150,7 @@ class DrivePicture:
         angles = instant["pulley_angle"].values
         for body, center, radius, angle in zip(self._bodies, centers, self._radii, angles, strict=True):
             direction = np.array([np.cos(angle), np.sin(angle)])
-            body.mark.set_data(*(center[:, None] + radius * np.outer(direction, _MARK)))
+            body.mark.set_data(*(center[:, None] + radius * np.outer(direction, _MARK_RADII)))
             body.rim.center = body.hub.center = tuple(center)
         for tensioner in self._tensioners:
             tensioner.show(centers)
@@ -162,14 +172,14 @@ def size_of(drive: Drive) -> tuple[float, float]:
     """Width and height of a figure of a drive, inches: as wide and as high as it needs."""
     width, height = np.ptp(extent_of(drive, drive.path), axis=0)
     shape = float(height / width)
-    wide = min(_WIDE * max(1.0, _LONG / shape), _LONGEST, max(_HIGH / shape, _NARROWEST))
-    return wide + _BESIDE, min(wide * shape, _HIGH) + _WORDS
+    wide = min(_USUAL_WIDTH * max(1.0, _LONG_DRIVE_RATIO / shape), _MAX_WIDTH, max(_MAX_HEIGHT / shape, _MIN_WIDTH))
+    return wide + _WORDS_WIDTH, min(wide * shape, _MAX_HEIGHT) + _WORDS_HEIGHT
 
 
 def fit_height(page: Figure, ax: Axes) -> None:
     """Make a page of one drive no higher than the drive needs after room was made for all words beside it."""
     (left, right), (low, high) = ax.get_xlim(), ax.get_ylim()
-    needed = (page.get_figwidth() - _BESIDE) * (high - low) / (right - left) + _WORDS
+    needed = (page.get_figwidth() - _WORDS_WIDTH) * (high - low) / (right - left) + _WORDS_HEIGHT
     page.set_figheight(min(page.get_figheight(), needed))
 
 
@@ -189,19 +199,19 @@ def make_room(ax: Axes, extent: FloatArray) -> None:
     """Set limits and equal scales such that a rectangle, lower left to upper right (m), and all texts fit."""
     ax.set_aspect("equal")
     held = extent
-    for _ in range(_ROUNDS):  # letters keep their size, so that they cover more meters when the limits grow
-        margin = _MARGIN * float(np.ptp(held, axis=0).max())
+    for _ in range(_LAYOUT_ITERATIONS):  # letters keep their size, so that they cover more meters when the limits grow
+        margin = _MARGIN_SHARE * float(np.ptp(held, axis=0).max())
         low, high = held.min(axis=0) - margin, held.max(axis=0) + margin
         ax.set(xlim=(low[0], high[0]), ylim=(low[1], high[1]))
         ax.figure.canvas.figure.draw_without_rendering()
-        drawn = [text.get_window_extent().expanded(_HEADED, _HEADED).get_points() for text in ax.texts]
+        drawn = [text.get_window_extent().expanded(_ENLARGEMENT, _ENLARGEMENT).get_points() for text in ax.texts]
         boxes = [ax.transData.inverted().transform(box) for box in drawn]
         held = np.concatenate([extent, *boxes])
         if np.all(held > low) and np.all(held < high):
             break
     ax.apply_aspect()
-    width = ax.get_window_extent().width * _POINTS_AN_INCH / ax.figure.dpi
-    ax.xaxis.set_major_locator(MaxNLocator(max(2, int(width / _TICK)), steps=[1, 2, 2.5, 5, 10]))
+    width = ax.get_window_extent().width * _POINTS_PER_INCH / ax.figure.dpi
+    ax.xaxis.set_major_locator(MaxNLocator(max(2, int(width / _TICK_WIDTH)), steps=[1, 2, 2.5, 5, 10]))
 
 
 def arc(path: Path, number: int) -> FloatArray:
@@ -216,7 +226,7 @@ def write_pulley(ax: Axes, path: Path, number: int, text: str, extent: float, ti
     """Write into a pulley; beside one too small for a drive of this extent, where there is no belt or beyond it."""
     style: dict[str, Any] = {"color": tint, "fontsize": 9, "weight": "bold", "linespacing": 1.2, "zorder": 6}
     radius = abs(path.radii[number])
-    if radius > _ROOMY * extent:
+    if radius > _MIN_LABEL_RADIUS * extent:
         place = path.centers[number] - [0.0, 0.28 * radius]
         style |= {"horizontalalignment": "center", "verticalalignment": "center"}
         ax.text(place[0], place[1], text, **style)
@@ -242,8 +252,8 @@ def write_pulley(ax: Axes, path: Path, number: int, text: str, extent: float, ti
 def aligned(x: float, y: float) -> dict[str, Any]:
     """Alignment of a text that lies in the direction (x, y) of its point, so that it keeps clear of it."""
     return {
-        "horizontalalignment": "left" if x > _STEEP else "right" if x < -_STEEP else "center",
-        "verticalalignment": "bottom" if y > _STEEP else "top" if y < -_STEEP else "center",
+        "horizontalalignment": "left" if x > _CENTERED_COMPONENT else "right" if x < -_CENTERED_COMPONENT else "center",
+        "verticalalignment": "bottom" if y > _CENTERED_COMPONENT else "top" if y < -_CENTERED_COMPONENT else "center",
     }
 
 
@@ -275,7 +285,7 @@ def _frame(ax: Axes, run: Run | StaticResult) -> None:
 def _draw_scale(ax: Axes, belt: LineCollection, tension: xr.DataArray) -> None:
     figure = ax.figure
     bar = figure.colorbar(belt, ax=ax, orientation="horizontal", fraction=0.06, aspect=45, pad=0.03)
-    bar.locator = MaxNLocator(_SCALE_TICKS, steps=[1, 2, 2.5, 5, 10])
+    bar.locator = MaxNLocator(_MAX_SCALE_TICKS, steps=[1, 2, 2.5, 5, 10])
     bar.set_label(label(tension))
     bar.outline.set_visible(False)
 
@@ -329,9 +339,9 @@ def configuration(run: Run | StaticResult, time: float | None = None, ax: Axes |
     return ax
 
 
-_BEYOND = 1.1
+_STRAIN_RANGE_RATIO = 1.1
 """Largest strain that is drawn, over the last one that was measured."""
-_LARGEST = 0.01
+_DEFAULT_MAX_STRAIN = 0.01
 """Largest strain that is drawn of a belt without a curve."""
 
 
@@ -362,7 +372,7 @@ def stretch(entry: Entry, name: str = "", ax: Axes | None = None) -> Axes:
     """
     ax, curve = axes_or_new(ax), entry.stretch_curve
     law = Linear(entry.axial_stiffness) if curve is None else curve.parameters
-    strain = np.linspace(0.0, _LARGEST if curve is None else _BEYOND * curve.strains[-1], 200)
+    strain = np.linspace(0.0, _DEFAULT_MAX_STRAIN if curve is None else _STRAIN_RANGE_RATIO * curve.strains[-1], 200)
     tension = law.tension(1.0 + strain)
     ax.plot(100.0 * strain, tension, color=COLORS[0], label="in a drive")
     if curve is not None:

@@ -27,7 +27,7 @@ from beltdyn.show.plot.print_style import PRINT, SCREEN, figure_style, require_s
 from beltdyn.show.plot.style import one_panel, show_enough, styled
 
 P = ParamSpec("P")
-_TURNS = 0.01
+_MIN_SPEED = 0.01
 """Speed from which on a pulley turns, rad/s."""
 Together = Callable[[Sequence[Any], Axes | None], Axes]
 """What draws several results into one pair of axes."""
@@ -83,7 +83,9 @@ def over_time(run: Run) -> bool:
 
 def over_turns(run: Run) -> bool:
     """Draw a figure over time where the driver turns: at rest there is nothing in it."""
-    return over_time(run) and bool(np.abs(run.dataset["pulley_speed"].values[:, run.drive.reference]).max() > _TURNS)
+    return over_time(run) and bool(
+        np.abs(run.dataset["pulley_speed"].values[:, run.drive.reference]).max() > _MIN_SPEED
+    )
 
 
 def slipping(run: Run) -> bool:
@@ -190,7 +192,8 @@ def require_kind(name: str, result: Result, kinds: tuple[str, ...]) -> None:
 _SAYS_WHO_MADE_IT = {".png": "Software", ".svg": "Creator", ".pdf": "Creator", ".ps": "Creator", ".eps": "Creator"}
 """Suffix -> the field of the file's own description that names its maker."""
 
-_PNG_DPI = 200
+_PNG_RESOLUTION = 200
+"""Resolution of PNG figures in pages, pixels per inch: about twice the 96 pixels of an inch on a page."""
 
 
 def save(figure: Figure, path: Path, overwrite: bool = False) -> Path:
@@ -213,7 +216,7 @@ def data_uri(figure: Figure, file_format: Literal["svg", "png"] = "svg") -> str:
     with rc_context({"svg.hashsalt": MARK, "path.simplify_threshold": 0.3}):
         metadata = {"Date": None} if file_format == "svg" else None
         figure.savefig(
-            stream, format=file_format, dpi=_PNG_DPI, metadata=metadata, bbox_inches="tight", pad_inches=0.03
+            stream, format=file_format, dpi=_PNG_RESOLUTION, metadata=metadata, bbox_inches="tight", pad_inches=0.03
         )
     kind = {"svg": "svg+xml", "png": "png"}[file_format]
     return f"data:image/{kind};base64,{base64.b64encode(stream.getvalue()).decode()}"

@@ -12,9 +12,10 @@ from beltdyn.show.plot.style import NOTE
 
 _NOUNS = {"design": "designs", "state": "states", "row": "rows"}
 """What stands along a dimension; points along others."""
-_LETTERS = 34
-"""Of a line in an empty panel."""
-_MOST_LINES = 5
+_LINE_LENGTH = 34
+"""Letters of a line in an empty panel at most: a panel beside others is 3.7 inches wide."""
+_MAX_LINES = 5
+"""Lines of a text in an empty panel at most: a longer text is cut, since a panel beside others is 2.7 inches high."""
 
 
 def gaps(result: Result) -> str:
@@ -66,7 +67,7 @@ def explain_empty(ax: Axes, result: Result) -> None:
 
 def write_inside(ax: Axes, text: str) -> None:
     """Write into the middle of axes that are empty otherwise."""
-    lines = fill(text, _LETTERS, max_lines=_MOST_LINES, placeholder=" …")
+    lines = fill(text, _LINE_LENGTH, max_lines=_MAX_LINES, placeholder=" …")
     ax.annotate(lines, (0.5, 0.5), xycoords="axes fraction", ha="center", va="center", fontsize=8, gid=NOTE)
 
 

@@ -27,13 +27,15 @@ from beltdyn.show.plot.style import INK, NOTE, dash, name_lines
 
 # Several results in one figure: what each is called, and how its lines differ from those of the others
 
-_PALER = 0.25
+_PALENESS_STEP = 0.25
 """By how much the lines of a result are paler than those of the result before."""
-_PALEST = 0.6
-_MOST_KEYS = 2
-_SPELLED = 30
+_MAX_PALENESS = 0.6
+"""Largest share of white in the color of a line: a paler one would be hard to see on white paper."""
+_MAX_KEYS = 2
+"""Number of keys whose values name a result at most: names must fit into a legend."""
+_MAX_JOINT_LENGTH = 30
 """Letters of a line's name with that of its result, up to which both are written behind each other."""
-_ROOMY = 50
+_MAX_LEGEND_LENGTH = 50
 """Letters of a legend from which on the names of results stand below the figure."""
 
 
@@ -73,7 +75,7 @@ def overlay(
         notes[0].set_text(_shared([note.get_text() for note in notes]))
     legend, page = _named(drawn, names), ax.figure.figure
     styles = [line for line in legend if not any(line in lines for lines in drawn.values())]
-    if not styles or (len(page.axes) == 1 and sum(len(str(line.get_label())) for line in legend) < _ROOMY):
+    if not styles or (len(page.axes) == 1 and sum(len(str(line.get_label())) for line in legend) < _MAX_LEGEND_LENGTH):
         name_lines(ax, legend)
         return ax
     if len(page.axes) == 1 or len(legend) > len(styles) + 1:  # one line is named by the title of its panel
@@ -89,7 +91,7 @@ def names_of_results(results: Sequence[Result]) -> list[str]:
         names = [name(result) for result in results]
         if all(names) and len(set(names)) == len(names):
             return names
-    differing = [(key, [value.strip('"') for value in row]) for key, row in differing_keys(results)[:_MOST_KEYS]]
+    differing = [(key, [value.strip('"') for value in row]) for key, row in differing_keys(results)[:_MAX_KEYS]]
     names = [", ".join(f"{key} = {row[number]}" for key, row in differing) for number in range(len(results))]
     return names if len(set(names)) == len(names) else [f"result {n}" for n, _ in zip(count(1), results, strict=False)]
 
@@ -145,7 +147,7 @@ def _tell_apart(artists: Sequence[Any], number: int) -> None:
 
 
 def _paler(tint: Any, number: int) -> tuple[float, float, float]:
-    share = min(_PALER * number, _PALEST)
+    share = min(_PALENESS_STEP * number, _MAX_PALENESS)
     red, green, blue = (channel + share * (1.0 - channel) for channel in to_rgb(tint))
     return red, green, blue
 
@@ -159,7 +161,7 @@ def _named(drawn: Mapping[int, Sequence[Line2D]], names: Sequence[str]) -> list[
         (line, names[number]) for number, lines in named.items() for line in lines if line.get_label() not in shared
     ]
     spelled = {line: f"{line.get_label()}, {name}" for line, name in rest}
-    short = max(map(len, spelled.values()), default=0) <= _SPELLED
+    short = max(map(len, spelled.values()), default=0) <= _MAX_JOINT_LENGTH
     for line, text in spelled.items():
         if short:
             line.set_label(text)
@@ -173,8 +175,9 @@ def _has_name(line: Line2D) -> bool:
     return not str(line.get_label()).startswith("_")
 
 
-_SIZE = 11
-_AN_INCH = 11.5
+_HEADLINE_SIZE = 11
+"""Size of the letters of a headline, points: one more than those of panel titles."""
+_LETTERS_PER_INCH = 11.5
 """Letters of this size in an inch."""
 
 
@@ -182,8 +185,8 @@ def write_headline(page: Figure, text: str) -> None:
     """Write above all panels of a page, at the left, in as many lines as it takes; in print captions say it."""
     if prints():
         return
-    text = fill(text, int(_AN_INCH * page.get_figwidth()))
-    page.suptitle(text, x=0.01, horizontalalignment="left", fontsize=_SIZE)
+    text = fill(text, int(_LETTERS_PER_INCH * page.get_figwidth()))
+    page.suptitle(text, x=0.01, horizontalalignment="left", fontsize=_HEADLINE_SIZE)
 
 
 def headlines(results: Sequence[Result]) -> str:

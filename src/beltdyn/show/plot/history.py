@@ -30,7 +30,7 @@ from beltdyn.show.plot.style import (
     unit_of,
 )
 
-_SHOWN = 0.01
+_MIN_ENERGY_SHARE = 0.01
 """Part of the largest energy from which on one is drawn."""
 _ENERGIES = (
     "driver_work",
@@ -43,9 +43,9 @@ _ENERGIES = (
 )
 _PARTS, _LINE = 100, 0.06
 """Parts of a run that periods are at least apart from each other, and height of a line of words over that of axes."""
-_LATE = 0.6
+_LATE_SHARE = 0.6
 """Part of a run from which on periods are named to their left."""
-_WAVES = 5.0
+_MAX_DASHED_WAVES = 5.0
 """Number of vibrations across the figure above which dashed lines are indistinct."""
 
 
@@ -180,7 +180,7 @@ def energy(run: Run, ax: Axes | None = None) -> Axes:
     parts["Losses"] = sum((run.dataset[name] for name in losses_of(run.dataset)), xr.zeros_like(run.dataset["time"]))
     largest = max(float(np.abs(values).max()) for values in parts.values())
     for number, (name, values) in enumerate(parts.items()):
-        if float(np.abs(values).max()) > _SHOWN * largest:
+        if float(np.abs(values).max()) > _MIN_ENERGY_SHARE * largest:
             style = "-" if name.endswith("energy") else dash(1 if name.startswith("Work") else 2)
             _line(ax, values, name, number, style)
     ax.set(xlabel=label(run.dataset["time"]), ylabel=f"Energy [{unit(run.dataset[_ENERGIES[0]])}]")
@@ -219,7 +219,7 @@ def mark_incidents(run: Run, ax: Axes, kinds: Collection[str]) -> Axes:
         for begin, end in merged:
             ax.axvspan(begin, max(end, begin + 0.2 * gap), color=SHADE, alpha=0.7, linewidth=0.0, zorder=0)
         if merged:
-            late = merged[0][0] - time[0] > _LATE * np.ptp(time)
+            late = merged[0][0] - time[0] > _LATE_SHARE * np.ptp(time)
             at, side = (merged[-1][1], "right") if late else (merged[0][0], "left")
             ax.annotate(
                 f"{one.kind}: {one.name}",
@@ -288,7 +288,7 @@ def vibrates(variable: xr.DataArray) -> np.ndarray:
         return np.zeros(values.shape[1], dtype=bool)
     low, high = np.nanpercentile(values[np.isfinite(values)], (1.0, 99.0))
     traveled = np.nansum(np.abs(np.diff(np.clip(values, low, high), axis=0)), axis=0)
-    return np.asarray(traveled > 2.0 * _WAVES * (high - low))
+    return np.asarray(traveled > 2.0 * _MAX_DASHED_WAVES * (high - low))
 
 
 def _line(ax: Axes, values: xr.DataArray, name: str, number: int, style: Dash) -> None:
@@ -298,7 +298,7 @@ def _line(ax: Axes, values: xr.DataArray, name: str, number: int, style: Dash) -
 
 # Figures of the spans and tensioners
 
-_FLOOR = 1e-6
+_SPECTRUM_FLOOR = 1e-6
 """Part of the largest amplitude below which a spectrum is cut off."""
 
 
@@ -374,7 +374,7 @@ def tension_spectrum(run: Run, start: float | None = None, end: float | None = N
     highest = float(spectrum.max())
     ax.set(xlabel=label(spectrum["frequency"]), ylabel=label(spectrum))
     set_log_scale(ax)
-    ax.set_ylim(bottom=max(_FLOOR * highest, float(np.percentile(spectrum[1:], 1.0))))
+    ax.set_ylim(bottom=max(_SPECTRUM_FLOOR * highest, float(np.percentile(spectrum[1:], 1.0))))
     name_lines(ax)
     return ax
 

@@ -37,7 +37,7 @@ from beltdyn.show.plot.style import COLORS, INK, PALE, axes_or_new, color, new_f
 _BELT = COLORS[0]
 _WAY, _POINTS = 1.4, 20
 """Length of a way that is drawn, over the radius of the pulley, and its points."""
-_LONG = 0.06
+_MIN_LABEL_SHARE = 0.06
 """Share of the extent of a drive from which on a span has room for its length."""
 _ARROW = "-|>,head_length=5,head_width=2.4"
 
@@ -86,7 +86,7 @@ def layout(drive: Drive, installation: Installation | None = None, ax: Axes | No
     for number, pulley in enumerate(drive.pulleys):
         text = f"{number + 1} {pulley.name}\n{np.degrees(path.wrap_angles[number]):.0f}°"
         write_pulley(ax, path, number, text, float(np.ptp(extent, axis=0).max()))
-    _write_spans(ax, path, _LONG * float(np.ptp(extent, axis=0).max()))
+    _write_spans(ax, path, _MIN_LABEL_SHARE * float(np.ptp(extent, axis=0).max()))
     ax.set(xlabel="x [m]", ylabel="y [m]")
     name = f"{drive.name}\n" if drive.name else ""
     ax.set_title(

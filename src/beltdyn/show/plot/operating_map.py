@@ -34,7 +34,8 @@ from beltdyn.show.plot.style import (
 
 _SHOWN = ("tension", "hub_load")
 _ENDS = ("tension_after_tensioning", "tension_after_yielding")
-_POINTS = 60
+_CURVE_POINTS = 60
+"""Number of positions of the tensioner at which the curve by virtual work is computed: it must look smooth."""
 
 
 def _both(draw: Callable[..., Axes], result: Result, choice: Choice) -> Figure:
@@ -79,7 +80,7 @@ def tensioner_sheet(result: Result, variable: str = "tension", *, ax: Axes | Non
     place, size = dataset["position"].values, dataset[variable].values
     on = np.isfinite(size) & np.isfinite(dataset["belt_length"].values)
     if on.any():
-        line = np.linspace(place[on].min(), place[on].max(), _POINTS)
+        line = np.linspace(place[on].min(), place[on].max(), _CURVE_POINTS)
         ax.plot(
             carrier.shown(line),
             [_by_hand(result, number, one, variable) for one in line],
@@ -126,9 +127,9 @@ _UNITS = (
 _PERCENT = ("pulley_slip", "efficiency", _FRICTION_USED)
 _OF_GRIP = ("pulley_slip", _FRICTION_USED, "slip_safety")
 """What is drawn of belts without teeth."""
-_ALL = 0.99
+_FULL_SLIDING_SHARE = 0.99
 """Part of an arc that slides as a whole."""
-_SAFE = 10.0
+_MAX_SAFETY = 10.0
 """Slip safety, or margin to a jump, up to which it is drawn: more is enough."""
 _WARNED = {"slip_safety": 1.5, "jump_margin": LIFTS}
 """Values below which warnings begin."""
@@ -253,9 +254,9 @@ def _top(safety: xr.DataArray) -> float:
     """Upper end of an axis of safeties: large ones are cut off where there are small ones."""
     known = safety.values[np.isfinite(safety.values)]
     if known.size == 0:
-        return _SAFE
+        return _MAX_SAFETY
     top = 1.1 * float(known.max())
-    return min(_SAFE, top) if known.min() < _SAFE else top
+    return min(_MAX_SAFETY, top) if known.min() < _MAX_SAFETY else top
 
 
 def _over_a_grid(result: Result) -> bool:
@@ -372,7 +373,7 @@ def traction_curve(result: Result, ax: Axes | None = None) -> Axes:
 
 def _mark_gross_slip(ax: Axes, dataset: xr.Dataset, torque: FloatArray) -> None:
     """Mark the first point at which the whole arc of a pulley slides, and name the pulley."""
-    slides = (dataset["sliding_arc"] > _ALL * dataset["wrap_angle"]).transpose("slip", "pulley").values
+    slides = (dataset["sliding_arc"] > _FULL_SLIDING_SHARE * dataset["wrap_angle"]).transpose("slip", "pulley").values
     points = np.flatnonzero(slides.any(axis=1) & np.isfinite(torque))
     if points.size:
         first = points[0]

@@ -34,19 +34,20 @@ COLUMN, PAGE = 84.0 / 25.4, 174.0 / 25.4
 """Widths of a column and of a page of a journal with two columns, inches."""
 PRINT_SIZE, PRINT_SAMPLE = 8.0, 30.0
 """Size of letters, and width of the line before a name with the gap to the next one, points."""
-_WIDEST = 8.0
+_MAX_COLUMN_WIDTH = 8.0
 """Width up to which a figure for the screen fits into a column, inches."""
-_HIGHER = 1.3
+_HEIGHT_RATIO = 1.3
 """Height over width in a column over that on the screen, since letters are larger against the axes."""
 _PATTERNS = ((0, (7, 2)), (0, (4, 1.5, 1, 1.5)), (0, (1.5, 1.5)), (0, (7, 1.5, 1, 1.5, 1, 1.5)))
 """Line styles of lines that differ on the screen by their colors alone."""
-_THIN = 0.9
+_THIN_LINE_WIDTH = 0.9
 """Width of lines below which they are taken to vibrate, points."""
-_FILLED = 0.95
+_LABEL_SHARE = 0.95
 """Part of the width of a figure that labels may fill."""
-_SHORTER = 0.9
+_LINE_LENGTH_RATIO = 0.9
 """Letters of a line over those of mean width that fill it, since letters differ."""
-_INCH = 72.0
+_POINTS_PER_INCH = 72.0
+"""Points in an inch: letters are measured in points, and figures in inches."""
 _LUMINANCE = np.array([0.2126, 0.7152, 0.0722])
 """Parts of red, green and blue in the luminance (Rec. 709)."""
 
@@ -128,8 +129,8 @@ def figure_style(name: str) -> Iterator[None]:
 
 def printed_size(size: tuple[float, float], wide: bool = False) -> tuple[float, float]:
     """Width and height in print, inches, of a figure of a size on the screen; of wide ones over the page."""
-    width = PAGE if wide or size[0] > _WIDEST else COLUMN
-    return width, (_HIGHER if width == COLUMN else 1.0) * size[1] * width / size[0]
+    width = PAGE if wide or size[0] > _MAX_COLUMN_WIDTH else COLUMN
+    return width, (_HEIGHT_RATIO if width == COLUMN else 1.0) * size[1] * width / size[0]
 
 
 def finish(page: Figure) -> None:
@@ -151,9 +152,12 @@ def finish(page: Figure) -> None:
 def _broken(text: str, font: FontProperties, width: float) -> str:
     """A text in lines that fit into a width, inches."""
     lines = text.split("\n")
-    needed = [text_to_path.get_text_width_height_descent(line, font, False)[0] / _INCH / _FILLED for line in lines]
+    needed = [
+        text_to_path.get_text_width_height_descent(line, font, False)[0] / _POINTS_PER_INCH / _LABEL_SHARE
+        for line in lines
+    ]
     return "\n".join(
-        fill(line, int(_SHORTER * len(line) * width / length)) if length > width else line
+        fill(line, int(_LINE_LENGTH_RATIO * len(line) * width / length)) if length > width else line
         for line, length in zip(lines, needed, strict=True)
     )
 
@@ -163,7 +167,7 @@ def _tell_apart(ax: Axes) -> None:
 
     Thin lines vibrate, and dashes would be lost in them; lines of several results are named by their style.
     """
-    solid = [line for line in ax.lines if _is_solid(line) and line.get_linewidth() >= _THIN]
+    solid = [line for line in ax.lines if _is_solid(line) and line.get_linewidth() >= _THIN_LINE_WIDTH]
     if any(line.get_gid() for line in solid):
         return
     boxes = [box for box in (ax.get_legend(), *ax.figure.figure.legends) if box is not None]

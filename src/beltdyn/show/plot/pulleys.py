@@ -36,8 +36,9 @@ from beltdyn.show.plot.style import (
 
 _ROOM = 0.8
 """Height of the bars of a cause, over the distance from one cause to the next."""
-_SMALL = 8.0
-_NEGLIGIBLE = 1e-3
+_POWER_LETTER_SIZE = 8.0
+"""Size of the powers behind the bars of several runs, points: the bars are thinner than those of one run."""
+_NEGLIGIBLE_LOSS = 1e-3
 """Part of the largest loss below which one is left out."""
 
 
@@ -54,7 +55,7 @@ def _losses_of_several(runs: Sequence[Run], ax: Axes | None) -> Axes:
         powers = [balance.losses.get(cause, 0.0) for cause in causes]
         ax.barh(places, powers, height=0.9 * height, color=color(number), label=name)
         for place, power in zip(places, powers, strict=True):
-            _write(ax, balance, power, (max(power, 0.0), place), _SMALL)
+            _write(ax, balance, power, (max(power, 0.0), place), _POWER_LETTER_SIZE)
     _frame(ax, causes)
     ax.set_xlabel("Power lost [W] and its share of the power input, means at the end of each run")
     name_lines(ax)
@@ -115,7 +116,7 @@ def _worth_drawing(balances: Sequence[Balance]) -> list[str]:
     for cause in powers:
         powers[cause] = max(abs(balance.losses.get(cause, 0.0)) for balance in balances)
     largest = max(powers.values(), default=0.0)
-    return [cause for cause, power in powers.items() if power > _NEGLIGIBLE * largest]
+    return [cause for cause, power in powers.items() if power > _NEGLIGIBLE_LOSS * largest]
 
 
 _ROOM, _ROOM_IN_PRINT = 0.3, 0.6
@@ -149,10 +150,12 @@ def _stack(ax: Axes, row: int, powers: xr.DataArray) -> tuple[float, float]:
     return left, right
 
 
-_LARGEST_SAFETY = 10.0
-_RUNNING = 0.98
+_MAX_SAFETY = 10.0
+"""Slip safety at the upper end of the axis, 1: pulleys that are mostly above it are named, not drawn."""
+_RUNNING_SPEED_SHARE = 0.98
 """Part of its mean speed at the end from which on the driver counts as running."""
-_RINGS = 4
+_RADIAL_INTERVALS = 4
+"""Intervals of the radial axis at most: its numbers stand close together along one radius."""
 _TOP: dict[str, Any] = {"ha": "right", "va": "top", "fontsize": 8}
 """Alignment of text in the upper right corner."""
 
@@ -209,7 +212,7 @@ def slip(run: Run, ax: Axes | None = None) -> Axes:
 def _after_start(run: Run, latest: float) -> float:
     """When the start is over, s: the driver runs, and a tenth of the rest has gone by; before means begin."""
     time, speed = run.dataset["time"].values, np.abs(run.dataset["pulley_speed"].values[:, run.drive.reference])
-    reached = time[np.argmax(speed >= _RUNNING * speed[time >= latest].mean())]
+    reached = time[np.argmax(speed >= _RUNNING_SPEED_SHARE * speed[time >= latest].mean())]
     return float(min(reached + 0.1 * (time[-1] - reached), latest))
 
 
@@ -249,17 +252,17 @@ def slip_safety(run: Run, ax: Axes | None = None) -> Axes:
     """
     safeties = derived.slip_safety(run)
     safeties, names = safeties.where(np.isfinite(safeties)), safeties["pulley"].values
-    seen = (safeties < _LARGEST_SAFETY).any("time").values
-    loaded = (safeties.median("time") < _LARGEST_SAFETY).values
+    seen = (safeties < _MAX_SAFETY).any("time").values
+    loaded = (safeties.median("time") < _MAX_SAFETY).values
     shown = loaded if loaded.any() else seen
     ax = envelope(safeties.where(xr.DataArray(shown, dims="pulley")), axes_or_new(ax))
     shade(ax, 0.0, 1.0, "gross slip")
     if not shown.all():
         above = ", ".join(map(str, names[~shown]))
-        words = f"above {_LARGEST_SAFETY:g}: {above} ↑"
+        words = f"above {_MAX_SAFETY:g}: {above} ↑"
         ax.annotate(words, (1.0, 1.0), (-4, -4), "axes fraction", "offset points", **_TOP)
     draw_limits(run, ax, "least_slip_safety")
-    ax.set_ylim(0.0, _LARGEST_SAFETY)
+    ax.set_ylim(0.0, _MAX_SAFETY)
     return ax
 
 
@@ -343,7 +346,7 @@ def hub_loads(run: Run, pulley: str | int | None = None, ax: Axes | None = None)
         name = run.drive.pulleys[number].name
         ax.plot(angle[-1:], load[-1:], color=color(number), marker="o", markersize=5.0, label=name, linestyle="")
     ax.set_rmin(0.0)
-    ax.yaxis.set_major_locator(MaxNLocator(_RINGS))
+    ax.yaxis.set_major_locator(MaxNLocator(_RADIAL_INTERVALS))
     ax.tick_params(axis="y", labelsize=8)
     ax.set_rlabel_position(_widest_gap(loads["hub_direction"].values[half:, numbers]))
     ax.set_title(label(loads["hub_load"]), loc="left")

@@ -14,9 +14,9 @@ from beltdyn.results.mechanics import centerline, recorded_kind
 from beltdyn.show.plot.figures import Choice, always, figure
 from beltdyn.show.plot.style import INK, axes_or_new, color, dash, name_lines, new_figure, set_log_scale
 
-_SHAPES = 4
+_SHAPE_COUNT = 4
 """Shapes that are drawn by default, as many as in the paper."""
-_SIZE = (6.4, 5.6)
+_FIGURE_SIZE = (6.4, 5.6)
 """Width and height, inches."""
 _HELD = {(True, True): "^", (True, False): "|", (False, True): "_"}
 """Directions in which a node is fixed -> its marker."""
@@ -24,7 +24,7 @@ _HELD = {(True, True): "^", (True, False): "|", (False, True): "_"}
 
 def _page(draw: Callable[..., Axes], result: Result, choice: Choice) -> Figure:
     """Lay out a figure that is nearly as high as wide."""
-    page = new_figure(_SIZE)
+    page = new_figure(_FIGURE_SIZE)
     draw(result, ax=page.add_subplot())
     return page
 
@@ -59,11 +59,11 @@ def iterations(result: Result, numbers: Sequence[int] | None = None, ax: Axes | 
     """
     dataset = result.dataset
     last = int(dataset["iterations"])
-    chosen = np.unique(np.linspace(0, last, _SHAPES).round().astype(int)).tolist() if numbers is None else numbers
+    chosen = np.unique(np.linspace(0, last, _SHAPE_COUNT).round().astype(int)).tolist() if numbers is None else numbers
     for number in chosen:
         if not 0 <= number <= last:
             raise ModelError(f"there is no iteration {number}. Choose some of 0 to {last}.")
-    ax = axes_or_new(ax, _SIZE)
+    ax = axes_or_new(ax, _FIGURE_SIZE)
     for row, number in enumerate(chosen):
         style: dict[str, Any] = {"color": color(row), "linestyle": dash(row)}
         name = "initial shape" if number == 0 else f"iteration {number}"

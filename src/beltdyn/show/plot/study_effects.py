@@ -33,15 +33,17 @@ from beltdyn.show.plot.study_values import (
 )
 from beltdyn.show.plot.style import INK, axes_or_new, color, dash, note
 
-_FAMILY = 7
+_MAX_FAMILY_LINES = 7
 """Lines of one panel."""
-_MOST_LINES = 1500
-_AXES = 4
+_MAX_LINES = 1500
+"""Lines along parallel axes at most, of points at equal intervals of the study: more would cover each other."""
+_MAX_RESULT_AXES = 4
 """Results along parallel axes."""
-_LEVELS = 12
+_CONTOUR_LEVELS = 12
+"""Number of contour levels, about: their limits are round numbers, so that there may be a few more or fewer."""
 _ROOM = 0.05
 """Room above and below the points of contours, over their range."""
-_NARROW = 11
+_TICK_LINE_LENGTH = 11
 """Letters in a line below one of them."""
 _UNKNOWN = "0.6"
 """Color of points without a value of the result that colors them."""
@@ -91,7 +93,7 @@ def study_lines(result: Result, of: str | None = None, over: str | None = None, 
     second = result.dataset[others[0]] if len(others) == 1 else None
     values = np.array(values_of(second) if second is not None else [None] * len(x), dtype=object)
     family = sorted(set(values), key=lambda one: (isinstance(one, str), one is not None, one or 0.0))
-    if others and (second is None or len(family) > _FAMILY):
+    if others and (second is None or len(family) > _MAX_FAMILY_LINES):
         ax.plot(x, y, "o", markersize=3, color=color(0))
     else:
         for number, value in enumerate(family):
@@ -156,7 +158,7 @@ def study_contour(result: Result, of: str | None = None, *, ax: Axes | None = No
     ax, (first, second), (x, y) = axes_or_new(ax), varied_numbers(result), places.T
     known = np.isfinite(z) & np.isfinite(places).all(axis=1)
     if spans_a_plane(places[known]) and np.ptp(z[known]) > 0.0:
-        filled: Any = ax.tricontourf(x[known], y[known], z[known], levels=_LEVELS, cmap="viridis")
+        filled: Any = ax.tricontourf(x[known], y[known], z[known], levels=_CONTOUR_LEVELS, cmap="viridis")
         ax.plot(x[known], y[known], ".", color=INK, markersize=2)
     else:
         filled = ax.scatter(x[known], y[known], 30, z[known], cmap="viridis", edgecolor=INK, linewidth=0.5)
@@ -210,12 +212,12 @@ def parallel_coordinates(result: Result, of: str | None = None, *, ax: Axes | No
     'belt.width [mm]'
     """
     name, varied = chosen_result(result, of), varied_paths(result)
-    names = [*varied, *[one for one in results_of(result) if one != name][: _AXES - 1], name]
+    names = [*varied, *[one for one in results_of(result) if one != name][: _MAX_RESULT_AXES - 1], name]
     ax = axes_or_new(ax, (1.6 * len(names) + 1.5, 4.2))
     table = np.stack([along_axis(result.dataset[one]) for one in names], axis=1)
     complete = np.isfinite(table).all(axis=1)
     table = table[np.isfinite(table[:, len(varied) :]).any(axis=1)]
-    table = table[np.unique(np.linspace(0, len(table) - 1, _MOST_LINES).astype(int))]
+    table = table[np.unique(np.linspace(0, len(table) - 1, _MAX_LINES).astype(int))]
     low, high = np.fmin.reduce(table), np.fmax.reduce(table)
     scaled = (table - low) / np.where(high > low, high - low, 1.0)
     places = np.arange(len(names))
@@ -230,7 +232,7 @@ def parallel_coordinates(result: Result, of: str | None = None, *, ax: Axes | No
             text = f"{value:.4g}" if is_number(values) else words_of(values)[int(value)]
             ax.text(place, height, text, ha="center", va=side, fontsize=7, bbox=_BACK)
     note(ax, count_missing(np.where(complete, 0.0, np.nan)).replace("no value", "not all values"))
-    ax.set_xticks(places, [labelled(result.dataset[one], _NARROW) for one in names], fontsize=7)
+    ax.set_xticks(places, [labelled(result.dataset[one], _TICK_LINE_LENGTH) for one in names], fontsize=7)
     ax.set(xlim=(-0.5, len(names) - 0.5), ylim=(-0.12, 1.12), yticks=[])
     ax.tick_params(axis="x", length=0, pad=8)
     ax.spines[["left", "bottom"]].set_visible(False)

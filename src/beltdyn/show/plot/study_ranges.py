@@ -27,9 +27,9 @@ from beltdyn.show.plot.style import INK, axes_or_new, color, name_lines, note
 
 # Sobol indices: what part of the variance of a result is due to each number that varies (Saltelli et al. 2010)
 
-_RESAMPLES = 200
+_RESAMPLE_COUNT = 200
 """Of the bootstrap."""
-_LEVEL = 1e-12
+_ROUNDING = 1e-12
 """Change of a result, over its largest value, that is rounding."""
 
 
@@ -44,9 +44,9 @@ def indices_of(values: FloatArray, dimensions: int) -> tuple[FloatArray, FloatAr
     found = np.full((4, values.shape[1], dimensions), np.nan)
     for result in range(values.shape[1]):
         known = parts[:, np.isfinite(parts[:, :, result]).all(axis=0), result]
-        if known.shape[1] < 2 or np.ptp(known) <= _LEVEL * np.max(np.abs(known)):
+        if known.shape[1] < 2 or np.ptp(known) <= _ROUNDING * np.max(np.abs(known)):
             continue
-        drawn = np.random.default_rng(0).integers(known.shape[1], size=(_RESAMPLES, known.shape[1]))
+        drawn = np.random.default_rng(0).integers(known.shape[1], size=(_RESAMPLE_COUNT, known.shape[1]))
         spread = np.stack([_indices(known[:, places]) for places in drawn])
         low, high = np.nanquantile(spread, (0.025, 0.975), axis=0)
         found[:, result] = [*_indices(known), *(0.5 * (high - low))]
@@ -66,10 +66,11 @@ def _indices(known: FloatArray) -> FloatArray:
     return np.stack([alone, in_all])
 
 
-_MOST_BARS = 12
-_WIDE = 22
+_MAX_BARS = 12
+"""Bars of a tornado at most, those of the widest ranges: each needs a line for its name."""
+_LABEL_LENGTH = 22
 """Letters in a line beside a bar."""
-_TICKS = 5
+_MAX_TICK_INTERVALS = 5
 """Numbers below a panel at most, less one: they may have many digits."""
 _NEUTRAL = "0.6"
 """Color of bars without a base."""
@@ -121,18 +122,18 @@ def tornado(result: Result, of: str | None = None, *, ax: Axes | None = None) ->
     known = {path: where & np.isfinite(values) for path, where in moved.items()}
     spans = {path: (values[where].min(), values[where].max()) for path, where in known.items() if where.any()}
     widths = {path: np.fmax(high, base) - np.fmin(low, base) for path, (low, high) in spans.items()}
-    order = sorted(spans, key=lambda path: widths[path])[-_MOST_BARS:]
+    order = sorted(spans, key=lambda path: widths[path])[-_MAX_BARS:]
     for row, path in enumerate(order):
         _draw_bars(ax, row, values[known[path]], base, _values_in_words(result.dataset[path], known[path]))
     if np.isfinite(base):
         ax.axvline(base, color=INK, linewidth=0.9)
-    ax.set_yticks(range(len(order)), [labelled(result.dataset[path], _WIDE) for path in order], fontsize=8)
+    ax.set_yticks(range(len(order)), [labelled(result.dataset[path], _LABEL_LENGTH) for path in order], fontsize=8)
     if not ax.patches:
         write_inside(ax, f"The same {labelled(result.dataset[name])} at all points with a value")
     ax.use_sticky_edges = False
     ax.set_ylim(-0.6, len(order) - 0.4)
     ax.margins(x=0.2)
-    ax.locator_params(axis="x", nbins=_TICKS)
+    ax.locator_params(axis="x", nbins=_MAX_TICK_INTERVALS)
     ax.set_xlabel(labelled(result.dataset[name]))
     _note_gaps(ax, values, base, [path for path, where in known.items() if moved[path].any() and not where.any()])
     return ax
@@ -216,7 +217,7 @@ def sobol_indices(result: Result, of: str | None = None, *, ax: Axes | None = No
         (-0.2, total[0], total_error[0], "with interactions"),
     ):
         ax.barh(places + side, shares, 0.38, xerr=errors, capsize=2, color=color(int(side < 0.0)), label=told)
-    ax.set_yticks(places, [labelled(result.dataset[one], _WIDE) for one in names], fontsize=8)
+    ax.set_yticks(places, [labelled(result.dataset[one], _LABEL_LENGTH) for one in names], fontsize=8)
     ax.set_xlim(left=min(0.0, float(np.nan_to_num(first[0]).min()) - 0.05))
     ax.set_xlabel(f"Share of the variance of\n{name}", fontsize=9)
     name_lines(ax)

@@ -19,17 +19,18 @@ from beltdyn.show.plot.figures import Choice
 from beltdyn.show.plot.gaps import first_failure, gaps
 from beltdyn.show.plot.style import name_once, panels, rows
 
-_MOST_PANELS = 6
-_BESIDE = 2
+_MAX_PANELS = 6
+"""Panels of a page at most, of the first results of a study: three rows of two."""
+_PANEL_COLUMNS = 2
 """Panels beside each other: their words are long."""
-_CORNERS = 3
+_MIN_CONTOUR_POINTS = 3
 """Points from which on there are contours."""
 
 
 def panel_for_each_result(draw: Callable[..., Axes], result: Result, choice: Choice) -> Figure:
     """Lay out a panel for each of the first results, with one legend where all have the same."""
-    draws = [partial(draw, result, name) for name in known_results(result)[:_MOST_PANELS]]
-    page = panels(rows(draws, _BESIDE), sharey=False)
+    draws = [partial(draw, result, name) for name in known_results(result)[:_MAX_PANELS]]
+    page = panels(rows(draws, _PANEL_COLUMNS), sharey=False)
     titles = [box.get_title().get_text() for ax in page.axes if (box := ax.get_legend()) is not None]
     name_once(page, next(iter(titles), ""))
     return page
@@ -62,7 +63,7 @@ def places_of(result: Result) -> FloatArray:
 def spans_a_plane(places: FloatArray) -> bool:
     """Whether points of two numbers, shape (points, 2), lie not along a line; those with unknown numbers left out."""
     places = places[np.isfinite(places).all(axis=1)]
-    if places.shape[1] != 2 or len(places) < _CORNERS or not np.ptp(places, axis=0).all():
+    if places.shape[1] != 2 or len(places) < _MIN_CONTOUR_POINTS or not np.ptp(places, axis=0).all():
         return False
     places = (places - places.mean(axis=0)) / np.ptp(places, axis=0)
     return int(np.linalg.matrix_rank(places, tol=1e-6)) == 2

@@ -22,12 +22,13 @@ from matplotlib.typing import LineStyleType
 from beltdyn.results import Result
 from beltdyn.show.plot.print_style import GREYS, PRINT_SAMPLE, PRINT_SIZE, finish, printed_size, prints, rules
 
-_SAMPLE, _SIZE = 45.0, 9.0
+_SAMPLE_WIDTH, _NAME_SIZE = 45.0, 9.0
 """Width of the line before a name with the gap to the next one, and size of names, points."""
-_WIDER = 1.08
+_WIDTH_RATIO = 1.08
 """Width of axes after their layout, over that before it."""
-_INCH = 72.0
-_ROW, _GAP, _ABOVE = 13.0, 6.0, 11.0
+_POINTS_PER_INCH = 72.0
+"""Points in an inch: letters are measured in points, and figures in inches."""
+_ROW_HEIGHT, _AXES_DISTANCE, _LEGEND_DISTANCE = 13.0, 6.0, 11.0
 """Height of a row, and the distances of a title from axes and from a legend, points."""
 
 
@@ -38,14 +39,14 @@ def name_lines(ax: Axes, lines: Sequence[Artist] | None = None) -> None:
     if not names:
         return
     page = ax.figure.figure
-    width = float(_WIDER * ax.get_position().width * page.get_figwidth())
+    width = float(_WIDTH_RATIO * ax.get_position().width * page.get_figwidth())
     columns = _columns(names, width)
     if columns == 1 and _widths(names, 1) > width and page.axes == [ax]:
         page.legend(handles=lines, loc="outside lower left")
         return
     ax.legend(handles=lines, loc="lower left", bbox_to_anchor=(0.0, 1.0), ncols=columns, borderaxespad=0.2)
     if title := ax.get_title(loc="left"):
-        ax.set_title(title, loc="left", pad=_ABOVE + _ROW * -(-len(names) // columns))
+        ax.set_title(title, loc="left", pad=_LEGEND_DISTANCE + _ROW_HEIGHT * -(-len(names) // columns))
 
 
 def name_once(page: Figure, title: str = "") -> None:
@@ -60,7 +61,7 @@ def name_once(page: Figure, title: str = "") -> None:
                 named.setdefault(text.get_text(), handle)
         box.remove()
         if written := ax.get_title(loc="left"):
-            ax.set_title(written, loc="left", pad=_GAP)
+            ax.set_title(written, loc="left", pad=_AXES_DISTANCE)
     if named:
         columns = _columns(list(named), float(page.get_figwidth()))
         page.legend(list(named.values()), list(named), loc="outside lower left", ncols=columns, title=title or None)
@@ -73,10 +74,10 @@ def _columns(names: Sequence[str], width: float) -> int:
 
 def _widths(names: Sequence[str], columns: int) -> float:
     """Width of a legend of so many columns, which are filled one after the other, inches."""
-    sample, size = (PRINT_SAMPLE, PRINT_SIZE) if prints() else (_SAMPLE, _SIZE)
+    sample, size = (PRINT_SAMPLE, PRINT_SIZE) if prints() else (_SAMPLE_WIDTH, _NAME_SIZE)
     font = FontProperties(size=size)
     widths = [text_to_path.get_text_width_height_descent(name, font, False)[0] for name in names]
-    return sum(sample + float(part.max()) for part in np.array_split(np.array(widths), columns)) / _INCH
+    return sum(sample + float(part.max()) for part in np.array_split(np.array(widths), columns)) / _POINTS_PER_INCH
 
 
 P = ParamSpec("P")
@@ -110,7 +111,7 @@ POLAR_SIZE = (6.2, 4.6)
 NOTE = "note"
 """Name of what is written below axes."""
 
-_BELOW = 38.0
+_NOTE_DISTANCE = 38.0
 """Distance of notes from the axes, points: numbers and a label are between them."""
 
 RESERVATION = "reservation"
@@ -220,7 +221,7 @@ def note(ax: Axes, text: str) -> None:
     """Write below the label of the horizontal axis, at the right, where it covers nothing; no empty text."""
     if not text:
         return
-    below = -_BELOW - _ROW * ax.get_xlabel().count("\n")
+    below = -_NOTE_DISTANCE - _ROW_HEIGHT * ax.get_xlabel().count("\n")
     ax.annotate(
         text, (1.0, 0.0), (0.0, below), "axes fraction", "offset points", ha="right", va="top", fontsize=8, gid=NOTE
     )
@@ -253,8 +254,10 @@ def tension_colors() -> Colormap:
 
 Item = TypeVar("Item")
 
-_PANEL = (3.7, 2.7)
-_COLUMNS = 3
+_PANEL_SIZE = (3.7, 2.7)
+"""Width and height of each panel of a page, inches."""
+_MAX_COLUMNS = 3
+"""Panels beside each other at most: three of them are 11 inches wide."""
 
 
 def one_panel(draw: Callable[..., Axes], run: Result, choice: object) -> Figure:
@@ -264,7 +267,7 @@ def one_panel(draw: Callable[..., Axes], run: Result, choice: object) -> Figure:
     return figure
 
 
-def rows(items: Sequence[Item], most: int = _COLUMNS) -> list[list[Item]]:
+def rows(items: Sequence[Item], most: int = _MAX_COLUMNS) -> list[list[Item]]:
     """Break a sequence into rows of nearly the same length."""
     columns = ceil(len(items) / ceil(len(items) / most))
     return [list(items[first : first + columns]) for first in range(0, len(items), columns)]
@@ -273,7 +276,7 @@ def rows(items: Sequence[Item], most: int = _COLUMNS) -> list[list[Item]]:
 def panels(calls: Sequence[Sequence[Callable[..., Axes]]], *, sharey: bool = True) -> Figure:
     """Draw rows of panels; the last row may be shorter."""
     columns = len(calls[0])
-    figure = new_figure((_PANEL[0] * columns, _PANEL[1] * len(calls)), columns > 1)
+    figure = new_figure((_PANEL_SIZE[0] * columns, _PANEL_SIZE[1] * len(calls)), columns > 1)
     grid = figure.subplots(len(calls), columns, squeeze=False, sharey="row" if sharey else False)
     for axes, draws in zip(grid, calls, strict=True):
         for ax in axes[len(draws) :]:
@@ -303,14 +306,15 @@ _LEAST = {
     "kPa": 0.1,
 }
 """Unit -> least span of an axis, whatever it shows: what is smaller is rounding."""
-_WHOLE = 100.0
-_SQUEEZED = 0.2
+_WHOLE_PERCENTAGE = 100.0
+"""Whole of which shares are parts, %: an axis extends beyond it only where values do."""
+_MIN_DATA_SHARE = 0.2
 """Part of an axis below which what is drawn is not squeezed for a limit."""
-_HEADROOM = 0.08
+_LIMIT_WORDS_SHARE = 0.08
 """Part of the axis that words beside a limit take."""
 LIMIT = "limit"
 """Name of the words at a limit."""
-_LINE = 10.0
+_LINE_HEIGHT = 10.0
 """Height of a line of words, points."""
 
 
@@ -323,8 +327,8 @@ def spread(low: float, high: float, unit: str = "") -> tuple[float, float]:
     bottom, top = low - 0.5 * missing, high + 0.5 * missing
     if low >= 0.0 > bottom:
         return 0.0, least
-    if unit == "%" and high <= _WHOLE < top:
-        return _WHOLE - least, _WHOLE
+    if unit == "%" and high <= _WHOLE_PERCENTAGE < top:
+        return _WHOLE_PERCENTAGE - least, _WHOLE_PERCENTAGE
     return bottom, top
 
 
@@ -351,18 +355,18 @@ def draw_limit(ax: Axes, value: float, text: str, upper: bool | None = None) -> 
     bottom, top = min(low, value), max(high, value)
     above = value >= 0.5 * (low + high)
     style: dict[str, Any] = {"color": INK, "fontsize": 8, "ha": "right", "gid": LIMIT}
-    if high - low < _SQUEEZED * (top - bottom):
+    if high - low < _MIN_DATA_SHARE * (top - bottom):
         words, place, side, inward = (f"{text} ↑", 1.0, "top", -1.0) if above else (f"{text} ↓", 0.0, "bottom", 1.0)
         before = sum(
             one.get_gid() == LIMIT and one.get_verticalalignment() == side and one.get_text()[-1] in "↑↓"
             for one in ax.texts
         )
-        offset = (-4.0, inward * (4.0 + _LINE * before))
+        offset = (-4.0, inward * (4.0 + _LINE_HEIGHT * before))
         ax.annotate(words, (1.0, place), offset, "axes fraction", "offset points", va=side, **style)
         return
     ax.axhline(value, color=INK, linestyle=dash(1), linewidth=0.9, zorder=1.5)
     above = above if upper is None else upper
-    room = _HEADROOM * (top - bottom)
+    room = _LIMIT_WORDS_SHARE * (top - bottom)
     if fitted:
         ax.update_datalim([(0.0, value + room if above else value - room)], updatex=False)
         ax.autoscale_view(scalex=False)

@@ -40,13 +40,14 @@ from beltdyn.show.plot.style import (
 
 # Mode shapes of a drive, still or animated
 
-_DRAWN = 0.06
+_DISPLACEMENT_SHARE = 0.06
 """Size at which the largest displacement is drawn, over that of the drive."""
-_MOST = 12
+_MAX_MODES = 12
 """Modes on a page."""
 KINDS = ("span", "rotational", "tensioner", "coupled")
 """Kinds of modes, in the order of their colors."""
-_FRAMES = 24
+_FRAMES_PER_PERIOD = 24
+"""Pictures of a period of a mode: the phase advances by 15° from each to the next, which looks smooth."""
 
 
 class Swing(NamedTuple):
@@ -65,7 +66,7 @@ class Swing(NamedTuple):
 def swing(result: Result, mode: int) -> Swing:
     """How parts move in a mode, at a size that is seen."""
     one, drive = result.dataset.sel(mode=mode), result.drive
-    size = _DRAWN * float(np.ptp(extent_of(drive, drive.path), axis=0).max())
+    size = _DISPLACEMENT_SHARE * float(np.ptp(extent_of(drive, drive.path), axis=0).max())
     belt = size * _complex(one["belt_shape"].values)[:, None] * one["point_normal"].values
     centers = np.zeros((len(drive.pulleys), 2), complex)
     arms = _complex(one["tensioner_shape"].values) if "tensioner_shape" in one else np.zeros(0, complex)
@@ -77,7 +78,7 @@ def swing(result: Result, mode: int) -> Swing:
 
 def shown_modes(result: Result) -> list[int]:
     """Numbers of the modes that are drawn on a page: the first ones."""
-    return [int(one) for one in result.dataset["mode"].values[:_MOST]]
+    return [int(one) for one in result.dataset["mode"].values[:_MAX_MODES]]
 
 
 def mode_name(result: Result, mode: int) -> str:
@@ -227,7 +228,7 @@ def animate_modes(result: Result, path: Path | str, frame_rate: int = 25, overwr
 
     page = panels(rows([partial(add, one) for one in shown_modes(result)]), sharey=False)
     with film(page, Path(path), frame_rate, overwrite) as take:
-        for phase in 2.0 * np.pi * np.arange(_FRAMES) / _FRAMES:
+        for phase in 2.0 * np.pi * np.arange(_FRAMES_PER_PERIOD) / _FRAMES_PER_PERIOD:
             for picture in pictures:
                 picture.show(float(phase))
             take()
@@ -236,14 +237,17 @@ def animate_modes(result: Result, path: Path | str, frame_rate: int = 25, overwr
 
 # Campbell diagram: frequencies of modes and excitations over speed, and damping ratios of the modes
 
-_SIZE = (8.0, 7.5)
-_HEIGHTS = (2.0, 1.0)
-_ABOVE = 1.08
+_CAMPBELL_SIZE = (8.0, 7.5)
+"""Width and height of a Campbell diagram, inches: it has two panels below each other."""
+_HEIGHT_RATIOS = (2.0, 1.0)
+"""Heights of the panels of frequencies and of damping ratios, relative to each other: the upper one has more lines."""
+_FREQUENCY_RANGE_RATIO = 1.08
 """Upper end of the frequencies that are drawn, over the highest of a mode."""
-_LEAST_DAMPING = 1e-5
-_STRONG = 0.1
+_MIN_DAMPING = 1e-5
+"""Least damping ratio drawn, 1: the axis is logarithmic, and undamped or unstable modes are drawn at it."""
+_RESONANT_DAMPING = 0.1
 """Damping ratio below which a critical speed is marked by a filled circle."""
-_FINE = 200
+_CROSSING_POINTS = 200
 """Speeds at which it is looked where a line leaves the axes."""
 _EXCITED = "0.6"
 """Color of excitations."""
@@ -251,8 +255,8 @@ _EXCITED = "0.6"
 
 def _both(draw: Callable[..., Axes], result: Result, choice: Choice) -> Figure:
     """Lay out frequencies above damping ratios."""
-    page = new_figure(_SIZE)
-    above, below = page.subplots(2, 1, sharex=True, height_ratios=_HEIGHTS)
+    page = new_figure(_CAMPBELL_SIZE)
+    above, below = page.subplots(2, 1, sharex=True, height_ratios=_HEIGHT_RATIOS)
     draw(result, ax=above)
     mode_damping(result, ax=below)
     twice = below.get_legend()
@@ -283,19 +287,19 @@ def campbell(result: Result, ax: Axes | None = None) -> Axes:
     """
     dataset, ax = result.dataset, axes_or_new(ax)
     speed, frequency = RPM * dataset["speed"].values, dataset["frequency"].values
-    top = _ABOVE * float(np.nanmax(frequency)) if np.isfinite(frequency).any() else 1.0
+    top = _FREQUENCY_RANGE_RATIO * float(np.nanmax(frequency)) if np.isfinite(frequency).any() else 1.0
     for line, name in zip(dataset["excitation_frequency"].values.T, dataset["excitation"].values, strict=True):
         ax.plot(speed, line, color=_EXCITED, linewidth=0.8, zorder=1)
         _name_line(ax, speed, line, top, str(name))
     _draw_modes(ax, result, speed, frequency)
     at, meets = RPM * dataset["critical_speed"].values, dataset["critical_frequency"].values
-    strong = dataset["critical_damping_ratio"].values < _STRONG
+    strong = dataset["critical_damping_ratio"].values < _RESONANT_DAMPING
     for chosen, face in ((strong, INK), (~strong, "w")):
         ax.scatter(at[chosen], meets[chosen], 22, facecolor=face, edgecolor=INK, linewidth=0.8, zorder=4)
     ax.set(xlabel=label(dataset["speed"]).replace("rad/s", "rpm"), ylabel=label(dataset["frequency"]), ylim=(0.0, top))
     marks = [
         Line2D([], [], color=INK, marker="o", linestyle="", markerfacecolor=face, markersize=5, label=text)
-        for face, text in ((INK, f"critical, damping < {_STRONG:g}"), ("w", "critical, more damped"))
+        for face, text in ((INK, f"critical, damping < {_RESONANT_DAMPING:g}"), ("w", "critical, more damped"))
     ]
     _legend(ax, result, [*marks, Line2D([], [], color=_EXCITED, linewidth=0.8, label="excitation")])
     return ax
@@ -319,7 +323,7 @@ def mode_damping(result: Result, ax: Axes | None = None) -> Axes:
     """
     dataset, ax = result.dataset, axes_or_new(ax)
     damping = dataset["damping_ratio"].values
-    _draw_modes(ax, result, RPM * dataset["speed"].values, np.maximum(damping, _LEAST_DAMPING))
+    _draw_modes(ax, result, RPM * dataset["speed"].values, np.maximum(damping, _MIN_DAMPING))
     set_log_scale(ax)
     ax.set(xlabel=label(dataset["speed"]).replace("rad/s", "rpm"), ylabel=label(dataset["damping_ratio"]))
     _legend(ax, result, [])
@@ -346,7 +350,7 @@ def _name_line(ax: Axes, speed: FloatArray, line: FloatArray, top: float, name: 
     known = np.isfinite(line)
     if not known.any():
         return
-    fine = np.linspace(speed[0], speed[-1], _FINE)
+    fine = np.linspace(speed[0], speed[-1], _CROSSING_POINTS)
     along = np.interp(fine, speed[known], line[known])
     inside = np.flatnonzero(along <= top)
     if inside.size:

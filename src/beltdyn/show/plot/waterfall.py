@@ -63,17 +63,18 @@ def series(run: Run, variable: str, of: str | int) -> xr.DataArray:
     return scaled.assign_attrs(values.attrs | {"units": shown, "of": names[of]})
 
 
-_RANGE = 60.0
+_LEVEL_RANGE = 60.0
 """Range of levels below the highest, dB."""
 _MAP = "viridis"
-_STRONGEST = 5
-_ROWS, _ROW = 4, 0.08
+_MAX_ORDERS = 5
+"""Number of orders that are named or drawn if none are chosen: those with the largest peaks."""
+_NAME_ROWS, _ROW_SHARE = 4, 0.08
 """Rows of names in a waterfall, and the part of a line from one to the next."""
-_LOW = 0.1
+_LOW_FREQUENCY_SHARE = 0.1
 """Part of the highest frequency below which names stand right of their lines."""
 _HARMONICS = (1, 2, 3)
 """Multiples of the frequency at which elements pass that are marked."""
-_DISTANCE = 0.4
+_MIN_ORDER_DISTANCE = 0.4
 """Orders nearer to each other than this are one, and lower ones a trend."""
 
 
@@ -104,7 +105,7 @@ def _waterfalls(draw: Callable[..., Axes], run: Run, choice: Choice) -> Figure:
     which = _common_orders(run, choice)
     calls = [partial(draw, run, choice.variable, name, pulley, which=which, highest=highest) for name in names]
     page = panels(rows(calls), sharey=False)
-    scale = ScalarMappable(Normalize(highest - _RANGE, highest), _MAP)
+    scale = ScalarMappable(Normalize(highest - _LEVEL_RANGE, highest), _MAP)
     units = ", ".join(dict.fromkeys(unit(one) for one in spectra))
     page.colorbar(scale, ax=page.axes, label=f"Amplitude (peak) [dB re 1 {units}]")
     return page
@@ -173,8 +174,8 @@ def waterfall(
     mesh = ax.pcolormesh(
         amplitude["frequency"][1:],
         RPM * amplitude["speed"],
-        np.maximum(level, top - _RANGE),
-        norm=Normalize(top - _RANGE, top),
+        np.maximum(level, top - _LEVEL_RANGE),
+        norm=Normalize(top - _LEVEL_RANGE, top),
         cmap=_MAP,
         shading="nearest",
         rasterized=True,
@@ -187,7 +188,7 @@ def waterfall(
     marks = [(order, f"{order:.3g}", "-") for order in which]
     marks += [(k * elements, "elements pass" if k == 1 else f"{k} ×", "--") for k in _HARMONICS if isfinite(elements)]
     for place, (order, words, style) in enumerate(sorted(marks)):
-        _mark(ax, order, amplitude, words, style, place % _ROWS)
+        _mark(ax, order, amplitude, words, style, place % _NAME_ROWS)
     ax.set(xlabel=label(amplitude["frequency"]), ylabel=f"Speed of {run.drive.pulleys[number].name} [rpm]")
     ax.set_title(f"{values.attrs['long_name']}, {values.attrs['of']}")
     ax.grid(visible=False)
@@ -271,14 +272,14 @@ def _strongest(order: FloatArray, highest: FloatArray) -> list[float]:
     """The orders that stand out most at some speed, ascending."""
     from scipy.signal import find_peaks
 
-    highest = np.where(order < _DISTANCE, 0.0, highest)
-    peaks, _ = find_peaks(highest, distance=max(1, round(_DISTANCE / float(order[1]))))
-    return sorted(order[peaks[np.argsort(highest[peaks])[::-1][:_STRONGEST]]].tolist())
+    highest = np.where(order < _MIN_ORDER_DISTANCE, 0.0, highest)
+    peaks, _ = find_peaks(highest, distance=max(1, round(_MIN_ORDER_DISTANCE / float(order[1]))))
+    return sorted(order[peaks[np.argsort(highest[peaks])[::-1][:_MAX_ORDERS]]].tolist())
 
 
 def _multiple(order: float, elements: float) -> bool:
     """Whether an order is one, two or three times that at which elements pass."""
-    return any(abs(order - k * elements) < _DISTANCE for k in _HARMONICS)
+    return any(abs(order - k * elements) < _MIN_ORDER_DISTANCE for k in _HARMONICS)
 
 
 def _mark(ax: Axes, order: float, amplitude: xr.DataArray, words: str, style: str, row: int) -> None:
@@ -288,7 +289,7 @@ def _mark(ax: Axes, order: float, amplitude: xr.DataArray, words: str, style: st
     shown = frequency <= highest
     if np.any(shown):
         ax.plot(frequency[shown], RPM * speed[shown], color="w", linestyle=style, linewidth=0.6, alpha=0.7)
-        named = int((1.0 - _ROW * row) * (np.count_nonzero(shown) - 1))
+        named = int((1.0 - _ROW_SHARE * row) * (np.count_nonzero(shown) - 1))
         place = frequency[shown][named], RPM * speed[shown][named]
-        side, ha = (-3, "right") if place[0] > _LOW * highest else (3, "left")
+        side, ha = (-3, "right") if place[0] > _LOW_FREQUENCY_SHARE * highest else (3, "left")
         ax.annotate(words, place, (side, -3), "data", "offset points", color="w", fontsize=8, ha=ha, va="top")

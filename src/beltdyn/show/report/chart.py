@@ -26,11 +26,12 @@ from beltdyn.show.plot.style import LIMIT, NOTE, RESERVATION, styled
 
 # What is drawn on the axes of a figure, drawn again on a chart: lines, marks, areas, words and names
 
-_BINS = 700
+_BIN_COUNT = 700
 """Parts of a line, of each of which least and largest values are kept."""
 _SMALL = "11px"
 _MARKS = {"o": "circle", "x": "x", "s": "square", "^": "triangle", "D": "diamond"}
-_MARK = 6
+_MAX_MARK_SIZE = 6
+"""Largest size of the marks of points, pixels: larger ones would cover each other."""
 _BASELINES = {"center": "middle", "center_baseline": "middle", "baseline": "alphabetic"}
 """How words stand to their height, of matplotlib -> of Bokeh."""
 _AS_DRAWN = (LineCollection, PathCollection, PolyCollection)
@@ -167,7 +168,7 @@ def dashes(line: Line2D) -> Any:
     return [max(1, round(2.0 * part / line.get_linewidth())) for part in np.asarray(pen.dashes).tolist()]
 
 
-def thinned(x: NDArray[Any], values: NDArray[Any], bins: int = _BINS) -> tuple[NDArray[Any], NDArray[Any]]:
+def thinned(x: NDArray[Any], values: NDArray[Any], bins: int = _BIN_COUNT) -> tuple[NDArray[Any], NDArray[Any]]:
     """Keep the least and the largest value of each part of lines, in their order, so that no peak is lost.
 
     In a part, each line has its two values at the same two abscissae as the others.
@@ -212,9 +213,9 @@ def _draw(chart: Any, ax: Axes, lines: Sequence[Line2D], hover: Any) -> list[Nam
         look = {"color": to_hex(line.get_color()), "line_dash": dashes(line)}
         if str(line.get_linestyle()) not in ("None", ""):
             drawn.append(chart.line("x", f"y{number}", source=source, line_width=1.1 * line.get_linewidth(), **look))
-        if line.get_marker() not in ("", "None", None) and len(x) < _BINS:
+        if line.get_marker() not in ("", "None", None) and len(x) < _BIN_COUNT:
             mark = _MARKS.get(str(line.get_marker()), "circle")
-            size = min(_MARK, 1.3 * line.get_markersize())
+            size = min(_MAX_MARK_SIZE, 1.3 * line.get_markersize())
             drawn.append(chart.scatter("x", f"y{number}", source=source, size=size, marker=mark, color=look["color"]))
         if not str(line.get_label()).startswith("_") and drawn:
             named.append(Named(_name(line), drawn[-1], f"y{number}"))
@@ -254,7 +255,7 @@ def _draw_collection(chart: Any, one: Collection) -> Any:
     face, edge = _tint(one.get_facecolor()), _tint(one.get_edgecolor())
     if isinstance(one, PathCollection):
         places = np.asarray(one.get_offsets(), dtype=float)
-        return chart.scatter(*places.T, size=_MARK, fill_color=face, line_color=edge) if len(places) else None
+        return chart.scatter(*places.T, size=_MAX_MARK_SIZE, fill_color=face, line_color=edge) if len(places) else None
     outlines = [np.asarray(path.vertices, dtype=float) for path in one.get_paths()]
     columns = [[line[:, axis] for line in outlines if len(line)] for axis in (0, 1)]
     if isinstance(one, LineCollection):
@@ -278,14 +279,15 @@ def _sample(chart: Any, handle: Artist) -> Any:
         if str(handle.get_linestyle()) in ("None", ""):
             mark = _MARKS.get(str(handle.get_marker()), "circle")
             face = to_hex(handle.get_markerfacecolor())
-            return chart.scatter(nothing, nothing, size=_MARK, marker=mark, line_color=tint, fill_color=face)
+            return chart.scatter(nothing, nothing, size=_MAX_MARK_SIZE, marker=mark, line_color=tint, fill_color=face)
         return chart.line(nothing, nothing, color=tint, line_width=handle.get_linewidth(), line_dash=dashes(handle))
     face = to_hex(handle.get_facecolor()) if isinstance(handle, Patch) else "#888888"
     return chart.patch(nothing, nothing, fill_color=face, line_color=None)
 
 
-_HEIGHT = 340
-_FEW_NAMES, _LINE = 4, 24
+_CHART_HEIGHT = 340
+"""Height of a chart, pixels, before rows of names are added to its legend."""
+_FREE_NAMES, _NAME_HEIGHT = 4, 24
 """Names of lines for which there is room, and height for each one more, as on a narrow screen each has a row."""
 _FONT = "12px"
 
@@ -314,7 +316,7 @@ def _chart(ax: Axes) -> Any:
     axis_types = {name: "log" if scale == "log" else "linear" for name, scale in _scales(ax).items()}
     zoom = BoxZoomTool(dimensions="auto")
     chart = figure(
-        height=_HEIGHT,
+        height=_CHART_HEIGHT,
         sizing_mode="stretch_width",
         x_axis_type=axis_types["x"],
         y_axis_type=axis_types["y"],
@@ -349,7 +351,7 @@ def _chart(ax: Axes) -> Any:
         legend = Legend(items=items, orientation="horizontal", ncols="auto", click_policy="hide")
         legend.update(background_fill_color=None, border_line_color=None, label_text_font_size=_FONT, padding=2)
         chart.add_layout(legend, "above")
-        chart.height = _HEIGHT + _LINE * max(len(named) - _FEW_NAMES, 0)
+        chart.height = _CHART_HEIGHT + _NAME_HEIGHT * max(len(named) - _FREE_NAMES, 0)
     return chart
 
 
@@ -366,9 +368,9 @@ def _scales(ax: Axes) -> dict[str, str]:
 
 # Figures of a report, as drawings and as interactive charts
 
-_LARGEST_DRAWING = 300_000
+_MAX_DRAWING_LENGTH = 300_000
 """Letters of a drawing of lines from which on it is smaller as pixels."""
-_WIDE = 8.0
+_WIDE_PICTURE = 8.0
 """Width of a picture of several panels side by side, inches."""
 
 
@@ -413,7 +415,7 @@ def charted(
             if not isinstance(told, ModelError):
                 parts.fail(told)
             continue
-        shown.append(Shown(title, picture, list(places), "", notes, drawn.get_figwidth() > _WIDE))
+        shown.append(Shown(title, picture, list(places), "", notes, drawn.get_figwidth() > _WIDE_PICTURE))
         models |= places
     return shown, models
 
@@ -428,4 +430,4 @@ def _picture(drawn: Figure) -> str:
     """A drawing, or pixels where these are smaller."""
     drawn.suptitle("")
     source = data_uri(drawn)
-    return source if len(source) < _LARGEST_DRAWING else data_uri(drawn, "png")
+    return source if len(source) < _MAX_DRAWING_LENGTH else data_uri(drawn, "png")

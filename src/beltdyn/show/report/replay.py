@@ -15,12 +15,13 @@ from beltdyn.show.plot.vibration import mode_name, shown_modes, swing, tint_of
 
 _POINTS = 480
 """Points along the belt in a picture."""
-_FRAMES = 120
+_MAX_FRAMES = 120
 """Pictures of all runs of a page, at most."""
-_FEWEST = 30
+_MIN_FRAMES = 30
+"""Pictures of a run at least, however many runs share a page: the page interpolates between them."""
 _ALONG = ("nodal_coordinates", "body_position", "belt_tension", "belt_coordinate", "normal_force")
 """What pictures are made of."""
-_SMOOTH = 8
+_ELEMENT_POINTS = 8
 """Points drawn on an element."""
 
 
@@ -32,7 +33,7 @@ def motion(run: Run, runs: int = 1) -> dict[str, Any]:
     numbers over their ``range``, in base64. More `runs` on a page have fewer pictures each.
     """
     times = run.dataset["field_time"].values
-    count = min(len(times), max(_FRAMES // runs, _FEWEST))
+    count = min(len(times), max(_MAX_FRAMES // runs, _MIN_FRAMES))
     chosen = times[np.unique(np.linspace(0, len(times) - 1, count).round().astype(int))]
     along = run.fields[list(_ALONG)].sel(time=chosen).load()
     pictures = [along_belt(run, along.isel(time=number)) for number in range(len(chosen))]
@@ -76,10 +77,10 @@ def along_belt(run: Run, instant: xr.Dataset) -> tuple[FloatArray, FloatArray, F
     drive = run.drive
     lengths = element_lengths(run.dataset, drive.belt_length)
     kind, present = recorded_kind(run.dataset, run.prepared), present_lengths(instant, drive.belt_length)
-    curves = centerline(kind, instant["nodal_coordinates"].values, present, _SMOOTH + 1)
+    curves = centerline(kind, instant["nodal_coordinates"].values, present, _ELEMENT_POINTS + 1)
     points = curves[:, :-1].reshape(-1, 2)
     starts = np.cumsum(lengths) - lengths
-    coordinate = (starts[:, None] + lengths[:, None] * np.arange(_SMOOTH) / _SMOOTH).ravel()
+    coordinate = (starts[:, None] + lengths[:, None] * np.arange(_ELEMENT_POINTS) / _ELEMENT_POINTS).ravel()
     tension = np.repeat(instant["belt_tension"].values, len(points) // instant.sizes["element"])
     at, order = instant["belt_coordinate"].values, np.argsort(instant["belt_coordinate"].values)
     pressure = np.interp(coordinate, at[order], np.abs(instant["normal_force"].values[order]), period=drive.belt_length)

@@ -68,8 +68,9 @@ def _document(charts: Mapping[str, Any]) -> dict[str, Any]:
     }
 
 
-_MOST_DIFFERENCES = 40
-_MOST_NUMBERS = 3
+_MAX_DIFFERENCES = 40
+"""Rows of the table of differing keys at most: drives that have little in common would fill pages."""
+_MAX_NUMBERS = 3
 """Key numbers in the sentence below the title."""
 
 
@@ -109,8 +110,10 @@ def _hash(content: bytes) -> str:
 
 _WIDEST_TABLE = 180
 """Characters of a line of a table that is printed across a page of A4 in letters of 5 pt; wider ones are divided."""
-_SHADES = 48
-_LETTERS = 26
+_COLOR_COUNT = 48
+"""Number of colors of the scale of tension that the page gets: the steps between them are hard to see."""
+_ALPHABET_SIZE = 26
+"""Number of letters from A to Z, of which the marks of results are made."""
 _SAYS_WHO_MADE_IT = f'<meta name="generator" content="{MARK} report">'
 
 
@@ -227,12 +230,12 @@ def _page(results: Sequence[Result], parts: Parts) -> str:
             widest=_WIDEST_TABLE,
             numbers=done(partial(compared, results), []),
             unjudged=done(partial(unjudged_in_words, results), []),
-            differences=done(lambda: differing_keys(results)[:_MOST_DIFFERENCES], []),
+            differences=done(lambda: differing_keys(results)[:_MAX_DIFFERENCES], []),
             names=names,
             figures=drawn,
             faults=list(dict.fromkeys(map(str, parts.errors))),
             motions=embedded(moving),
-            colors=json.dumps([to_hex(shade) for shade in tension_colors()(np.linspace(0.0, 1.0, _SHADES))]),
+            colors=json.dumps([to_hex(shade) for shade in tension_colors()(np.linspace(0.0, 1.0, _COLOR_COUNT))]),
             charts=embedded(charts),
             library=library() if charts else "",
             style=read("page.css"),
@@ -249,12 +252,12 @@ def lead(result: Result) -> str:
     if words != result.kind.replace("_", " "):
         return words
     numbers = [number for number in key_numbers(result) if np.isfinite(number.value)]
-    return "; ".join(f"{number.name} {value_in_words(number)}" for number in numbers[:_MOST_NUMBERS])
+    return "; ".join(f"{number.name} {value_in_words(number)}" for number in numbers[:_MAX_NUMBERS])
 
 
 def _mark(number: int) -> str:
     """Letters for a result, from A to Z and on from AA."""
-    rest, letter = divmod(number, _LETTERS)
+    rest, letter = divmod(number, _ALPHABET_SIZE)
     return (_mark(rest - 1) if rest else "") + chr(ord("A") + letter)
 
 
@@ -333,9 +336,10 @@ def read(name: str) -> str | None:
     return file.read_text(encoding="utf-8") if file.is_file() else None
 
 
-_ROOM, _HEADING = 400, 90
+_ROW_HEIGHT, _HEADING_HEIGHT = 400, 90
 """Height for a row of charts, and for the name above, pixels."""
-_HIGHEST = 900
+_MAX_HEIGHT = 900
+"""Height of the frame in a notebook at most, pixels: a page that is longer is scrolled inside it."""
 
 
 class InteractiveFigures:
@@ -400,5 +404,5 @@ def interactive(results: Result | Sequence[Result], *names: str) -> InteractiveF
 
 def _height(shown: Sequence[Shown]) -> int:
     """Height that figures take, at two charts beside each other."""
-    rows = sum(max(1, -(-len(one.charts) // 2)) * _ROOM + _HEADING for one in shown)
-    return min(rows, _HIGHEST)
+    rows = sum(max(1, -(-len(one.charts) // 2)) * _ROW_HEIGHT + _HEADING_HEIGHT for one in shown)
+    return min(rows, _MAX_HEIGHT)
