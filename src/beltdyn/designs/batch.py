@@ -145,7 +145,8 @@ def clearance(one: Obstacle, count: int) -> Watched:
     return Watched(f"clearance of {one.name}", "m", read, np.ones(count))
 
 
-_POLL = 0.2  # s
+_POLL_INTERVAL = 0.2
+"""Longest wait for the end of a run, s: progress is reported at least this often."""
 
 
 def simulate_all(
@@ -259,7 +260,7 @@ def _run_pool(
         while pending:
             running = [place for place, future in enumerate(futures) if future in pending and parts[place] >= 0.0]
             tell({drives[place][0]: parts[place] for place in running}, len(drives) - len(pending))
-            pending = wait(pending, timeout=_POLL, return_when=FIRST_COMPLETED).not_done
+            pending = wait(pending, timeout=_POLL_INTERVAL, return_when=FIRST_COMPLETED).not_done
         tell({}, len(drives))
     except KeyboardInterrupt:
         going = False

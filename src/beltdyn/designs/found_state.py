@@ -31,7 +31,9 @@ _ALIKE = 1e-5
 """Distance of eigenvalues, over their magnitude, up to which they count as one: their shapes mix freely."""
 _BESIDE = 1e-7
 """Distance of the shift of inverse iterations from the eigenvalue, over it."""
-_ITERATIONS = 3
+_INVERSE_ITERATIONS = 3
+"""Inverse iterations for left eigenvectors: each reduces other modes a hundredfold or more, by the ratio of `_BESIDE`
+to their distance, which exceeds `_ALIKE`."""
 
 
 class Mode(NamedTuple):
@@ -193,7 +195,7 @@ def _left_eigenvectors(matrix: "csc_array", count: int) -> ComplexArray:
 
     factors: Any = splu(matrix)
     found: ComplexArray = np.random.default_rng(0).standard_normal((matrix.shape[0], count)).astype(complex)
-    for _ in range(_ITERATIONS):
+    for _ in range(_INVERSE_ITERATIONS):
         found = np.linalg.qr(factors.solve(found, trans="H"))[0]
     return found
 
@@ -203,6 +205,8 @@ CHANGE = 1e-5
 _CHANGE_OF_EQUAL_ELEMENTS = 1e-2
 """The same where contact points come and go: with 1e-5 the largest tension of a band brake has twice its derivative."""
 _MOST_MODES = 200
+"""Number of modes from which on no more are searched: higher frequencies are not covered, and a span that swings most
+in none of these has no mode."""
 _SPAN = 0.4
 """Share of a span in the kinetic energy of a mode with which it swings most; of two spans alike each has half."""
 

@@ -28,7 +28,9 @@ _FIRST_PART, _LARGEST_PART, _LEAST_PART = 0.15, 0.5, 1e-4
 """Part of the ways between bounds that the first, the largest and the least step may take."""
 _TAKEN, _POOR, _GOOD = 0.1, 0.3, 0.7
 """Fall over the expected one from which a step is taken, below which the next is shorter, and from which longer."""
-_LONGER, _SHORTER, _MUCH_SHORTER = 2.0, 0.4, 0.25
+_EXPANSION, _REDUCTION, _FAILURE_REDUCTION = 2.0, 0.4, 0.25
+"""Factors on the size of the trust region: after a good step, after a poor one, and after a design that could not be
+computed. They affect how many designs are tried."""
 _PENALTY = 100.0
 """M, with the goal over its scale, and violations over that of their limits."""
 _LAZINESS = 1e-5
@@ -75,12 +77,14 @@ class Descent:
             ahead = self._try(here, step)
             tried += 1
             if ahead is None:
-                reach *= _MUCH_SHORTER
+                reach *= _FAILURE_REDUCTION
             else:
                 fall = (here.merit - ahead.merit) / expected
                 if fall >= _TAKEN:
                     here, derivatives = ahead, self._designs.derivatives(ahead.design)
-                reach = min(reach * (_LONGER if fall >= _GOOD else _SHORTER if fall < _POOR else 1.0), _LARGEST_PART)
+                reach = min(
+                    reach * (_EXPANSION if fall >= _GOOD else _REDUCTION if fall < _POOR else 1.0), _LARGEST_PART
+                )
             step, expected = self._step(here, derivatives, reach)
         return "no better design nearby"
 

@@ -95,7 +95,9 @@ def new_event() -> SharedEvent:
         return SPAWN.Event()
 
 
-_GRACE = 2.0  # s
+_EXIT_DELAY = 2.0
+"""Time from the end of an interrupted simulation to that of its process, s, in which the parent receives the
+outcome."""
 
 _stop: SharedEvent | None = None
 _working = Lock()
@@ -135,7 +137,7 @@ def _leave(number: int, frame: FrameType | None) -> None:
 def _exit_when_told() -> None:
     """End the process when the simulation has closed its file and the parent has had time to hear of it."""
     with working():
-        sleep(_GRACE)
+        sleep(_EXIT_DELAY)
         os._exit(1)
 
 

@@ -44,7 +44,8 @@ _LATEST = 0.5
 """Weight of the latest chunk in the mean time of a point."""
 _ATTEMPTS = 3
 """How often a process may be killed while it computes a point."""
-_POLL = 0.5
+_POLL_INTERVAL = 0.5
+"""Longest wait for the end of a chunk, s: progress is reported at least this often."""
 
 Chunk = tuple[int, ...]
 
@@ -73,7 +74,7 @@ class Dispatch:
         try:
             while self._waiting or self._again or self._flying:
                 self._fill()
-                for future in wait(self._flying, timeout=_POLL, return_when=FIRST_COMPLETED).done:
+                for future in wait(self._flying, timeout=_POLL_INTERVAL, return_when=FIRST_COMPLETED).done:
                     with uninterrupted():
                         self._land(future)
                 self._tell()

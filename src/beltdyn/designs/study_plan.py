@@ -62,6 +62,8 @@ def one_at_a_time(values: Sequence[NDArray[np.object_]], base: Sequence[object])
 
 
 MOST_POINTS = 10_000_000
+"""Largest number of points of a study; more are refused. Memory holds all of them, at 80 MB or more per varied
+number."""
 _DIGITS = 12
 """Of numbers between bounds."""
 

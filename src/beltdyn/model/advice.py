@@ -155,12 +155,17 @@ def _slip_radius(drive: Drive, installation: Installation) -> Iterator[Finding]:
 
 
 _MOST_TENSION_LOST = 0.02
+"""Part of the tension lost by soft contact above which a finding says so: tensions and hub loads err by that part."""
 _DEEPEST_PENETRATION = 0.1
+"""Penetration at rest over the radius above which a finding says so: torque arms and wrap angles are those of pulleys
+smaller by that part."""
 _LARGEST_STRAIN = 0.1
+"""Strain at rest above which a finding says so: few belts have a constant axial stiffness up to there."""
 _LONG = 60.0
 """Computing time above which the cause is named, s."""
 _DEFAULT_RTOL = 1e-4
-_STEP = 1.7
+"""Relative tolerance of a time step, the default of `simulation.rtol`, to which `_ELEMENTS_PER_STEP` refers."""
+_ELEMENTS_PER_STEP = 1.7
 """Elements passed by an axial wave per step at the default tolerance: 0.5 to 5 in the examples."""
 _ELEMENT_TIME = 6e-6
 """Computing time per step and element, s: 4.4e-6 to 7.5e-6 in the examples, on one core at 3 GHz."""
@@ -401,7 +406,8 @@ def describe_time(drive: Drive) -> str:
     element = drive.belt_length / drive.elements
     passage = element / belt.wave_speed
     rates = {
-        f"simulation.rtol = {settings.rtol:g}": 1.0 / (_STEP * math.sqrt(settings.rtol / _DEFAULT_RTOL) * passage),
+        f"simulation.rtol = {settings.rtol:g}": 1.0
+        / (_ELEMENTS_PER_STEP * math.sqrt(settings.rtol / _DEFAULT_RTOL) * passage),
         f"simulation.output_interval = {settings.output_interval:g} s": 1.0 / settings.output_interval,
     }
     if settings.max_step:

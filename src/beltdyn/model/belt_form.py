@@ -22,6 +22,7 @@ from beltdyn.parts.quantity import AxialStiffness, BendingStiffness, Count, Leng
 from beltdyn.stretch import LAWS
 
 _POISSONS_RATIO = 0.3
+"""Default Poisson's ratio of a belt, an assumption. Only the shear modulus of the section depends on it."""
 MATERIAL = ("density", "youngs_modulus", "axial_factor", "bending_factor")
 _FORCES = ("measuring_force", "largest_tension")
 _BESIDE = dict.fromkeys(

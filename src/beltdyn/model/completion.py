@@ -36,6 +36,7 @@ from beltdyn.model.static_estimate import StaticEstimate
 from beltdyn.parts.messages import plain
 
 _SMALLEST_STRAIN = 1e-10
+"""Least strain that an installed tension may cause: a smaller one is lost in the rounding of lengths, and refused."""
 
 
 class Completed(NamedTuple):

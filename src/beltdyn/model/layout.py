@@ -29,7 +29,9 @@ LARGEST_STRAIN = 0.5
 """Of a belt that is laid on its path."""
 MOST_OFF_GROOVE = 0.5 * (1.0 - CREST)
 """Largest misfit of a tooth over the pitch: beyond it the law of teeth holds it less the farther it is off."""
-_MOST_STEPS = 90
+_MAX_TAKE_UP_STEPS = 90
+"""Trial steps of the search for a take-up: 30 halvings lead from the longest first step to the shortest, and 60 steps
+that grow by 0.3 beyond a million smallest radii. The search fails beyond."""
 _FIRST, _LATER, _SHORTEST = 1.0, 0.3, 1e-9
 """Longest first step of a take-up, and the shortest, over the smallest radius; later ones over the way so far."""
 _BEYOND = 1.01
@@ -262,7 +264,7 @@ def _tightened(given: Given, path: Path) -> Given:
     radius = min(pulley.radius for pulley in given.pulleys)
     step = _BEYOND * float(np.clip(-first / lengthens, -_FIRST * radius, _FIRST * radius))
     least = _SHORTEST * radius
-    for _ in range(_MOST_STEPS):
+    for _ in range(_MAX_TAKE_UP_STEPS):
         try:
             if excess(here + step) * first <= 0:
                 return taken_up(float(brentq(excess, here, here + step, xtol=1e-15)))

@@ -30,10 +30,13 @@ from beltdyn.theory.nip import (
 
 _DEEPEST = 0.5
 """Largest compression of a cover or of the belt between two rollers, over its thickness."""
-_ROUNDING = 1e-9
+_GAP_TOLERANCE = 1e-9
+"""Gap between a roller and the belt, over the radius of the roller, that counts as contact: it may be rounding."""
 DAMPER_RESISTANCE = 1e-5
 """Rolling resistance by contact damping on each side of a nip, over its force: 0.1 % of a load of 2 % of that force."""
 _LARGEST_LOSS_FACTOR = 2.0
+"""Upper bound of the loss factor of a nip's damper: where little is lost by deformation, `DAMPER_RESISTANCE` would
+require an arbitrarily large factor."""
 
 
 class Nip(Part):
@@ -385,7 +388,7 @@ def check_places(nips: Sequence[Nip], path: Path, pulleys: Sequence[Pulley], bel
                 f'nip[{number}]: the belt does not lie on "{pulley.name}" where "{roller.name}" presses; its arc ends '
                 f"{np.degrees(beyond):.3g}° before. Move the center of the roller"
             )
-        if depth < -_ROUNDING * roller.radius:
+        if depth < -_GAP_TOLERANCE * roller.radius:
             raise ValueError(
                 f'nip[{number}]: "{roller.name}" does not reach the belt on "{pulley.name}": it is {-depth:.4g} m '
                 "away. Move its center, or give force or gap"

@@ -10,10 +10,13 @@ from numpy.typing import ArrayLike, NDArray
 
 from beltdyn.arrays import BoolArray, FloatArray, IntArray
 
-_ROUNDING = 1e-12  # rad: a turning angle this far below zero is zero
+_ANGLE_TOLERANCE = 1e-12
+"""Negative turning angle, rad, down to which it counts as zero: rounding must not make almost a full turn of it."""
 _STRAIGHT = 1e-3
 """Bend of the path, rad, below which no side of a pulley is beyond its arc."""
-_EQUAL = 1e-6  # difference of spans, relative, up to which they count as equally long
+_LENGTH_TOLERANCE = 1e-6
+"""Relative difference of spans up to which they count as equally long, so that rounding does not choose between
+them."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -109,7 +112,7 @@ class Path:
         way = self.centers[rollers] - self.centers[pulleys]
         enters = self.span_points[self.reaching[pulleys], 1] - self.centers[pulleys]
         turned = np.arctan2(_cross(enters, way), np.sum(enters * way, axis=1)) * np.sign(self.radii[pulleys])
-        return np.asarray(np.where(turned > -_ROUNDING, np.maximum(turned, 0.0), turned + 2 * np.pi))
+        return np.asarray(np.where(turned > -_ANGLE_TOLERANCE, np.maximum(turned, 0.0), turned + 2 * np.pi))
 
     @property
     def shape(self) -> tuple[FloatArray, FloatArray | None, tuple[int, ...]]:
@@ -232,7 +235,7 @@ class Path:
     def longest_span(self) -> int:
         """Number of the longest span: the first of them, also where rounding tells them apart."""
         lengths = self.span_lengths
-        return int(np.argmax(lengths >= (1.0 - _EQUAL) * lengths.max()))
+        return int(np.argmax(lengths >= (1.0 - _LENGTH_TOLERANCE) * lengths.max()))
 
     def position(self, s: ArrayLike) -> FloatArray:
         """Points on the path.
@@ -339,7 +342,7 @@ def wrap_angles(
     before, after = (directions[..., spans, :] for spans in spans_at(radii, ends, beside))
     sine = before[..., 0] * after[..., 1] - before[..., 1] * after[..., 0]
     turning = np.arctan2(sine, np.sum(before * after, axis=-1)) * np.sign(radii)
-    return np.asarray(np.where(turning > -_ROUNDING, np.maximum(turning, 0.0), turning + 2 * np.pi))
+    return np.asarray(np.where(turning > -_ANGLE_TOLERANCE, np.maximum(turning, 0.0), turning + 2 * np.pi))
 
 
 def _on_path(count: int, beside: Sequence[int]) -> IntArray:

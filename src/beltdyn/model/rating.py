@@ -36,7 +36,8 @@ from beltdyn.theory.rating import (
 
 _SLOWEST = 1e-3
 """Belt speed below which a belt carries no power, m/s."""
-_ROUNDING = 1e-12
+_POWER_TOLERANCE = 1e-12
+"""Relative shortfall of the rated power that counts as none, so that rounding asks for no additional belt."""
 MOST_BELTS = 1000
 """Ribs or V-belts side by side that a belt may have."""
 
@@ -175,7 +176,7 @@ class RatedBelt(NamedTuple):
 
     def belts_needed(self, utilization: float, pulleys: int) -> int:
         """Least number of belts or ribs that carry what is this share of the rated power of the present ones."""
-        needed = utilization * self.factor(self.belts, pulleys) * (1.0 - _ROUNDING)
+        needed = utilization * self.factor(self.belts, pulleys) * (1.0 - _POWER_TOLERANCE)
         return next((count for count in range(1, MOST_BELTS) if self.factor(count, pulleys) >= needed), MOST_BELTS)
 
 

@@ -27,12 +27,21 @@ from beltdyn.model.path import Path
 from beltdyn.model.prepared import Prepared
 from beltdyn.theory.static_tension import ArcAtRest, Section, arc_at_rest, end_of_contact, span_radius
 
-_ROUNDING = 1e-9
-_STEP = 1e-5
+_TOLERANCE = 1e-9
+"""Relative change of the radii of spans, and scaled residual of the balance, at which iterations have converged: far
+below what closed forms neglect."""
+_DIFFERENCE_STEP = 1e-5
+"""Change of the scaled unknowns for slopes of the residual by forward differences; also the least strain that scales
+the residual of the length. An error of the slopes costs iterations only."""
 _CHANGE = 1e-3
 """Of the tension, for the slope of tightening, relative."""
-_MOST_STEPS = 20
-_MOST_HALVINGS = 10
+_MAX_RADIUS_ITERATIONS = 20
+"""Fixed-point iterations for the radii of spans; beyond, the last radii are taken."""
+_MAX_NEWTON_STEPS = 20
+"""Steps of Newton's method for the balance; beyond, there is none, an error."""
+_MAX_STEP_LENGTHS = 10
+"""Lengths of a step of Newton's method, each half the one before, tried until closed forms hold; beyond, the whole step
+is tried again, whose error tells the reason."""
 _NO_BALANCE = "no tension and no places of tensioners balance the belt with its bending stiffness and weight."
 
 
@@ -126,12 +135,12 @@ class _Belt:
     def spans(self) -> Path:
         """The path whose spans are the lines of the spans."""
         path = self.prepared.path
-        for _ in range(_MOST_STEPS):
+        for _ in range(_MAX_RADIUS_ITERATIONS):
             wraps, before = path.wrap_angles.tolist(), path.radii
             path = self._around(
                 [span_radius(arc.depth, r, self._bend, wrap) for (arc, r), wrap in zip(self._rims, wraps, strict=True)]
             )
-            if np.all(np.abs(path.radii - before) <= _ROUNDING * np.abs(before)):
+            if np.all(np.abs(path.radii - before) <= _TOLERANCE * np.abs(before)):
                 break
         return path
 
@@ -269,14 +278,17 @@ def _balanced(prepared: Prepared, given: float | None = None) -> _Belt:
 
     size = float(prepared.radii.min())
     travel = np.array([size / np.linalg.norm(one.place(0.0)[1]) for one in prepared.carriers])
-    strain = max(first.strain, _STEP)
+    strain = max(first.strain, _DIFFERENCE_STEP)
     unknown = np.append(np.zeros(len(travel)), [1.0] * (given is None))
     try:
         missing = residual(unknown)
-        for _ in range(_MOST_STEPS):
-            if np.all(np.abs(missing) < _ROUNDING):
+        for _ in range(_MAX_NEWTON_STEPS):
+            if np.all(np.abs(missing) < _TOLERANCE):
                 return belt_at(unknown)
-            slopes = [(residual(unknown + _STEP * way) - missing) / _STEP for way in np.eye(len(unknown))]
+            slopes = [
+                (residual(unknown + _DIFFERENCE_STEP * way) - missing) / _DIFFERENCE_STEP
+                for way in np.eye(len(unknown))
+            ]
             increment = np.asarray(np.linalg.solve(np.transpose(slopes), -missing), float)
             unknown, missing = _stepped(residual, unknown, increment)
     except np.linalg.LinAlgError as error:
@@ -290,7 +302,7 @@ def _stepped(
     residual: Callable[[FloatArray], FloatArray], unknown: FloatArray, increment: FloatArray
 ) -> tuple[FloatArray, FloatArray]:
     """The unknowns after a step of Newton's method, shortened to where closed forms hold, and their residual."""
-    for halvings in range(_MOST_HALVINGS):
+    for halvings in range(_MAX_STEP_LENGTHS):
         ahead = unknown + 0.5**halvings * increment
         with suppress(ValueError):
             return ahead, residual(ahead)

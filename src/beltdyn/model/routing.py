@@ -15,7 +15,9 @@ from beltdyn.model.pulley import Pulley
 
 # The path of an open belt
 
-_ANY_LENGTH = 1.0  # m
+_TRIAL_SPAN = 1.0
+"""Length of the span to a pulled end before it is fitted to the belt, m. Its value is arbitrary: the difference to the
+length of the belt is added to it."""
 
 
 def open_path(centers: FloatArray, radii: FloatArray, ends: Sequence[PathEnd], belt: Belt) -> Path:
@@ -39,23 +41,29 @@ def open_path(centers: FloatArray, radii: FloatArray, ends: Sequence[PathEnd], b
             "tension of the belt. Give belt.length instead"
         )
     missing = belt.length * float(belt.stretch_parameters.stretch(tension)) - path.length
-    if missing <= -_ANY_LENGTH:
+    if missing <= -_TRIAL_SPAN:
         name = next(end.name for end in ends if end.pull is not None)
         raise ValueError(
             f'belt.length = {belt.length:.5g} m is too short: end "{name}" would lie on a pulley. Give the belt more '
-            f"than {(path.length - _ANY_LENGTH) / (path.length + missing) * belt.length:.5g} m"
+            f"than {(path.length - _TRIAL_SPAN) / (path.length + missing) * belt.length:.5g} m"
         )
     return Path(centers, radii, points + missing * np.array(along))
 
 
 def _beyond(center: FloatArray, radius: float, way: FloatArray) -> FloatArray:
     """A point on the tangent of a circle of signed radius (m) that leaves it in a direction."""
-    return np.asarray(center - radius * np.array([-way[1], way[0]]) + _ANY_LENGTH * way)
+    return np.asarray(center - radius * np.array([-way[1], way[0]]) + _TRIAL_SPAN * way)
 
 
-_LEAST_WRAP = 1e-6  # rad
-_ROUNDING = 1e-6  # rad
-_MOST_TO_TRY = 16
+_LEAST_WRAP = 1e-6
+"""Wrap angle, rad, up to which, or to a full turn less which, the belt counts as missing a pulley: what is left may be
+rounding."""
+_TURNING_TOLERANCE = 1e-6
+"""Deviation of the total turning of a path from a full turn that counts as rounding, rad: closed paths differ by whole
+turns."""
+_MAX_PULLEYS_TRIED = 16
+"""Number of pulleys up to which remedies are searched by trial: the number of lists tried grows with its square. For
+more, the message proposes no change of the list."""
 _WIDEST, _FARTHEST = 1e7, 1e9
 """Largest extent of a drive and largest coordinate, over the smallest radius: 2e5 for a belt conveyor of 20 km."""
 
@@ -209,7 +217,7 @@ def _faults(pulleys: Sequence[Pulley], belt: Belt, path: Path, ends: Sequence[Pa
     if crossing and not belt.crossed:
         one, other = ('the span from "{}" to "{}"'.format(*names[span]) for span in crossing[0])
         yield _Fault(f"the belt would cross itself: {one} meets {other}", None)
-    if not ends and not belt.crossed and abs(path.total_turning - 2 * np.pi) > _ROUNDING:
+    if not ends and not belt.crossed and abs(path.total_turning - 2 * np.pi) > _TURNING_TOLERANCE:
         turns = round(path.total_turning / (2 * np.pi))
         yield _Fault(f"the belt would turn {turns} times counter-clockwise in one round, not once", None)
     yield from _collisions(pulleys, belt, path, names)
@@ -217,7 +225,7 @@ def _faults(pulleys: Sequence[Pulley], belt: Belt, path: Path, ends: Sequence[Pa
 
 def _disorder(pulleys: Sequence[Pulley], path: Path) -> Iterator[_Fault]:
     """Faults of a path with all pulleys on its inside that is not a single counter-clockwise loop."""
-    if abs(path.total_turning - 2 * np.pi) < _ROUNDING:
+    if abs(path.total_turning - 2 * np.pi) < _TURNING_TOLERANCE:
         return
     outermost = _outermost(path)
     for index, pulley in enumerate(pulleys):
@@ -267,7 +275,7 @@ def _collisions(
 
 def _remedy(pulleys: Sequence[Pulley], belt: Belt, ends: Sequence[PathEnd]) -> str:
     """Changes that remove crossings, or that permit them."""
-    tried = pulleys if len(pulleys) <= _MOST_TO_TRY else ()
+    tried = pulleys if len(pulleys) <= _MAX_PULLEYS_TRIED else ()
     wishes = [
         wish
         for changes in (_other_lists(tried), _fewer(tried))

@@ -205,6 +205,7 @@ class Limits(Part):
 
 
 _MOST_OUTPUTS = 1_000_000
+"""Largest number of outputs of a run; more are refused: a safeguard against an interval in a wrong unit."""
 _MOST_STEPS = 1_000_000_000
 """Steps of some days of computing time."""
 

@@ -81,7 +81,11 @@ _ROUNDING = 4 * float(np.finfo(float).eps)
 _FARTHEST = 100.0
 """Search range of a sliding tensioner, in path lengths; an arm is searched over half a turn to both sides."""
 _MOST_ROUNDS = 200
-_ACCURACY = 1e-13
+"""Rounds in which tensioners are balanced in turn, each with the others held; beyond, there is no common
+equilibrium."""
+_POSITION_TOLERANCE = 1e-13
+"""Change of a position in a round, over 1 (m or rad) plus its magnitude, at which rounds end: close to rounding, so
+that the order of tensioners has no influence."""
 
 
 class TensionerBalance(NamedTuple):
@@ -215,7 +219,7 @@ def _balanced(layout: _Layout) -> tuple[StaticEstimate, FloatArray]:
         before = positions.copy()
         for situation in situations:
             positions[situation.number] = _nearest(situation)
-        if np.all(np.abs(positions - before) <= _ACCURACY * (1 + np.abs(positions))):
+        if np.all(np.abs(positions - before) <= _POSITION_TOLERANCE * (1 + np.abs(positions))):
             break
     else:
         if situations[1:]:

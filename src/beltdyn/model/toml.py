@@ -24,6 +24,7 @@ from beltdyn.parts.toml_edits import Edit, changed_data, changed_text
 Study = TypeVar("Study", bound=Part)
 
 _LONGEST_REASON = 200
+"""Characters of the parser's reason in a message, at most: it may quote keys of the file, which can be long."""
 _SECTION = re.compile(r"(?:^|\n\n)(?=[A-Z]\w+\n---)")
 """Start of a section of a docstring."""
 
@@ -261,7 +262,9 @@ def spelled_out(drive: Drive, tolerances: Mapping[str, float]) -> str:
 
 # Change numbers in the text of a drive file and keep its comments, order and units
 
-_DIGITS = 10
+_SIGNIFICANT_DIGITS = 10
+"""Significant digits of a changed number in a drive file, and of its comparison with the number intended: more than
+data have, and few enough to hide rounding."""
 
 
 def edited(drive: Drive, changes: Mapping[str, float]) -> str:
@@ -292,9 +295,9 @@ def _edit(data: dict[str, Any], path: str, value: float, unit: str) -> Edit:
     for key in outer:
         holder = holder[key]
     if isinstance(holder, str | int | float):  # a number that stands for a constant profile
-        return Edit("set", tuple(outer), written_like(value, holder, unit, _DIGITS))
+        return Edit("set", tuple(outer), written_like(value, holder, unit, _SIGNIFICANT_DIGITS))
     given = holder.get(last) if isinstance(holder, dict) else holder[last]
-    return Edit("set", location, written_like(value, given, unit, _DIGITS))
+    return Edit("set", location, written_like(value, given, unit, _SIGNIFICANT_DIGITS))
 
 
 def _near(one: Any, other: Any) -> bool:
@@ -304,5 +307,5 @@ def _near(one: Any, other: Any) -> bool:
     if isinstance(one, list) and isinstance(other, list):
         return len(one) == len(other) and all(map(_near, one, other))
     if isinstance(one, float) and isinstance(other, float):
-        return math.isclose(one, other, rel_tol=10.0 ** (1 - _DIGITS))
+        return math.isclose(one, other, rel_tol=10.0 ** (1 - _SIGNIFICANT_DIGITS))
     return bool(one == other)
