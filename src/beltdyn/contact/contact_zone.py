@@ -127,8 +127,10 @@ _HALVINGS = 12
 """A dip over less than 2^-12 of the element length is ignored; its depth is below a millionth of the radius."""
 _SAMPLES = 16
 """Search intervals of an element for contact with a shaped surface; shorter contact may be missed."""
-_STEPS = 60
+_MAX_ROOT_STEPS = 60
+"""Steps of the search for an end of contact: more than the 44 in which halving alone reaches `_RESOLUTION`."""
 _RESOLUTION = 1e-13
+"""Error of an end of contact, over the length of the element: some hundred times the rounding of the coordinate."""
 
 
 class Circle(NamedTuple):
@@ -265,7 +267,7 @@ def _root(control: FloatArray, circle: Circle, left: float, right: float, fallin
     Newton's method, and halving where that would leave the bracket.
     """
     xi = 0.5 * (left + right)
-    for _ in range(_STEPS):
+    for _ in range(_MAX_ROOT_STEPS):
         fill_bernstein(xi, zone.weights)
         fill_bernstein_rates(xi, zone.rates)
         x, y = combine(control, zone.weights)

@@ -36,6 +36,7 @@ from beltdyn.stretch import stretching
 
 Six = tuple[float, float, float, float, float, float]
 _DEGREE = 5
+"""Degree of the shape functions: three vectors at each end determine a polynomial of six coefficients."""
 _ORDERS = np.array([0.0, 1.0, 2.0, 0.0, 1.0, 2.0])
 """Of the derivatives that the six vectors are."""
 _COORDINATE_ORDERS = np.repeat(_ORDERS, 2)

@@ -9,7 +9,8 @@ from functools import cache, cached_property
 from typing import Any
 
 _C_FUNCTION = ctypes.CFUNCTYPE(ctypes.c_double, ctypes.c_double, ctypes.c_double, ctypes.c_double)
-_TRIALS = 200
+_TIMED_CALLS = 200
+"""Calls over which the time of one is averaged for the warning: the time of a single one varies too much."""
 _BACK = 0.01
 """Time in which machine code comes back to Python, s; where it has not, Ctrl-C is repeated once more."""
 _kept: list[Any] = []
@@ -48,9 +49,9 @@ def _address_of_python(function: Callable[[float, float, float], float], reason:
 
     callback = _C_FUNCTION(run)
     begin = time.perf_counter()
-    for _ in range(_TRIALS):
+    for _ in range(_TIMED_CALLS):
         callback(0.0, 0.0, 0.0)
-    cost = (time.perf_counter() - begin) / _TRIALS
+    cost = (time.perf_counter() - begin) / _TIMED_CALLS
     warnings.warn(
         f"Numba cannot compile {_name(function)} ({reason}): Python runs it, {1e6 * cost:.2g} microseconds per call "
         "and several calls per time step. To make it fast, use only numbers and functions of math.",

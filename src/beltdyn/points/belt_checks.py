@@ -13,7 +13,9 @@ from beltdyn.model.toothing import RatedTeeth
 from beltdyn.results import Variable
 from beltdyn.results.schema import VARIOUS
 
-_ROUNDING = 1e-9
+_LIMIT_TOLERANCE = 1e-9
+"""Relative excess over a limit that counts as none: with it, a value that equals its limit meets it despite
+rounding."""
 _SAME_LENGTH = 5e-4
 """Difference of a length from a standard one that rounding on a label explains, m."""
 _CHECK = ("check",)
@@ -38,8 +40,8 @@ class BeltCheck(NamedTuple):
         """Whether the value is within the limit."""
         if isnan(self.value):
             return False
-        room = (1.0 + _ROUNDING) * self.limit
-        return self.value <= room if self.at_most else (1.0 + _ROUNDING) * self.value >= self.limit
+        room = (1.0 + _LIMIT_TOLERANCE) * self.limit
+        return self.value <= room if self.at_most else (1.0 + _LIMIT_TOLERANCE) * self.value >= self.limit
 
 
 def checks_of(

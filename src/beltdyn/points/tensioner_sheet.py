@@ -28,7 +28,8 @@ _FINENESS = 1.2
 """Of the meshes."""
 _ACCURACY = 1e-9
 """Of the place at a stop, over the way on which the path lengthens by itself."""
-_MOST_TRIALS = 20
+_MAX_SECANT_STEPS = 20
+"""Steps of the secant method for the length of the belt at a stop; a safeguard, after which the last row is taken."""
 _LONGEST_SEARCH = 30.0
 """Processor time of all searches for equilibrium, s, after which closed forms take their place; sheets of the examples
 take below 5 s."""
@@ -211,7 +212,7 @@ class _Sheet:
             prepared.path, prepared.belt, prepared.contact, prepared.carriers, self._placed(stop), self._number
         ).length
         slope, before = None, None
-        for _ in range(_MOST_TRIALS):
+        for _ in range(_MAX_SECANT_STEPS):
             row = self._row(prepared, length)
             missing = stop - row["position"]
             if abs(missing) <= _ACCURACY * max(1.0, abs(stop)):

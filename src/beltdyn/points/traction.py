@@ -37,7 +37,8 @@ _FIRST, _LAST = 5e-4, 0.6
 """Slips between which gross slip is looked for."""
 _LEAST = 1e-5
 """Slip below which a drive that has no steady running with slip has none at all."""
-_FURTHER = 2.0
+_TRIAL_RATIO = 2.0
+"""Ratio of successive trial slips or torques as long as no limit is known; bisection follows."""
 _NEAR = 0.02
 """Part of the slip up to which gross slip is found."""
 _ROUGHLY = 0.05
@@ -50,7 +51,8 @@ _FIRMER = 1.002
 """Friction of the driver over its own, where its whole arc is about to slide together with that of the pulley."""
 _ABOUT = 0.7
 """Part of both arcs that slides then."""
-_FEWEST = 3
+_MIN_POINTS = 3
+"""Least number of points of a curve: its two ends, and one between that shows a curvature."""
 _ALL = 0.99
 """Part of an arc that slides as a whole."""
 
@@ -89,7 +91,7 @@ def traction(
     pulley: str | None = None,
     slip: Numbers | None = None,
     torque: Numbers | None = None,
-    points: Annotated[RangeCount, Field(ge=_FEWEST)] = 30,
+    points: Annotated[RangeCount, Field(ge=_MIN_POINTS)] = 30,
     at: float | str | None = None,
     force_tolerance: ForceTolerance | None = None,
     output: Path | str | None = None,
@@ -281,7 +283,7 @@ def _past_gross_slip(slipping: Callable[[float, float], Drive], number: int, poi
     """Slips from zero to some way beyond where the whole arc of the pulley slides, or that of the driver."""
     creeping, sliding, run = 0.0, _LAST, None
     while sliding - creeping > _NEAR * sliding:
-        part = min(_FURTHER * creeping or _FIRST, 0.5 * (creeping + sliding))
+        part = min(_TRIAL_RATIO * creeping or _FIRST, 0.5 * (creeping + sliding))
         try:
             found = steady_state(slipping(part, _FIRMER), force_tolerance=_ROUGHLY, start=run)
         except BeltdynError as error:
@@ -324,7 +326,7 @@ def _jump_torque(loaded: Callable[[float], Drive], number: int, force_tolerance:
             if torque < _LEAST * float(run.prepared.belt.axial_stiffness) * radius:
                 raise ConvergenceError(f"no steady running found under any torque: {error}") from error
             jumping = torque
-        torque = min(_FURTHER * holding or np.inf, 0.5 * (holding + jumping))
+        torque = min(_TRIAL_RATIO * holding or np.inf, 0.5 * (holding + jumping))
     return holding
 
 

@@ -39,19 +39,25 @@ STEP_TOO_SMALL: Final = 1
 STRETCH: Final = 1.2
 """A step may exceed the wanted one by this factor, so that it ends on an instant."""
 
-_EASY: Final = 5
-_GROWTH: Final = 2.0
-_SHRINK: Final = 0.2
-_AIM: Final = 0.8
-_LIMIT: Final = 4.0
-"""Steps are aimed at this part of the local error allowed, and taken up to this multiple: errors jump as nodes meet
-pulleys, and a step tried again costs more than it gains."""
+_GROWTH_ITERATIONS: Final = 5
+"""Newton iterations of a step up to which the next may be longer: after more, a longer one might not converge."""
+_MAX_GROWTH: Final = 2.0
+"""Largest factor from a step to the next: the error of a step tells little of that of a much longer one."""
+_MIN_REDUCTION: Final = 0.2
+"""Least factor from a step to the next: one large error, as where nodes meet a pulley, must not stop the run."""
+_TARGET_ERROR: Final = 0.8
+"""Local error, over that allowed, for which steps are chosen; the margin avoids repeated steps."""
+_LARGEST_ERROR: Final = 4.0
+"""Local error, over that allowed, up to which a step is taken: errors jump as nodes meet pulleys, and a step tried
+again costs more than it gains."""
 _WORST: Final = 3.0
 """A node may err by this many times the root mean square allowed of all: errors are largest at the few nodes that meet
 pulleys, and would vanish in the mean of a fine mesh."""
 _TIGHTEST: Final = 27.0
 """Steps may be three times shorter for the sake of the losses than the local error asks for."""
 SMALLEST_STEP: Final = 1e-11
+"""Length of a step, s, below which the integration fails: far below 1e-7 s, within which any change is an impulse to a
+belt."""
 
 
 @kernel
@@ -104,10 +110,10 @@ def advance(
             following = 0.5 / STRETCH * length
         else:
             error = _local_error(system, settings, method, state, length)
-            growth = _GROWTH if iterations <= _EASY else 1.0
+            growth = _MAX_GROWTH if iterations <= _GROWTH_ITERATIONS else 1.0
             wanted = max(error, min(_TIGHTEST * error, _loss_error(settings, state, length)))
-            factor = min(growth, max(_SHRINK, (_AIM / max(wanted, 1e-12)) ** (1.0 / 3.0)))
-            if error > _LIMIT:
+            factor = min(growth, max(_MIN_REDUCTION, (_TARGET_ERROR / max(wanted, 1e-12)) ** (1.0 / 3.0)))
+            if error > _LARGEST_ERROR:
                 state.counts.rejected += 1
                 factor /= STRETCH
             else:

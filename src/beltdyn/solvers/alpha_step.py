@@ -251,9 +251,12 @@ _persistence = by_type({Travelling: _none, Flowing: _of_bodies, FlowingByArcs: _
 
 
 _MAX_ITERATIONS: Final = 16
+"""Newton iterations of a step; beyond, it is rejected and tried again with less than half its length."""
 _OVERSHOOT: Final = 0.1
 """Imbalance along a change, over that before it and against it, from which on a part of the change is taken back."""
-_CUTS: Final = 6
+_MAX_CUTS: Final = 6
+"""Steps of the false position for the balance along a change; beyond, the last part is kept, and the next iteration
+corrects it."""
 _SHORTEST: Final = 0.1
 """Smallest step of the search for the balance, over its interval."""
 _GROWING: Final = 4
@@ -368,7 +371,7 @@ def _cut_back(
     if now >= -_OVERSHOOT * slope:
         return 1.0
     factor, short, ahead, far, behind, beyond = 1.0, 0.0, slope, 1.0, now, True
-    for _ in range(_CUTS):
+    for _ in range(_MAX_CUTS):
         place = short + (far - short) * max(_SHORTEST, ahead / (ahead - behind))
         _move(system, state, step, equations, place - factor)
         factor = place

@@ -97,7 +97,9 @@ _SLOWEST = 1e-6
 """Least magnitude of an eigenvalue that swings, 1/s: those below are of motions without force, and of rounding."""
 _RATE = 1000.0
 """w, rad/s."""
-_MOST_SHIFTS = 400
+_MAX_BANDS = 400
+"""Number of bands of frequencies searched one after the other; a safeguard, after which the modes found so far are
+taken."""
 MOST_SWINGING = 99
 """Number of oscillating eigenvalues at which a search ends, unless more are requested."""
 _INFINITE = 1e10
@@ -397,7 +399,7 @@ def _band_by_band(given: Pencil, count: int, first: float) -> tuple[ComplexArray
     the heavily damped ones are a continuum, that is given up.
     """
     known, low, ahead = _Known(given), 0.0, first
-    for _ in range(_MOST_SHIFTS):
+    for _ in range(_MAX_BANDS):
         high = _band(known, low, ahead)
         if not np.isfinite(high):
             return known.values, known.vectors

@@ -21,8 +21,11 @@ from beltdyn.system.steady_assembly import new_equations
 
 _ROOM = 64
 """Steps handed out at once, at most."""
-_STEPS_AT_ONCE = 8000
+_ELEMENT_STEPS = 8000
+"""Steps times elements that one call of the kernel tries, but at least one step: between calls progress is reported."""
 _FIRST_STEP = 1e-6
+"""Length of the first step, s, unless `max_step` is shorter: errors are not known before it. Later steps grow by up to
+2."""
 _SLIDING = 0.01
 """What Newton's method may leave, over the local error allowed.  With 0.03 iterations are fewer by a tenth, but belts
 slide up to 4 % too slowly on arcs of travelling meshes: what it leaves adds up."""
@@ -141,7 +144,7 @@ class AlphaIntegration:
 
     def until(self, stop: float) -> Iterator[Chunk]:
         """Integrate up to an instant (s), on which the last step ends."""
-        budget = max(1, _STEPS_AT_ONCE // self.system.length.size)
+        budget = max(1, _ELEMENT_STEPS // self.system.length.size)
         while self.state.clock.time < stop:
             steps = empty_steps(self.system, min(_ROOM, budget))
             status, filled = advance(self.system, self.settings, self.state, self._equations, stop, budget, steps)

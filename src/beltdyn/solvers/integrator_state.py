@@ -194,6 +194,8 @@ def new_state(system: System, time: float, step: float, position: FloatArray, ve
 _SHORTEST: Final = 1e-7
 """What happens within this time (s) is an impulse to any belt."""
 _BISECTIONS: Final = 3
+"""Bisections between the longest resolved halving of a step and twice that length: the step lacks at most an eighth of
+that halving."""
 _FIRST_STEP = 1e-4
 """About the first step of a solver at most, s."""
 _GROWTH = 10.0

@@ -223,10 +223,13 @@ Name = Literal["cvode", "ida", "bdf", "radau"]
 
 _ROOM = 64
 """States between steps that are handed out at once, at most."""
-_RELATIVE = 1e-9
+_RELATIVE_TOLERANCE = 1e-9
+"""Error of an unknown over its own magnitude: so small that the absolute tolerances decide, which are physical."""
 _PART = 0.02
 """Error that one step may make, over that of the run: the errors of steps add up."""
-_HUGE = 1e30
+_PROHIBITIVE_ERROR = 1e30
+"""Error constant of BDF for the order above the highest A-stable one (dimensionless): with the error estimated from it,
+that order is never chosen."""
 _ROUNDINGS = 16.0
 """Least step of a method of SciPy, which refuses those of less than ten roundings; none goes beyond a stop."""
 _HIGHEST_A_STABLE_ORDER = 2
@@ -338,12 +341,12 @@ class _SciPy:
             leg.y,
             leg.stop,
             max_step=leg.method.max_step or np.inf,
-            rtol=_RELATIVE,
+            rtol=_RELATIVE_TOLERANCE,
             atol=leg.tolerances,
             jac=leg.equations.jacobian,
         )
         if kind is BDF:  # which takes no largest order, but none whose error it thinks huge
-            self._solver.error_const[_HIGHEST_A_STABLE_ORDER + 1] = _HUGE
+            self._solver.error_const[_HIGHEST_A_STABLE_ORDER + 1] = _PROHIBITIVE_ERROR
         self.time, self.y, self._longest = leg.start, leg.y, self._solver.max_step
 
     @np.errstate(under="ignore")
@@ -367,7 +370,7 @@ class _Sundials:
 
     def __init__(self, leg: _Leg) -> None:
         options = {
-            "rtol": _RELATIVE,
+            "rtol": _RELATIVE_TOLERANCE,
             "atol": leg.tolerances,
             "max_step": leg.method.max_step or 0.0,
             "max_order": _HIGHEST_A_STABLE_ORDER,

@@ -18,9 +18,13 @@ from beltdyn.system.steady_assembly import Anchor, assemble_steady, new_equation
 from beltdyn.system.web import WebLine, change_content, content, set_content, way_of_content
 
 FOUND: Final = 0
+"""Status: the last step is within the tolerance."""
 NOT_FOUND: Final = 1
+"""Status: no part of a step brings the state nearer, or iterations do not suffice."""
 SINGULAR: Final = 2
-_SHORTEST: Final = 1.0 / 64.0
+"""Status: the tangent cannot be factorized."""
+_MIN_STEP_PART: Final = 1.0 / 64.0
+"""Least part of a step that is tried, after six halvings; below, the search fails."""
 _CONTRACTION: Final = 0.3
 """Of a correction by a step, up to which the tangent serves once more: a new one costs four times a residual."""
 
@@ -123,7 +127,7 @@ def find_steady(
                 break
             make_step(system, motion, anchor.at_rest, length, node_part, border_part)
             length *= 0.5
-            if length < _SHORTEST or not np.isfinite(size):
+            if length < _MIN_STEP_PART or not np.isfinite(size):
                 return NOT_FOUND, iteration
         while length == 1.0 and tolerance < ahead <= _CONTRACTION * size:
             size, ahead = ahead, _once_more(system, motion, anchor, work)

@@ -25,6 +25,7 @@ METHODS = ("globalized", "newton")
 _EXTREMES = {"leftmost": (0, 1.0), "rightmost": (0, -1.0), "lowest": (1, 1.0), "highest": (1, -1.0)}
 """Word for a node -> axis, and the sign with which its position is the least of all nodes."""
 _RIGID_MOTIONS = 3
+"""Rigid motions of a belt in its plane: two translations and a rotation."""
 _LEAST_ARM = 1e-3
 """Arm of supports against rotation, over the size of the belt, below which they are taken to leave it."""
 _VARIABLES = {

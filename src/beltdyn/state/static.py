@@ -23,10 +23,15 @@ from beltdyn.system.state import State
 from beltdyn.system.steady_assembly import new_equations, no_multipliers
 
 _STATE_TOLERANCE = 1e-11
+"""Energy norm of the last step of Newton's method, as a mean strain of the belt, at which equilibrium is found. The
+error that it leaves is smaller still: convergence is quadratic."""
 _FORCE_TOLERANCE = 1e-11
 """Of nodal forces over E A alpha1."""
 _SMALLEST_SHIFT, _LARGEST_SHIFT = 1e-6, 1e12
-_SMALLEST_LENGTH = 1e-2
+"""Inertial shift of the tangent over (wave speed / belt length) squared, where steps do not succeed without: the first
+one, below which it is zero, and that beyond which the search fails."""
+_MIN_STEP_PART = 1e-2
+"""Least part of a step that is tried, after six halvings; below, the shift is increased."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -169,7 +174,7 @@ class _Search:
     def step_naturally(self) -> bool:
         """Take the longest of halved steps that passes the natural monotonicity test; False if there is none."""
         size, length = self._size(self._here), 1.0
-        while np.isfinite(size) and length >= _SMALLEST_LENGTH:
+        while np.isfinite(size) and length >= _MIN_STEP_PART:
             self.step(length)
             correct(self._system, self._motion, self._multipliers, self._ahead)
             if self._size(self._ahead) <= (1.0 - 0.25 * length) * size:

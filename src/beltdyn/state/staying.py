@@ -36,11 +36,13 @@ _LEAST_STEP = 1.01
 FINER = 1.4
 """Elements of a mesh over those of the one before."""
 MOST_ELEMENTS = 1500
+"""Nodes of a mesh, as many as elements in a closed belt, from which on it is not refined: a limit of computing time."""
 _MOST_MESHES = 4
 """Meshes on which equilibrium is sought."""
 _SETTLED = 1e-3
 """Change of the tension at rest from one mesh to the next, relative, with which a mesh is fine enough for it."""
-_MOST = 60
+_MAX_NEWTON_STEPS = 60
+"""Steps of Newton's method for equilibrium without friction; beyond, the search counts as failed."""
 _SOFTER_TEETH = 1e-3, 1e-2, 0.1, 1.0
 """Stiffness of teeth over their own on the way to equilibrium, where the way from the laid belt is too long."""
 _CURVATURE = slice(4, 6)
@@ -270,7 +272,9 @@ def _found(prepared: Prepared, still: System, state: State, anchor: Anchor) -> b
     tolerance = TOLERANCE * float(np.min(prepared.radii))
     spend_time()
     shifts, begun = shifts_of(still.frame), shifts_of(still.frame).copy()
-    found = find_steady(still, state.at(0.0), anchor, tolerance, _MOST, False, steady_work(still))[0] == FOUND
+    found = (
+        find_steady(still, state.at(0.0), anchor, tolerance, _MAX_NEWTON_STEPS, False, steady_work(still))[0] == FOUND
+    )
     if not found:
         shifts[:] = begun
     fitted(still, state.position)

@@ -26,9 +26,13 @@ _JUMP = 0.005
 _TURNED = 0.005
 """Change of the tension away from the one that is wanted, over that one, after which it has turned."""
 _MOST_TRIALS = 60
+"""Trial lengths of the belt; beyond, a tension that a spring nearly holds is accepted, and any other is out of
+reach."""
 _LONGEST_CHANGE = 0.02
 """Change of a belt's length from one trial to the next, over its length, at most."""
 _LEAST_CHANGE = 1e-7
+"""Least change of a belt's length from one trial to the next, over its length: where shorter ones would be needed, the
+tension jumps, or there is no equilibrium beyond."""
 _SCAN, _MOST_SCANNED = 0.005, 80
 """Change of the length on the way along all lengths, over the length, and how often it is made to each side."""
 _LEAST_WRAP = np.radians(0.5)

@@ -271,6 +271,7 @@ def creeping_arc(
 _SHORTEST = 20.0
 """Largest wave number considered, over that of the tuned waves."""
 _WAVES = 4000
+"""Number of wave numbers at which growth is evaluated: a spacing of 1/200 of that of the tuned waves."""
 
 
 class Flutter(NamedTuple):

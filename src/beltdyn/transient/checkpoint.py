@@ -51,6 +51,8 @@ from beltdyn.transient.packing import ForeignError, Packing
 
 _HEAD = "beltdyn checkpoint"
 _LONGEST_HEAD = 200
+"""Bytes of the first line that are read, at most: name, version and hashes fit in, and a foreign file without line ends
+is not read as one line."""
 
 STATE = (IntegratorState, Trial, Profiles)
 """What an integration changes as it goes."""

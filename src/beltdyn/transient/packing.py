@@ -21,7 +21,8 @@ from beltdyn.model.drive import drive_of_text
 _DIGEST = hashlib.sha256().digest_size
 _LENGTH = 8
 """Bytes that tell how long the JSON is."""
-_ALIGNED = 16
+_ALIGNMENT = 16
+"""Bytes to a multiple of which arrays are padded: the alignment of the widest numbers of NumPy."""
 _NUMBERS = re.compile(r"[<>|][biufc]\d{1,2}")
 """Types of numbers, as NumPy writes them."""
 _PLAIN = (type(None), bool, int, float, str)
@@ -176,7 +177,7 @@ class _Reader:
 
 def _padded(size: int) -> int:
     """Bytes that an array takes, so that the next one is aligned."""
-    return -(-size // _ALIGNED) * _ALIGNED
+    return -(-size // _ALIGNMENT) * _ALIGNMENT
 
 
 def _type_node(dtype: np.dtype[Any]) -> Any:

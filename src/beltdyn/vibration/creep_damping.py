@@ -18,7 +18,10 @@ if TYPE_CHECKING:
 
 CREEP_SHARE = 0.25
 """Creep of the steeper friction, over that of the drive."""
-_ITERATIONS, _ACCURACY = 8, 1e-6
+_MAX_ITERATIONS = 8
+"""Iterations for an eigenvalue in the changed problem; beyond, the mode is not followed, and its damping is NaN."""
+_EIGENVALUE_TOLERANCE = 1e-6
+"""Relative change of an eigenvalue at which the iteration has converged."""
 _OFF = 1e-6
 """Distance of a shift from an eigenvalue, relative: on it the matrix is singular."""
 _FARTHEST = 0.5
@@ -76,7 +79,7 @@ def _followed(before: _Problem, after: _Problem, value: complex, vector: Complex
         left = np.random.default_rng(0).standard_normal(right.size).astype(complex)
         for _ in range(2):
             left = _unit(factors.solve(np.asarray(before.slope(value).conj().T @ left), trans="H"))
-        for _ in range(_ITERATIONS):
+        for _ in range(_MAX_ITERATIONS):
             factors, slope = splu(after.at(value * (1.0 + _OFF))), after.slope(value)
             right = _unit(factors.solve(np.asarray(slope @ right)))
             left = _unit(factors.solve(np.asarray(slope.conj().T @ left), trans="H"))
@@ -85,7 +88,7 @@ def _followed(before: _Problem, after: _Problem, value: complex, vector: Complex
             value -= step
             if not abs(value - begin) < _FARTHEST * abs(begin):
                 return nan
-            if abs(step) < _ACCURACY * abs(value):
+            if abs(step) < _EIGENVALUE_TOLERANCE * abs(value):
                 return value
     except RuntimeError:  # a singular matrix
         return nan

@@ -30,7 +30,9 @@ if TYPE_CHECKING:
 # What is put beside a linear response: amplitudes of the same orders in a run-up, and measured ones
 
 _HEADING = re.compile(r"(?P<name>\w+) (?P<of>.+) order (?P<order>\d*\.?\d+)")
-_LARGEST_ORDER = 20.0
+_ORDER_LIMIT = 20.0
+"""Order, per turn of the pulley, up to which spectra of a run-up go at least; an excitation above 19 extends them to
+one order beyond its own."""
 _SPEED = "speed"
 
 
@@ -78,7 +80,7 @@ def _orders_of(run: Run, name: str, number: int, place: Place) -> FloatArray:
     speeds, recorded = np.abs(run.dataset["shaft_speed"].values), _recorded(run, name, number)
     found = np.empty((place.speeds.size, len(place.excitations)))
     for column, one in enumerate(place.excitations):
-        angle, largest = run.dataset["shaft_angle"][:, one.pulley], max(_LARGEST_ORDER, one.order + 1.0)
+        angle, largest = run.dataset["shaft_angle"][:, one.pulley], max(_ORDER_LIMIT, one.order + 1.0)
         amplitude = derived.orders(recorded, angle, largest).interp(order=one.order)
         rising = np.argsort(speeds[:, one.pulley])
         at = np.interp(amplitude["speed"].values, speeds[rising, one.pulley], speeds[rising, place.pulley])

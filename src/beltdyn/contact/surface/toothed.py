@@ -31,9 +31,11 @@ TEETH = record(
 """Teeth of a pulley against those of the belt."""
 
 SPEED: Final = 0
+"""Unknown of a body in steady running: its speed."""
 PHASE: Final = 1
+"""Unknown of a body in steady running: the phase of its grooves; its speed follows from that of the belt."""
 FOLLOWS: Final = 2
-"""What the unknown of a body is in steady running: its speed, the phase of its grooves, or that of its rim."""
+"""Unknown of a body in steady running: that of a toothed pulley with which it turns; its own speed follows."""
 
 
 class ToothedRims(NamedTuple):
