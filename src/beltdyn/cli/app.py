@@ -22,7 +22,8 @@ from beltdyn.cli.study import study
 from beltdyn.errors import classified
 from beltdyn.signals import ending_in_order, exit_code, interrupted
 
-_BAD_INPUT = 2
+_BAD_INPUT_EXIT_CODE = 2
+"""Exit code for bad input, also for a command line that is not understood, as usual for shell commands."""
 
 app = App(
     name="beltdyn",
@@ -66,10 +67,10 @@ def _exit_code(arguments: Sequence[str] | None) -> int:
         return app(arguments, print_error=False, exit_on_error=False, result_action=action) or 0
     except CycloptsError as error:
         show_error(_usage(error))
-        return _BAD_INPUT
+        return _BAD_INPUT_EXIT_CODE
     except OSError as error:
         show_error(f"{error.filename or 'a file'} cannot be read or written: {error.strerror or error}.")
-        return _BAD_INPUT
+        return _BAD_INPUT_EXIT_CODE
     except Exception as error:
         if not interrupted():
             told = classified(error, shlex.join(["beltdyn", *(sys.argv[1:] if arguments is None else arguments)]))

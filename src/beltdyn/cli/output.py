@@ -62,7 +62,8 @@ def show_parts(parts: "Sequence[Table | Facts]") -> None:
             show_facts(part.facts)
 
 
-DOUBTFUL = 4
+_DOUBTFUL_EXIT_CODE = 4
+"""Exit code where a warning under --strict makes results doubtful; 2 and 3 are those of errors."""
 
 
 class Extras(NamedTuple):
@@ -169,7 +170,7 @@ def doubt(warnings: Sequence[str]) -> int:
         return 0
     count = f"{len(warnings)} warnings" if warnings[1:] else "1 warning"
     show_error(f"{count}, which --strict treats as errors. The results are kept.")
-    return DOUBTFUL
+    return _DOUBTFUL_EXIT_CODE
 
 
 def ended(result: "Result") -> int:

@@ -17,7 +17,8 @@ from beltdyn.arrays import FloatArray
 from beltdyn.kernel import kernel
 from beltdyn.results.schema import FILTER_REACH
 
-_WINDOW = (0.42, 0.5, 0.08)
+_BLACKMAN = (0.42, 0.5, 0.08)
+"""Coefficients of the Blackman window (dimensionless): of 1, cos(pi u) and cos(2 pi u); see Harris 1978."""
 _FINEST = 0.5
 """Length of the pieces of the integral at most, in intervals."""
 _NEAR = 1e-4
@@ -40,7 +41,7 @@ def transfer(frequency: FloatArray) -> FloatArray:
             0.5
             * weight
             * (sici(np.pi * (2.0 * FILTER_REACH * f - k))[0] + sici(np.pi * (2.0 * FILTER_REACH * f + k))[0])
-            for k, weight in enumerate(_WINDOW)
+            for k, weight in enumerate(_BLACKMAN)
         )
         return np.asarray(sum(terms, np.zeros_like(f)) / np.pi)
 
@@ -126,7 +127,7 @@ def add_filtered(curves: Curves, pieces: FloatArray, outputs: Outputs, filtered:
     `curves`: what is filtered; `pieces`: ends of the pieces of the integrals, each in one step, in intervals, shape (p
     + 1,); `outputs`: when outputs are; `filtered`: the sums, shape (m, channels).
     """
-    constant, first, second = _WINDOW
+    constant, first, second = _BLACKMAN
     step, reached = 1, 0
     for piece in range(pieces.size - 1):
         middle, half = 0.5 * (pieces[piece] + pieces[piece + 1]), 0.5 * (pieces[piece + 1] - pieces[piece])

@@ -119,7 +119,8 @@ def _carriages(prepared: Prepared) -> tuple[str, ...]:
 
 _OF_ROLLS = ("roll_length", "roll_radius", "roll_inertia", "roll_speed", "roll_torque")
 """Variables of rolls, in the order in which they are found."""
-_SECONDS_BETWEEN_WRITES = 0.25
+_WRITE_INTERVAL = 0.25
+"""Clock time after which waiting states are observed and written, s, so that readers of the growing file lag little."""
 _MOST_WAITING = 512
 """States that wait to be observed."""
 _BLOCK = 512
@@ -266,7 +267,7 @@ class Recording:
             self._step = float(chunk.step[-1])
         self.tell(chunk.reached, phase)
         states = sum(len(chunk.time) for chunk in self._waiting)
-        if states > _MOST_WAITING or time.perf_counter() - self._last_write > _SECONDS_BETWEEN_WRITES:
+        if states > _MOST_WAITING or time.perf_counter() - self._last_write > _WRITE_INTERVAL:
             self._write()
 
     def tell(self, reached: float, phase: Phase) -> None:

@@ -93,8 +93,11 @@ def listing(words: Sequence[str]) -> str:
 
 
 _LONGEST_VALUE = 60
+"""Characters of a user's value in a message, at most; a longer one is shortened, so that its line stays readable."""
 _LONGEST_SENTENCE = 1000
+"""Characters of the explanation of an error, at most: it may quote several values."""
 _MOST_ERRORS = 20
+"""Errors that are explained, at most; of more the message gives the number."""
 _RULES = {
     "greater_than": "must be greater than {gt:g}",
     "greater_than_equal": "must be at least {ge:g}",

@@ -28,7 +28,8 @@ from beltdyn.parts.text_file import entry_name
 
 # Docstrings of the parts of a drive from their fields: meaning, unit, limits and default of each argument
 
-_WIDTH = 100
+_LINE_WIDTH = 100
+"""Characters of a line of a docstring, at most: a choice for terminals."""
 _EXAMPLES = "\n\nExamples\n--------\n"
 """Stands last in a docstring."""
 _NAMES = {float: "float", int: "int", bool: "bool", str: "str"}
@@ -86,7 +87,7 @@ def _argument(name: str, field: FieldInfo) -> str:
     described = field.description or f"always {_literal(field.default)}"
     limits = " and ".join(limit for limit in map(_limit, field.metadata) if limit)
     sentence = f"{described[0].upper()}{described[1:]}." + (f"  {limits.capitalize()}." if limits else "")
-    text = textwrap.fill(sentence, _WIDTH, initial_indent="    ", subsequent_indent="    ")
+    text = textwrap.fill(sentence, _LINE_WIDTH, initial_indent="    ", subsequent_indent="    ")
     return f"{name} : {_type(field.annotation, field.metadata)}{'' if field.is_required() else optional}\n{text}"
 
 

@@ -46,7 +46,10 @@ _CELSIUS = re.compile("°\\s?C")
 _DEGREE = re.compile("°(?!\\s?[CF])")
 """Degrees of temperature and of angle, whose sign no name of a unit has."""
 _LONGEST_TEXT = 60
-_LARGEST = 1e15
+"""Characters of a number with its unit, at most; a safeguard against long texts, which patterns and units never
+need."""
+_LARGEST_MAGNITUDE = 1e15
+"""Largest magnitude of a number, in its SI unit: no drive has a larger one, and arithmetic with it would overflow."""
 _DUST = 1e-30
 """Magnitudes below it are zero, as rounding leaves them in coordinates and tables: their powers would underflow."""
 _REMEMBERED = 4096
@@ -302,8 +305,8 @@ def unit_of(annotation: object) -> str | None:
 
 def _check_size(number: float, smallest: float) -> None:
     """Refuse numbers that no drive has, and with which the arithmetic would overflow."""
-    if _LARGEST < abs(number) < math.inf:
-        raise ValueError(f"is too large: the limit is {_LARGEST:g}")
+    if _LARGEST_MAGNITUDE < abs(number) < math.inf:
+        raise ValueError(f"is too large: the limit is {_LARGEST_MAGNITUDE:g}")
     if 0 < abs(number) < smallest:
         raise ValueError(f"is too small: the limit is {smallest:g}")
 
@@ -372,7 +375,8 @@ Name = Annotated[str, StringConstraints(max_length=60, pattern=r"^\w[\w .-]*$")]
 
 _RANGE_NUMBER = r"[+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?"
 _RANGE = re.compile(rf"\s*({_RANGE_NUMBER})\s*\.\.\s*({_RANGE_NUMBER})\s*(.*?)\s*")
-_MOST = 10_000
+_MAX_NUMBERS = 10_000
+"""Numbers of a range or list, at most; more are refused, a safeguard since each is a point of an analysis."""
 
 
 def number_in(name: str, value: float | str, unit: str) -> float:
@@ -409,9 +413,11 @@ def _finite(name: str, given: Sequence[float] | FloatArray, unit: str) -> FloatA
         found = np.atleast_1d(np.asarray(given, dtype=float))
     except (TypeError, ValueError):
         found = np.full(1, np.nan)
-    if found.ndim != 1 or not 1 <= found.size <= _MOST or not np.all(np.isfinite(found)):
+    if found.ndim != 1 or not 1 <= found.size <= _MAX_NUMBERS or not np.all(np.isfinite(found)):
         in_unit = f" in {unit}" if unit else ""
-        raise ModelError(f"{name} = {given!r} must be 1 to {_MOST:,} finite numbers{in_unit}, or a text with a unit.")
+        raise ModelError(
+            f"{name} = {given!r} must be 1 to {_MAX_NUMBERS:,} finite numbers{in_unit}, or a text with a unit."
+        )
     return found
 
 
@@ -419,8 +425,8 @@ def _numbers_of_text(name: str, text: str, unit: str, count: int, example: str) 
     """Numbers of a range or of a list."""
     ranged, listed = _RANGE.fullmatch(text), [_NUMBER.fullmatch(each) for each in text.split(",")]
     if ranged is not None:
-        if not 2 <= count <= _MOST:
-            raise ModelError(f"{count} points of {name} = {text!r} are not possible. Give 2 to {_MOST:,}.")
+        if not 2 <= count <= _MAX_NUMBERS:
+            raise ModelError(f"{count} points of {name} = {text!r} are not possible. Give 2 to {_MAX_NUMBERS:,}.")
         first, last, given = ranged.groups()
         return np.linspace(_number(name, first, given, unit), _number(name, last, given, unit), count)
     matches = [match for match in listed if match is not None]

@@ -14,6 +14,7 @@ from pydantic import BaseModel
 # The location of an error as the path of the key in the user's data
 
 _LONGEST_NAME = 60
+"""Characters of a user's text in a message, at most, unless specified; a longer one is shortened to stay readable."""
 
 
 def shorten(text: object, longest: int = _LONGEST_NAME) -> str:
@@ -130,7 +131,9 @@ LONGEST_TABLE = 100_000_000
 """Bytes of the longest CSV file."""
 
 _NO_WAITING = getattr(os, "O_NONBLOCK", 0) | getattr(os, "O_BINARY", 0)
-_DEEPEST = 32
+_MAX_NESTING = 32
+"""Brackets around a value, or dots in a key, at most: more than a drive file needs. The memory of the parser grows with
+the square of the number."""
 _NO_STRUCTURE = re.compile(
     r'"""(?:\\.|[^\\])*?"""|' r"'''.*?'''|" r'"(?:\\.|[^"\\\n])*"|' r"'[^'\n]*'|" r"(?P<comment>\#[^\n]*)", re.DOTALL
 )
@@ -172,7 +175,7 @@ def parse_toml(text: str) -> dict[str, Any]:
     """Parse TOML."""
     if len(text) > LONGEST_TOML:
         raise ValueError(f"it is longer than {LONGEST_TOML:,} characters. Move long tables to CSV files")
-    if _depth(text) > _DEEPEST:
+    if _depth(text) > _MAX_NESTING:
         raise ValueError("it is nested too deeply")
     try:
         return tomllib.loads(text)

@@ -17,6 +17,7 @@ from beltdyn.parts.text_file import open_file
 from beltdyn.results.staged_file import find_checksums
 
 _LONGEST_REASON = 200
+"""Characters of a library's reason in a message, at most; a safeguard against long ones."""
 
 # One writer for a file at a time
 

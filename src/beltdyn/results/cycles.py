@@ -170,7 +170,9 @@ SHORTEST, LONGEST = 0.1, 0.5
 
 _STANDS = 0.1
 """Part of its waves in a turn of the belt below which a shaft counts as standing still."""
-_SAMPLES = 4096
+_TABLE_SAMPLES = 4096
+"""Samples of a table over a run, for its autocorrelation: shorter periods than a thousandth of the run are not
+resolved."""
 _ALIKE = 0.02
 """Mean square difference of what repeats from itself a period earlier, over its variance."""
 _FINEST = 64
@@ -285,7 +287,7 @@ def _repeats(profile: Profile, time: FloatArray) -> float:
     """Period in which a table repeats in the last half of a run, s; zero where it does not."""
     if not isinstance(profile, Table):
         return 0.0
-    instants, half = np.linspace(time[0], time[-1], _SAMPLES), _SAMPLES // 2
+    instants, half = np.linspace(time[0], time[-1], _TABLE_SAMPLES), _TABLE_SAMPLES // 2
     values = profile.at(instants)
     values = values - values[half:].mean()
     squares = np.cumsum(np.append(0.0, values**2))

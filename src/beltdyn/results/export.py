@@ -341,6 +341,7 @@ _HEADER = f"MATLAB 5.0 MAT-file, created by {MARK}".encode()
 """Text with which a MAT file begins; other programs look at its first words only."""
 
 _HEADER_BYTES = 116
+"""Bytes of the text at the head of a MAT file of version 5, by its format; the text is padded with blanks."""
 
 _MAKER = b"creator"
 

@@ -120,7 +120,9 @@ class Layout:
 # Expected size of the results of a drive
 
 _CHUNK_BYTES = 32768
+"""Bytes of a chunk, the outputs of a variable that a file keeps together; a longer row has a chunk of its own."""
 _CHUNK_ROWS = 1024
+"""Outputs of a chunk, at most, so that chunks of variables with few numbers are not mostly empty in short runs."""
 _HEADER = 64_000
 """Bytes of a file without outputs, about."""
 _COPIES = 2.0

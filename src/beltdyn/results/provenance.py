@@ -20,7 +20,8 @@ from beltdyn.results.schema import FORMAT, Recorded
 
 # Mesh error of a run: `beltdyn.model.resolution` with the tension and speed of the run
 
-_WINDOW = 0.2
+_FINAL_PART = 0.2
+"""Last part of a run from which tension and speed for its mesh error are taken, so that the start-up counts little."""
 _MOVING = frozenset({"slip", "losses"})
 """What a belt at rest has none of."""
 
@@ -92,7 +93,7 @@ def mesh_resolution(prepared: Prepared, tension: float, square: float) -> Resolu
 def _last(recorded: Recorded, name: str, clock: str) -> FloatArray:
     """Values of a variable over the last fifth of the run."""
     time = np.asarray(recorded[clock])
-    first = int(np.searchsorted(time, time[-1] - _WINDOW * (time[-1] - time[0])))
+    first = int(np.searchsorted(time, time[-1] - _FINAL_PART * (time[-1] - time[0])))
     return np.asarray(recorded[name][first:])
 
 

@@ -147,7 +147,10 @@ _NEWTON_STEPS, _WIDEST_STEP = 16, 4.0
 _FIRST_STRIDE, _LARGEST_STRIDE, _GROWTH = 1.25, 2.0, 1.2
 """Factors between loads on the way to the edge of slip: the first, the largest, and the growth of their logarithms."""
 _MOST_STRIDES, _LARGEST_FACTOR = 120, 1e6
-_REFINEMENTS = 40
+"""Strides on the way to the edge of slip, and the factor on loads at which it ends, or by its reciprocal: below that
+the slip safety is zero. Twenty of the largest strides lead so far; the others allow for halved ones."""
+_MAX_REFINEMENTS = 40
+"""Steps of the regula falsi for the edge of slip; a safeguard, after which the last factor is taken."""
 
 
 class SlipSafety(NamedTuple):
@@ -346,7 +349,7 @@ def _between(balance: TensionBalance, loads: Loads, pulley: IntArray, near: _Way
     """Factors at which pulleys slide, between two states, by the regula falsi (Illinois)."""
     low, high, a, b = near.factor.copy(), far.factor.copy(), near.missing.copy(), far.missing.copy()
     guess, root, open_ = near.unknowns.copy(), far.factor.copy(), np.arange(pulley.size)
-    for _ in range(_REFINEMENTS):
+    for _ in range(_MAX_REFINEMENTS):
         if not open_.size:
             break
         root[open_] = (low - a * (high - low) / np.where(a == b, 1.0, b - a))[open_]

@@ -186,7 +186,8 @@ def _wrong_pages(file: BinaryIO, checksums: Checksums) -> Iterator[int]:
 RESERVE = 1 << 16
 """Bytes that a growing file holds behind its contents, so that its end can be recorded on a full disk."""
 
-_BLOCK = 16384
+_BLOCK_BYTES = 16384
+"""Bytes that are staged together: a multiple of `PAGE`, so that the checksum of a page needs one block only."""
 
 
 class StagedFile:
@@ -247,7 +248,7 @@ class StagedFile:
         data = memoryview(data).cast("B")
         for place, start, stop in _pieces(self._place, len(data)):
             piece = data[place + start - self._place : place + stop - self._place]
-            if stop - start == _BLOCK:
+            if stop - start == _BLOCK_BYTES:
                 self._blocks[place] = bytearray(piece)
             else:
                 self._block(place)[start:stop] = piece
@@ -291,12 +292,12 @@ class StagedFile:
         kept = known.end // PAGE if known else 0
         if known:
             pages[:kept] = known.pages[:kept]
-        changed = {page for place in self._changed for page in range(place // PAGE, (place + _BLOCK) // PAGE)}
+        changed = {page for place in self._changed for page in range(place // PAGE, (place + _BLOCK_BYTES) // PAGE)}
         earlier = {}
         for page in sorted({*changed, *range(kept, len(pages))}):
             place, size = page * PAGE, min(PAGE, end - page * PAGE)
             if size > 0:
-                block = place - place % _BLOCK
+                block = place - place % _BLOCK_BYTES
                 data = memoryview(self._block(block))[place - block : place - block + size]
                 pages[page] = zlib.crc32(data)
                 if known and not known.earlier and page < kept:
@@ -324,10 +325,10 @@ class StagedFile:
     def _block(self, place: int) -> bytearray:
         """A block as it is now."""
         if place not in self._blocks:
-            data = self._stored(place, _BLOCK)
+            data = self._stored(place, _BLOCK_BYTES)
             if self.checksums:
                 _require_same(self.checksums, place, data)
-            self._blocks[place] = bytearray(data.ljust(_BLOCK, b"\0"))
+            self._blocks[place] = bytearray(data.ljust(_BLOCK_BYTES, b"\0"))
         return self._blocks[place]
 
     def _stored(self, place: int, size: int) -> bytes:
@@ -375,8 +376,8 @@ def identity(status: os.stat_result) -> tuple[int, int]:
 
 def _pieces(place: int, count: int) -> Iterator[tuple[int, int, int]]:
     """Blocks that a stretch of bytes lies in: the place of each, and where in it the stretch begins and ends."""
-    for block in range(place - place % _BLOCK, place + count, _BLOCK):
-        yield block, max(place - block, 0), min(place + count - block, _BLOCK)
+    for block in range(place - place % _BLOCK_BYTES, place + count, _BLOCK_BYTES):
+        yield block, max(place - block, 0), min(place + count - block, _BLOCK_BYTES)
 
 
 def _without_gaps(pieces: list[tuple[int, bytes]], start: int) -> list[tuple[int, bytes]]:

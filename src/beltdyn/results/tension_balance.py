@@ -17,7 +17,8 @@ from beltdyn.model.path import span_directions, span_points, wrap_angles
 from beltdyn.results.mechanics import SpanTension, across
 from beltdyn.results.sag import Sag, sag_of, turned, weight_of_meter, wrap_with_sag
 
-_MOST_ITERATIONS = 25
+_MAX_NEWTON_STEPS = 25
+"""Steps of Newton's method; beyond, tensions are NaN unless the last step is within 1000 times `_CONVERGED`."""
 _CONVERGED = 1e-9
 """Step of Newton's method, over the scale of each unknown."""
 _DIFFERENCE = 1e-6
@@ -229,7 +230,7 @@ class TensionBalance:
     def solve(self, loads: Loads, factor: FloatArray, unknowns: FloatArray) -> FloatArray:
         """The unknowns with a factor on loads, by Newton's method from a guess; NaN where there is no balance."""
         found, left = unknowns.copy(), np.arange(len(factor))
-        for _ in range(_MOST_ITERATIONS):
+        for _ in range(_MAX_NEWTON_STEPS):
             some = loads.of(left)
             step, _ = self.newton_step(some, factor[left], found[left])
             found[left] += self.limited(some, factor[left], found[left], step)

@@ -252,7 +252,7 @@ def test_an_append_writes_its_outputs_and_little_more(
     recorder.append(chunk)
     begun = recorder.path.stat().st_size
     outputs = sum(np.asarray(chunk[name], variable.dtype).nbytes for name, variable in layout.recorded.items())
-    ends = 2 * len(layout.recorded) * staged_file._BLOCK  # a variable's rows begin and end within blocks
+    ends = 2 * len(layout.recorded) * staged_file._BLOCK_BYTES  # a variable's rows begin and end within blocks
     monkeypatch.setattr(staged_file, "_write_all", counting)
     for _ in range(appends):
         written.clear()

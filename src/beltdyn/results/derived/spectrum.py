@@ -16,8 +16,11 @@ from beltdyn.results.schema import PASS_BAND
 if TYPE_CHECKING:
     from scipy.signal import ShortTimeFFT
 
-_FEWEST = 16
-_OVERLAP = 4
+_MIN_SAMPLES = 16
+"""Least number of outputs of a spectrum: they give eight frequencies above zero, and fewer hardly resolve any."""
+_STEPS_PER_PIECE = 4
+"""Steps between pieces in the length of a piece: they overlap by three quarters, so that every output has about the
+same weight despite the Hann window."""
 _SAME = 0.01
 """Part of a speed by which it changes at least in a run-up."""
 
@@ -117,7 +120,9 @@ def waterfall(values: xr.DataArray, speed: xr.DataArray, pieces: int = 60) -> xr
     ('speed', 'frequency')
     """
     time, even = _even(instants_of(values), values.values)
-    transform = _transform(max(_FEWEST, _OVERLAP * (len(time) // pieces)), (len(time) - 1) / (time[-1] - time[0]))
+    transform = _transform(
+        max(_MIN_SAMPLES, _STEPS_PER_PIECE * (len(time) // pieces)), (len(time) - 1) / (time[-1] - time[0])
+    )
     middle, amplitude = _short_time(transform, even)
     turning = np.interp(time[0] + middle, speed["time"].values, np.abs(speed.values))
     kept = transform.f <= _highest(values, transform.fs)
@@ -279,9 +284,9 @@ def _even(time: FloatArray, values: FloatArray) -> tuple[FloatArray, FloatArray]
     """
     flat = values.reshape(len(values), math.prod(values.shape[1:]))
     (known,) = np.nonzero(np.isfinite(flat).all(axis=1))
-    if known.size < _FEWEST:
+    if known.size < _MIN_SAMPLES:
         raise ModelError(
-            f"{known.size} outputs are too few for a spectrum; {_FEWEST} or more are needed. "
+            f"{known.size} outputs are too few for a spectrum; {_MIN_SAMPLES} or more are needed. "
             "Simulate longer, or reduce simulation.output_interval."
         )
     inside = slice(known[0], known[-1] + 1)
@@ -304,7 +309,7 @@ def _transform(length: int, rate: float) -> "ShortTimeFFT":
     from scipy.signal.windows import hann
 
     shape = hann(length, sym=False)
-    return ShortTimeFFT(shape, max(1, length // _OVERLAP), rate, fft_mode="onesided2X", scale_to="magnitude")
+    return ShortTimeFFT(shape, max(1, length // _STEPS_PER_PIECE), rate, fft_mode="onesided2X", scale_to="magnitude")
 
 
 def _short_time(transform: "ShortTimeFFT", values: FloatArray) -> tuple[FloatArray, FloatArray]:
@@ -362,6 +367,8 @@ def _name_of(values: xr.DataArray) -> str:
 
 
 _FEWEST_TURNS = 2
+"""Least number of turns for an order spectrum: with n of them lines are 1 / n of an order apart, with one the first
+order is next to the mean value."""
 
 
 def transmission_error(
