@@ -1,6 +1,7 @@
-"""Constants of a module say what they are: quantity, unit and reason stand in a docstring below each."""
+"""Constants of a module have one value each, and a docstring below says quantity, unit and reason."""
 
 import ast
+from collections import Counter
 from collections.abc import Iterator
 from pathlib import Path
 
@@ -84,3 +85,29 @@ def test_a_constant_without_docstring_is_noticed(constant: str) -> None:
 )
 def test_other_constants_are_left_alone(other: str) -> None:
     assert list(constants(other)) == []
+
+
+def redefined(text: str) -> list[str]:
+    """Names that a module assigns more than once: functions above use the last value too."""
+    body = ast.parse(text).body
+    targets = [target for statement in body if isinstance(statement, ast.Assign) for target in statement.targets]
+    targets += [statement.target for statement in body if isinstance(statement, ast.AnnAssign) and statement.value]
+    nodes = [node for target in targets for node in ast.walk(target) if isinstance(node, ast.Name)]
+    names = [node.id for node in nodes if isinstance(node.ctx, ast.Store) and node.id.isupper()]
+    return [name for name, count in Counter(names).items() if count > 1]
+
+
+def test_no_constant_is_defined_twice() -> None:
+    every = {
+        str(file.relative_to(SOURCES)): redefined(file.read_text(encoding="utf-8")) for file in SOURCES.rglob("*.py")
+    }
+    assert len(every) > 100
+    assert {file: names for file, names in every.items() if names} == {}
+
+
+@pytest.mark.parametrize(
+    "again", ["_ROOM = 0.3", "_ROOM, _WIDTH = 0.3, 0.6", "_ROOM: Final = 0.3", "_WIDTH = _ROOM = 1"]
+)
+def test_a_constant_that_is_defined_twice_is_noticed(again: str) -> None:
+    assert redefined(f"_ROOM = 0.8\n{again}\n") == ["_ROOM"]
+    assert redefined(again) == []

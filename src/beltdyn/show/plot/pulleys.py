@@ -34,7 +34,7 @@ from beltdyn.show.plot.style import (
 
 # Power losses by cause, of one run and of several
 
-_ROOM = 0.8
+_GROUP_HEIGHT = 0.8
 """Height of the bars of a cause, over the distance from one cause to the next."""
 _POWER_LETTER_SIZE = 8.0
 """Size of the powers behind the bars of several runs, points: the bars are thinner than those of one run."""
@@ -49,9 +49,9 @@ def _losses_of_several(runs: Sequence[Run], ax: Axes | None) -> Axes:
         run.require_output()
     balances = [means_of(run).balance for run in runs]
     causes = _worth_drawing(balances)
-    height = _ROOM / len(runs)
+    height = _GROUP_HEIGHT / len(runs)
     for number, (balance, name) in enumerate(zip(balances, names_of_results(runs), strict=True)):
-        places = [row - 0.5 * _ROOM + (number + 0.5) * height for row in range(len(causes))]
+        places = [row - 0.5 * _GROUP_HEIGHT + (number + 0.5) * height for row in range(len(causes))]
         powers = [balance.losses.get(cause, 0.0) for cause in causes]
         ax.barh(places, powers, height=0.9 * height, color=color(number), label=name)
         for place, power in zip(places, powers, strict=True):
@@ -119,7 +119,7 @@ def _worth_drawing(balances: Sequence[Balance]) -> list[str]:
     return [cause for cause, power in powers.items() if power > _NEGLIGIBLE_LOSS * largest]
 
 
-_ROOM, _ROOM_IN_PRINT = 0.3, 0.6
+_TEXT_MARGIN, _TEXT_MARGIN_IN_PRINT = 0.3, 0.6
 """Room for the power behind the longest bar, over its length."""
 
 
@@ -128,7 +128,7 @@ def _frame(ax: Axes, causes: Sequence[str]) -> None:
     ax.set_yticks(range(len(causes)), causes)
     ax.invert_yaxis()
     ax.grid(axis="y", visible=False)
-    ax.margins(x=_ROOM_IN_PRINT if prints() else _ROOM)
+    ax.margins(x=_TEXT_MARGIN_IN_PRINT if prints() else _TEXT_MARGIN)
     if ax.dataLim.x0 >= 0.0:
         ax.set_xlim(left=0.0)
     ax.axvline(0.0, color=INK, linewidth=0.8)
