@@ -29,11 +29,11 @@ if TYPE_CHECKING:
 
 _ALIKE = 1e-5
 """Distance of eigenvalues, over their magnitude, up to which they count as one: their shapes mix freely."""
-_BESIDE = 1e-7
+_SHIFT_DISTANCE = 1e-7
 """Distance of the shift of inverse iterations from the eigenvalue, over it."""
 _INVERSE_ITERATIONS = 3
-"""Inverse iterations for left eigenvectors: each reduces other modes a hundredfold or more, by the ratio of `_BESIDE`
-to their distance, which exceeds `_ALIKE`."""
+"""Inverse iterations for left eigenvectors: each reduces other modes a hundredfold or more, by the ratio of
+`_SHIFT_DISTANCE` to their distance, which exceeds `_ALIKE`."""
 
 
 class Mode(NamedTuple):
@@ -158,7 +158,7 @@ class _Lowest:
     def _group(self, members: Sequence[int]) -> _Group:
         if members[0] not in self._groups:
             value, right = complex(np.mean(self._values[members])), self._vectors[:, members]
-            left = _left_eigenvectors(_dynamic_stiffness(self._motions, value * (1.0 + _BESIDE)), len(members))
+            left = _left_eigenvectors(_dynamic_stiffness(self._motions, value * (1.0 + _SHIFT_DISTANCE)), len(members))
             here = _between(left, self._motions, value, right)
             slope = left.conj().T @ (self._motions.damping @ right + 2.0 * value * (self._motions.mass @ right))
             self._groups[members[0]] = _Group(members, value, right, left, here, np.asarray(slope, complex))
@@ -204,10 +204,10 @@ CHANGE = 1e-5
 """Relative change of a number for derivatives on a mesh that follows arcs."""
 _CHANGE_OF_EQUAL_ELEMENTS = 1e-2
 """The same where contact points come and go: with 1e-5 the largest tension of a band brake has twice its derivative."""
-_MOST_MODES = 200
+_MAX_MODES = 200
 """Number of modes from which on no more are searched: higher frequencies are not covered, and a span that swings most
 in none of these has no mode."""
-_SPAN = 0.4
+_SPAN_SHARE = 0.4
 """Share of a span in the kinetic energy of a mode with which it swings most; of two spans alike each has half."""
 
 
@@ -270,7 +270,7 @@ class FoundState(ABC):
         count = MODES
         while True:
             found = self._first(count)
-            if max(mode.frequency for mode in found) > frequency or len(found) < count or count >= _MOST_MODES:
+            if max(mode.frequency for mode in found) > frequency or len(found) < count or count >= _MAX_MODES:
                 return np.array([mode.frequency for mode in found]), [mode.kind for mode in found]
             count *= 2
 
@@ -293,10 +293,10 @@ class FoundState(ABC):
         place, count = labels_of(self.drive)["span"].index(span), MODES
         while True:
             found = self._first(count)
-            swings = [mode for mode in found if mode.span_share[place] >= _SPAN]
+            swings = [mode for mode in found if mode.span_share[place] >= _SPAN_SHARE]
             if swings:
                 return min(swings, key=lambda mode: mode.frequency)
-            if len(found) < count or count >= _MOST_MODES:
+            if len(found) < count or count >= _MAX_MODES:
                 return None
             count *= 2
 

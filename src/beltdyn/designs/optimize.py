@@ -22,11 +22,11 @@ from beltdyn.solvers.run_progress import Progress, Report
 
 # The search for the best design: linear programs in a trust region (Fletcher and Sainz de la Maza 1989)
 
-_SETTLED = 1e-4
+_MIN_EXPECTED_FALL = 1e-4
 """Expected fall of goal and violations at which the search ends, over their scales."""
 _FIRST_PART, _LARGEST_PART, _LEAST_PART = 0.15, 0.5, 1e-4
 """Part of the ways between bounds that the first, the largest and the least step may take."""
-_TAKEN, _POOR, _GOOD = 0.1, 0.3, 0.7
+_ACCEPTED_RATIO, _POOR_RATIO, _GOOD_RATIO = 0.1, 0.3, 0.7
 """Fall over the expected one from which a step is taken, below which the next is shorter, and from which longer."""
 _EXPANSION, _REDUCTION, _FAILURE_REDUCTION = 2.0, 0.4, 0.25
 """Factors on the size of the trust region: after a good step, after a poor one, and after a design that could not be
@@ -71,7 +71,7 @@ class Descent:
         self._set_scales(start, derivatives)
         here, reach, tried = self._place(parts, start), _FIRST_PART, 1
         step, expected = self._step(here, derivatives, reach)
-        while expected > _SETTLED and reach > _LEAST_PART:
+        while expected > _MIN_EXPECTED_FALL and reach > _LEAST_PART:
             if tried >= self._most:
                 return f"{self._most} designs were tried"
             ahead = self._try(here, step)
@@ -80,10 +80,11 @@ class Descent:
                 reach *= _FAILURE_REDUCTION
             else:
                 fall = (here.merit - ahead.merit) / expected
-                if fall >= _TAKEN:
+                if fall >= _ACCEPTED_RATIO:
                     here, derivatives = ahead, self._designs.derivatives(ahead.design)
                 reach = min(
-                    reach * (_EXPANSION if fall >= _GOOD else _REDUCTION if fall < _POOR else 1.0), _LARGEST_PART
+                    reach * (_EXPANSION if fall >= _GOOD_RATIO else _REDUCTION if fall < _POOR_RATIO else 1.0),
+                    _LARGEST_PART,
                 )
             step, expected = self._step(here, derivatives, reach)
         return "no better design nearby"

@@ -32,17 +32,17 @@ from beltdyn.transient.beginning import compile_ahead
 
 # Points of a study go to those who compute them, in chunks that take about a second, and come back in any order
 
-_CHUNK = 1.0
+_CHUNK_TIME = 1.0
 """Computing time of a chunk that is aimed at, s."""
-_LARGEST = 1000
-"""Points in a chunk."""
-_AHEAD = 2
+_MAX_CHUNK_POINTS = 1000
+"""Points in a chunk, at most, where a point takes less than a millisecond."""
+_QUEUED_CHUNKS = 2
 """Chunks on their way for each process."""
-_SHARES = 4
+_FINAL_CHUNKS = 4
 """Chunks for each process among which the last points are shared out at least."""
-_LATEST = 0.5
+_LATEST_WEIGHT = 0.5
 """Weight of the latest chunk in the mean time of a point."""
-_ATTEMPTS = 3
+_MAX_ATTEMPTS = 3
 """How often a process may be killed while it computes a point."""
 _POLL_INTERVAL = 0.5
 """Longest wait for the end of a chunk, s: progress is reported at least this often."""
@@ -88,7 +88,7 @@ class Dispatch:
 
     def _fill(self) -> None:
         """Send chunks out, as many as may be on their way."""
-        while len(self._flying) < _AHEAD * self._workers.slots and (chunk := self._next()):
+        while len(self._flying) < _QUEUED_CHUNKS * self._workers.slots and (chunk := self._next()):
             future = self._workers.submit(compute_points, self._work, [(one, self._changes(one)) for one in chunk])
             self._flying[future] = chunk
             if isinstance(self._workers, ThisProcess):
@@ -101,9 +101,9 @@ class Dispatch:
             return () if alone and self._flying else (self._again.popleft(),)
         if any(self._attempts.get(chunk[0], 0) > 1 for chunk in self._flying.values()):
             return ()
-        fair = ceil(len(self._waiting) / (_SHARES * max(self._workers.slots, 1)))
-        wanted = int(_CHUNK / self._seconds) if self._seconds > 0.0 else 1
-        size = min(max(min(wanted, fair, _LARGEST), 1), len(self._waiting))
+        fair = ceil(len(self._waiting) / (_FINAL_CHUNKS * max(self._workers.slots, 1)))
+        wanted = int(_CHUNK_TIME / self._seconds) if self._seconds > 0.0 else 1
+        size = min(max(min(wanted, fair, _MAX_CHUNK_POINTS), 1), len(self._waiting))
         return tuple(self._waiting.popleft() for _ in range(size))
 
     def _land(self, future: Future[ChunkOutcome]) -> None:
@@ -127,7 +127,7 @@ class Dispatch:
     def _take_outcomes(self, found: ChunkOutcome) -> None:
         if found.outcomes:
             latest = sum(one.seconds for one in found.outcomes) / len(found.outcomes)
-            self._seconds += (_LATEST if self._seconds > 0.0 else 1.0) * (latest - self._seconds)
+            self._seconds += (_LATEST_WEIGHT if self._seconds > 0.0 else 1.0) * (latest - self._seconds)
             self._take(found.outcomes, found.units)
 
     def _tell_alone(self, chunk: Chunk, error: BaseException) -> None:
@@ -135,7 +135,7 @@ class Dispatch:
         if not isinstance(error, Exception):
             raise error
         if chunk[1:]:
-            self._attempts |= {point: max(self._attempts.get(point, 0), _ATTEMPTS - 1) for point in chunk}
+            self._attempts |= {point: max(self._attempts.get(point, 0), _MAX_ATTEMPTS - 1) for point in chunk}
             self._again.extend(chunk)
         else:
             told = cause_of(error, self._work.call(self._changes(chunk[0])))
@@ -145,7 +145,7 @@ class Dispatch:
         """Recompute points whose process was killed; a point that kills too many processes has failed."""
         for point in chunk:
             self._attempts[point] = attempts = self._attempts.get(point, 0) + 1
-            if attempts < _ATTEMPTS:
+            if attempts < _MAX_ATTEMPTS:
                 self._again.append(point)
             else:
                 failure = (

@@ -161,7 +161,7 @@ _DEEPEST_PENETRATION = 0.1
 smaller by that part."""
 _LARGEST_STRAIN = 0.1
 """Strain at rest above which a finding says so: few belts have a constant axial stiffness up to there."""
-_LONG = 60.0
+_LONG_RUN = 60.0
 """Computing time above which the cause is named, s."""
 _DEFAULT_RTOL = 1e-4
 """Relative tolerance of a time step, the default of `simulation.rtol`, to which `_ELEMENTS_PER_STEP` refers."""
@@ -415,9 +415,9 @@ def describe_time(drive: Drive) -> str:
     cause = max(rates, key=rates.__getitem__)
     steps = settings.duration * rates[cause]
     seconds = steps * drive.elements * _ELEMENT_TIME
-    size, unit = (1.0, "s") if seconds < _LONG else (60.0, "min") if seconds < 120 * 60 else (3600.0, "h")
+    size, unit = (1.0, "s") if seconds < _LONG_RUN else (60.0, "min") if seconds < 120 * 60 else (3600.0, "h")
     middle, least, most = (f"{float(f'{factor * seconds / size:.2g}'):g}" for factor in (1.0, 0.2, 4.0))
     about = f"about {middle} {unit} ({least} to {most} {unit})"
-    if seconds < _LONG:
+    if seconds < _LONG_RUN:
         return about
     return f"{about}: {settings.duration:g} s in {float(f'{steps:.1g}'):,.0f} steps, limited by {cause}"

@@ -28,7 +28,7 @@ _PLACES = 5
 """Places over the stroke at which forces are looked at."""
 _PER_PERIOD = 20
 """Instants in a period of the carriage on its belt, at which an error of the largest force is below 1 %."""
-_FEWEST, _MOST = 2001, 400_001
+_MIN_INSTANTS, _MAX_INSTANTS = 2001, 400_001
 """Instants of the moves; a run of 20 s at 1 kHz has the most."""
 
 
@@ -105,7 +105,7 @@ def _moves(drive: Drive, path: Path, driver: int, frequency: float) -> _Moves:
     """What a driver makes of a carriage on an unstretched belt, resolving a frequency (Hz)."""
     carriage, begin, end = drive.carriage, drive.simulation.begin, drive.simulation.end
     assert carriage is not None
-    count = int(np.clip(_PER_PERIOD * frequency * (end - begin), _FEWEST, _MOST))
+    count = int(np.clip(_PER_PERIOD * frequency * (end - begin), _MIN_INSTANTS, _MAX_INSTANTS))
     times = np.linspace(begin, end, count)
     profile = drive.pulleys[driver].speed
     assert profile is not None

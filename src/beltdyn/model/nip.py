@@ -28,7 +28,7 @@ from beltdyn.theory.nip import (
     series,
 )
 
-_DEEPEST = 0.5
+_MAX_COMPRESSION = 0.5
 """Largest compression of a cover or of the belt between two rollers, over its thickness."""
 _GAP_TOLERANCE = 1e-9
 """Gap between a roller and the belt, over the radius of the roller, that counts as contact: it may be rounding."""
@@ -395,12 +395,12 @@ def check_places(nips: Sequence[Nip], path: Path, pulleys: Sequence[Pulley], bel
             )
         covers = [each.cover for each in (roller, pulley) if each.cover is not None]
         room = belt.thickness + sum(roller.radius if one.thickness is None else one.thickness for one in covers)
-        if depth > _DEEPEST * room:
+        if depth > _MAX_COMPRESSION * room:
             asked = "" if nip.force is None else f" by a force of {nip.force:.4g} N"
             raise ValueError(
                 f'nip[{number}] is too tight: "{roller.name}" and "{pulley.name}" would be pressed together by '
-                f"{depth:.4g} m{asked}, beyond {_DEEPEST:.0%} of the {room:.4g} m of belt and covers between them. "
-                "Reduce force, open the gap, or give a thicker or harder cover"
+                f"{depth:.4g} m{asked}, beyond {_MAX_COMPRESSION:.0%} of the {room:.4g} m of belt and covers between "
+                "them. Reduce force, open the gap, or give a thicker or harder cover"
             )
         half = half_width(max(depth, 0.0), equivalent_radius(*np.abs(path.radii[[one, other]]).tolist()))
         if half > min(angle, wrap - angle) * abs(float(path.radii[other])):

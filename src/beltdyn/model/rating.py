@@ -34,7 +34,7 @@ from beltdyn.theory.rating import (
     wrap_factor,
 )
 
-_SLOWEST = 1e-3
+_MIN_SPEED = 1e-3
 """Belt speed below which a belt carries no power, m/s."""
 _POWER_TOLERANCE = 1e-12
 """Relative shortfall of the rated power that counts as none, so that rounding asks for no additional belt."""
@@ -99,7 +99,7 @@ class Rating(Part):
         ratio : array_like, default 1
             Of the diameter of a larger pulley to this one, at least 1.
         """
-        if not speed > _SLOWEST:
+        if not speed > _MIN_SPEED:
             return np.zeros(np.broadcast(diameter, ratio).shape)
         known = np.minimum(diameter, self.largest_diameter or np.inf)
         pull = rated_force(self.law, known, speed) + ratio_force(self.law, known, ratio, self.ratio_exponent)

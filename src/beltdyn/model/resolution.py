@@ -38,27 +38,27 @@ FINENESS = 1.4
 """Fineness of the mesh of a run without a given number of elements."""
 AXIS_FINENESS = 0.5
 """The same of an axis, where contact at the ends of arcs moves the carriage little."""
-_FIRST = 1.5
-"""First element over the layer length."""
+_FIRST_ELEMENT = 1.5
+"""Length of the first element over that of the boundary layer."""
 _GROWTH = 0.7
 """Growth of elements away from the end of an arc, over the distance from there."""
-_WIDEST = pi / 3.0
+_MAX_ELEMENT_ANGLE = pi / 3.0
 """Angle of an element on an arc, rad, at most."""
 SPAN_ELEMENTS = 3
 """Least elements per span."""
 CARRIED_ELEMENTS = 20
 """Least elements per span of a belt that carries goods or lies on supports: for waves of stretch along it."""
-_ENOUGH = 0.2
+_RESOLVED_LENGTH = 0.2
 """Length to resolve over sqrt(T / k_p), if the bending length is shorter: its effect goes with their ratio squared."""
-_KINK = 0.1
+_KINK_ELEMENT = 0.1
 """Length of the elements at a kink, over the radius."""
-_OF_NIP = 0.1
+_NIP_ELEMENT = 0.1
 """Length of the elements in a nip, over its width."""
 _SAMPLES = 400
 """Intervals in which the grading of a piece of belt is sampled, and again that of its ends and nips. A piece longer
 than this many of its first elements is sampled closer at its ends, where an even spacing would miss them."""
 _EVENLY = np.linspace(0.0, 1.0, _SAMPLES + 1)
-_MOST = 10_000
+_MAX_PIECE_ELEMENTS = 10_000
 """Limit of elements on a piece of belt: a center in wrong units would need more memory than there is."""
 
 
@@ -120,7 +120,7 @@ class Laid(NamedTuple):
 
 def layer_length(bending: float, sinking: float) -> float:
     """Length over which the belt adopts the curvature of a pulley, m."""
-    return sqrt(bending * sinking) if sinking < bending else max(bending, _ENOUGH * sinking)
+    return sqrt(bending * sinking) if sinking < bending else max(bending, _RESOLVED_LENGTH * sinking)
 
 
 def graded_mesh(
@@ -141,14 +141,16 @@ def graded_mesh(
             "the belt touches a pulley outside of its arc, as where a span lies against a pulley that a tensioner has "
             "moved too far. Move the pulleys apart, or give the tensioner stops."
         )
-    first, closer = _FIRST * layer, per_span > SPAN_ELEMENTS
+    first, closer = _FIRST_ELEMENT * layer, per_span > SPAN_ELEMENTS
     around = length - arcs[-1].end + arcs[0].start
     pieces = [_divide(arcs[0].start, first, around / per_span, fineness, (False, True), closer=closer)]
     for number, arc in enumerate(arcs):
-        kinked = tuple(kink - arc.start for kink in arc.kinks), _KINK * arc.radius
+        kinked = tuple(kink - arc.start for kink in arc.kinks), _KINK_ELEMENT * arc.radius
         pressed = tuple((start - arc.start, end - arc.start) for start, end in arc.nips)
         pieces.append(
-            _divide(arc.end - arc.start, first, _WIDEST * arc.radius, fineness, (True, True), kinked, pressed)
+            _divide(
+                arc.end - arc.start, first, _MAX_ELEMENT_ANGLE * arc.radius, fineness, (True, True), kinked, pressed
+            )
         )
         if number + 1 < len(arcs):
             span = arcs[number + 1].start - arc.end
@@ -193,12 +195,12 @@ def _divide(
         size = np.minimum(size, kink_size + _GROWTH * np.abs(place - kink))
     for start, end in nips:
         beyond = np.maximum(np.maximum(start - place, place - end), 0.0)
-        size = np.minimum(size, _OF_NIP * (end - start) + _GROWTH * beyond)
+        size = np.minimum(size, _NIP_ELEMENT * (end - start) + _GROWTH * beyond)
     size /= fineness
     passed = running_integral(1.0 / size, place)
     inner = [kink for kink in kinks if first < kink < length - first]
     marks = [0.0, *np.interp(inner, place, passed), passed[-1]]
-    counts = [max(ceil(min(end - start, _MOST)), 1) for start, end in pairwise(marks)]
+    counts = [max(ceil(min(end - start, _MAX_PIECE_ELEMENTS)), 1) for start, end in pairwise(marks)]
     nodes = np.interp(np.arange(sum(counts) + 1), np.cumsum([0, *counts]), marks)
     return np.diff(np.interp(nodes, passed, place))
 
@@ -223,11 +225,11 @@ PRESSURES = ("mean pressure", "peak pressure")
 _TENSION_FACTOR, _MEAN_FACTOR, _PEAK_FACTOR, _SLIP_FACTOR, _LOSS_FACTOR = 2e-4, 2e-4, 1.2e-3, 3e-3, 1e-2
 """Factors of the estimated errors (dimensionless) of tension, mean pressure, peak pressure, slip and losses: those that
 leave hardly any error of drives made at random above twice its estimate."""
-_SURE = 2.0
-"""Estimates that errors hardly ever exceed."""
-_COARSE = 12.0
+_SAFETY_FACTOR = 2.0
+"""Factor on an estimate that the error hardly ever exceeds."""
+_COARSE_FINENESS = 12.0
 """y above which elements touch at single points, and errors grow more slowly."""
-_MOST_ELEMENTS = 100_000
+_MAX_ELEMENTS = 100_000
 """Upper end of the bisection for the number of elements, and its result where no fewer suffice: 17 evaluations."""
 
 
@@ -318,7 +320,7 @@ def mesh_errors(drive: OnPulleys, running: Running, elements: int) -> dict[str, 
     bending, sinking = layer_lengths(drive, running.tension - running.lifted)
     fineness = angles * radii / np.sqrt(sinking * max(sinking, bending))
     strain = float(drive.belt.stretch_parameters.stretch(running.tension)) - 1.0
-    depth = fineness**2 / (1.0 + (fineness / _COARSE) ** 2)
+    depth = fineness**2 / (1.0 + (fineness / _COARSE_FINENESS) ** 2)
     turning = angles**3 * depth
     tension = _TENSION_FACTOR * float(np.sum(radii * turning)) / (strain * drive.belt_length)
     peak = float(np.max(fineness * depth))
@@ -349,12 +351,12 @@ def elements_needed(drive: OnPulleys, running: Running) -> dict[str, int]:
     >>> bd.model.elements_needed(drive, bd.model.Running(tension=30.0))["slip"]
     56
     """
-    return {name: fewest(drive, running, name, limit / _SURE) for name, limit in ERROR_LIMITS.items()}
+    return {name: fewest(drive, running, name, limit / _SAFETY_FACTOR) for name, limit in ERROR_LIMITS.items()}
 
 
 def fewest(drive: OnPulleys, running: Running, name: str, limit: float) -> int:
     """Fewest elements whose estimate of one of `ERROR_LIMITS` is within a limit or unknown, by bisection."""
-    few, many = 0, _MOST_ELEMENTS
+    few, many = 0, _MAX_ELEMENTS
     while many - few > 1:
         middle = (few + many) // 2
         if mesh_errors(drive, running, middle)[name] > limit:

@@ -64,7 +64,7 @@ turns."""
 _MAX_PULLEYS_TRIED = 16
 """Number of pulleys up to which remedies are searched by trial: the number of lists tried grows with its square. For
 more, the message proposes no change of the list."""
-_WIDEST, _FARTHEST = 1e7, 1e9
+_MAX_EXTENT, _MAX_COORDINATE = 1e7, 1e9
 """Largest extent of a drive and largest coordinate, over the smallest radius: 2e5 for a belt conveyor of 20 km."""
 
 
@@ -166,8 +166,8 @@ def _check_sizes(pulleys: Sequence[Pulley], ends: Sequence[PathEnd]) -> None:
     smallest = min(pulleys, key=lambda one: one.radius)
     extent, largest = float(np.ptp(places, axis=0).max()), float(np.abs(places).max())
     for size, limit, what in (
-        (extent, _WIDEST, "the extent of the drive is"),
-        (largest, _FARTHEST, "the largest coordinate is"),
+        (extent, _MAX_EXTENT, "the extent of the drive is"),
+        (largest, _MAX_COORDINATE, "the largest coordinate is"),
     ):
         if size > limit * smallest.radius:
             raise ValueError(

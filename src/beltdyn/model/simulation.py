@@ -204,13 +204,13 @@ class Limits(Part):
         return self
 
 
-_MOST_OUTPUTS = 1_000_000
+_MAX_OUTPUTS = 1_000_000
 """Largest number of outputs of a run; more are refused: a safeguard against an interval in a wrong unit."""
-_MOST_STEPS = 1_000_000_000
-"""Steps of some days of computing time."""
+_MAX_STEPS = 1_000_000_000
+"""Largest number of steps of a run at `max_step`; more would take days of computing time, and are refused."""
 
-_INTERVAL, _FEWEST, _MANY = 1e-3, 100, 100_000
-"""Time between outputs, s, and least and largest number of them, unless an interval is given."""
+_DEFAULT_INTERVAL, _MIN_DEFAULT_OUTPUTS, _MAX_DEFAULT_OUTPUTS = 1e-3, 100, 100_000
+"""Default time between outputs, s, and the least and largest number of outputs that it leads to."""
 _FIELDS = 100
 """Approximate number of field outputs without a given interval."""
 
@@ -336,7 +336,7 @@ class Simulation(Part):
         """The time between two outputs, s, as given or chosen."""
         if self.given_interval is not None:
             return self.given_interval
-        return min(max(_INTERVAL, self.duration / _MANY), self.duration / _FEWEST)
+        return min(max(_DEFAULT_INTERVAL, self.duration / _MAX_DEFAULT_OUTPUTS), self.duration / _MIN_DEFAULT_OUTPUTS)
 
     @property
     def begin(self) -> float:
@@ -409,15 +409,15 @@ class Simulation(Part):
                 f"field_interval = {fields} s is shorter than output_interval = {outputs} s. Lengthen it, or shorten "
                 "output_interval"
             )
-        if self.duration / self.output_interval > _MOST_OUTPUTS:
+        if self.duration / self.output_interval > _MAX_OUTPUTS:
             raise ValueError(
                 f"output_interval = {self.output_interval:g} s requires {self.duration / self.output_interval:.3g} "
-                f"outputs; the limit is {_MOST_OUTPUTS:,}. Lengthen the interval"
+                f"outputs; the limit is {_MAX_OUTPUTS:,}. Lengthen the interval"
             )
-        if self.max_step is not None and self.duration / self.max_step > _MOST_STEPS:
+        if self.max_step is not None and self.duration / self.max_step > _MAX_STEPS:
             raise ValueError(
                 f"max_step = {self.max_step:g} s requires at least {self.duration / self.max_step:.3g} time steps; the "
-                f"limit is {_MOST_STEPS:,}. Increase it, or omit it: rtol controls the step size"
+                f"limit is {_MAX_STEPS:,}. Increase it, or omit it: rtol controls the step size"
             )
         return self
 

@@ -73,14 +73,14 @@ def _stretch(path: Path, belt: Belt, contact: Contact, depths: FloatArray) -> fl
     return stretch_with_penetration(length, path.length, belt.stretch_parameters, sinking)
 
 
-_FIRST_STEP, _GROWTH = 1e-3, 1.3
+_FIRST_STEP, _STEP_GROWTH = 1e-3, 1.3
 """Step of the search along the travel of a tensioner, over the travel that moves its pulley by the smallest radius."""
 _LONGEST_STEP = 0.02
 """The same, over the distance of its pulley from the nearest other one, within which the leverage is smooth."""
 _ROUNDING = 4 * float(np.finfo(float).eps)
-_FARTHEST = 100.0
+_SEARCH_RANGE = 100.0
 """Search range of a sliding tensioner, in path lengths; an arm is searched over half a turn to both sides."""
-_MOST_ROUNDS = 200
+_MAX_ROUNDS = 200
 """Rounds in which tensioners are balanced in turn, each with the others held; beyond, there is no common
 equilibrium."""
 _POSITION_TOLERANCE = 1e-13
@@ -215,7 +215,7 @@ def _balanced(layout: _Layout) -> tuple[StaticEstimate, FloatArray]:
     ]
     for situation in situations:
         positions[situation.number] = _preferred(situation)
-    for _ in range(_MOST_ROUNDS if situations[1:] else 0):
+    for _ in range(_MAX_ROUNDS if situations[1:] else 0):
         before = positions.copy()
         for situation in situations:
             positions[situation.number] = _nearest(situation)
@@ -286,7 +286,7 @@ def _nearest(situation: _Situation) -> float:
 def _balances(situation: _Situation, start: float) -> Iterator[float]:
     """Find positions in which the excess changes its sign, on both sides of a start, the nearer ones first."""
     around = situation.carrier.tensioner.turns
-    reach = np.pi if around else _FARTHEST * situation.path.length
+    reach = np.pi if around else _SEARCH_RANGE * situation.path.length
     first = situation.excess(start)
     if first == 0.0:
         yield start
@@ -305,7 +305,7 @@ class _Side:
     def __init__(self, situation: _Situation, start: float, sign: float) -> None:
         self._situation, self._sign = situation, sign
         self._step = self._shortest = _FIRST_STEP * situation.scale
-        self._growth = _GROWTH
+        self._growth = _STEP_GROWTH
         self.here, self._value = start, situation.excess(start)
         self.found: float | None = None
 

@@ -34,11 +34,11 @@ from beltdyn.system.state import element_kind, laid
 
 # What makes the steps of a simulation as short as they are
 
-_MANY = 0.1
+_REJECTED_SHARE = 0.1
 """Share of rejected steps above which they dominate the computing time."""
 _GENTLER = 10.0
 """Factor on the slip velocity at saturation in the advice for a faster run."""
-_NEAR = 0.4
+_BOUND_SHARE = 0.4
 """Mean step over a bound from which on the bound is felt."""
 
 
@@ -49,16 +49,16 @@ def step_bound(prepared: Prepared, statistics: Statistics, reached: float) -> st
     if taken == 0:
         return ""
     mean, share = reached / taken, rejected / (taken + rejected)
-    if share > _MANY:
+    if share > _REJECTED_SHARE:
         return (
             f"{share:.0%} of the time steps are rejected because friction builds up within a small slip "
             f"or contact is stiff. For a faster run, {other_creep(prepared, _GENTLER)}, which adds to the "
             f"slip; or reduce contact.stiffness = {prepared.contact_stiffness:.2g} N/m^2, which reduces "
             "the tension."
         )
-    if simulation.max_step is not None and mean > _NEAR * simulation.max_step:
+    if simulation.max_step is not None and mean > _BOUND_SHARE * simulation.max_step:
         return f"simulation.max_step = {simulation.max_step:g} s limits the steps."
-    if mean > _NEAR * simulation.output_interval:
+    if mean > _BOUND_SHARE * simulation.output_interval:
         interval = simulation.output_interval
         return f"Steps end on outputs: a simulation.output_interval above {interval:g} s is faster."
     return (
@@ -123,10 +123,10 @@ _WRITE_INTERVAL = 0.25
 """Clock time after which waiting states are observed and written, s, so that readers of the growing file lag little."""
 _MOST_WAITING = 512
 """States that wait to be observed."""
-_BLOCK = 512
+_BLOCK_OUTPUTS = 512
 """Outputs that are made at a time."""
-_GROUP = 64
-"""Of these that are filtered together."""
+_FILTERED_OUTPUTS = 64
+"""Outputs of a block that are filtered together."""
 
 
 _GIVEN = ("_prepared", "_system", "_title", "_about", "_instants", "statistics", "watch", "integrator")
@@ -327,8 +327,8 @@ class Recording:
             seen = {name: np.concatenate([self._before[1][name], values]) for name, values in seen.items()}
         self._before = states.only(slice(-1, None)), {name: values[-1:] for name, values in seen.items()}
         end = self._instants.until(float(states.time[-1]))
-        for first in range(self._written, end, _BLOCK):
-            numbers = np.arange(first, min(first + _BLOCK, end))
+        for first in range(self._written, end, _BLOCK_OUTPUTS):
+            numbers = np.arange(first, min(first + _BLOCK_OUTPUTS, end))
             outputs = self._outputs(states, seen, numbers)
             self._recorder.append(outputs)
             self._written += len(numbers)
@@ -372,9 +372,11 @@ class Recording:
         """
         end, first = self._filterable(), self._filtered
         if not self._ending:
-            end = min(end - (end - first) % _GROUP, first + _BLOCK)
-        starts = range(first, end, _GROUP)
-        values = [self._filter.at(self._instants[np.arange(start, min(start + _GROUP, end))]) for start in starts]
+            end = min(end - (end - first) % _FILTERED_OUTPUTS, first + _BLOCK_OUTPUTS)
+        starts = range(first, end, _FILTERED_OUTPUTS)
+        values = [
+            self._filter.at(self._instants[np.arange(start, min(start + _FILTERED_OUTPUTS, end))]) for start in starts
+        ]
         self._filtered = max(end, first)
         filtered = np.concatenate(values) if values else self._filter.at(np.empty(0))
         columns = np.split(filtered, np.cumsum([prod(shape) for shape in self._channels.values()])[:-1], axis=1)

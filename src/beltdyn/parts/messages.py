@@ -216,8 +216,8 @@ def apart(first: float, second: float, digits: int = 5) -> tuple[str, str]:
     return repr(first), repr(second)
 
 
-_FEW = 3
-"""Most names that are suggested."""
+_MAX_SUGGESTIONS = 3
+"""Names that a message suggests, at most."""
 
 
 def suggest(given: str, known: list[str]) -> str:
@@ -242,7 +242,7 @@ def _with_word(given: str, known: list[str]) -> list[str]:
     words = {word for name in known for word in name.split("_")}
     like = difflib.get_close_matches(given.lower(), words, n=1, cutoff=0.8)
     names = [name for name in known if like and like[0] in name.split("_")]
-    return names if len(names) <= _FEW else []
+    return names if len(names) <= _MAX_SUGGESTIONS else []
 
 
 def _remedy(schema: dict[str, Any]) -> str:

@@ -26,7 +26,7 @@ from beltdyn.state.staying import bring_to_stand, first_fineness, stand
 
 _FINENESS = 1.2
 """Of the meshes."""
-_ACCURACY = 1e-9
+_POSITION_TOLERANCE = 1e-9
 """Of the place at a stop, over the way on which the path lengthens by itself."""
 _MAX_SECANT_STEPS = 20
 """Steps of the secant method for the length of the belt at a stop; a safeguard, after which the last row is taken."""
@@ -215,7 +215,7 @@ class _Sheet:
         for _ in range(_MAX_SECANT_STEPS):
             row = self._row(prepared, length)
             missing = stop - row["position"]
-            if abs(missing) <= _ACCURACY * max(1.0, abs(stop)):
+            if abs(missing) <= _POSITION_TOLERANCE * max(1.0, abs(stop)):
                 break
             if before is not None and before[1] != missing:
                 slope = (length - before[0]) / (before[1] - missing)

@@ -33,27 +33,27 @@ from beltdyn.state.staying import require_passing
 from beltdyn.state.steady import steady_state
 from beltdyn.system.meshing import TOOTH_PHASES
 
-_FIRST, _LAST = 5e-4, 0.6
-"""Slips between which gross slip is looked for."""
-_LEAST = 1e-5
+_FIRST_SLIP, _LARGEST_SLIP = 5e-4, 0.6
+"""First and largest slip of the search for gross slip."""
+_MIN_SLIP = 1e-5
 """Slip below which a drive that has no steady running with slip has none at all."""
 _TRIAL_RATIO = 2.0
 """Ratio of successive trial slips or torques as long as no limit is known; bisection follows."""
-_NEAR = 0.02
-"""Part of the slip up to which gross slip is found."""
-_ROUGHLY = 0.05
-"""Error of contact forces with which that is looked for."""
-_BEYOND = 1.2
+_SLIP_TOLERANCE = 0.02
+"""Relative error of the slip, or torque, at which the search ends."""
+_SEARCH_TOLERANCE = 0.05
+"""Error of contact forces during the search for gross slip, relative; the curve has a tolerance of its own."""
+_CURVE_END = 1.2
 """Slip up to which a curve goes, over gross slip."""
 _STRIDE = 0.02
 """Slip from one operating point to the next, at most."""
-_FIRMER = 1.002
+_FRICTION_RATIO = 1.002
 """Friction of the driver over its own, where its whole arc is about to slide together with that of the pulley."""
-_ABOUT = 0.7
+_SLIDING_SHARE = 0.7
 """Part of both arcs that slides then."""
 _MIN_POINTS = 3
 """Least number of points of a curve: its two ends, and one between that shows a curvature."""
-_ALL = 0.99
+_WHOLE_ARC_SHARE = 0.99
 """Part of an arc that slides as a whole."""
 
 _EXPECTED = frozenset({gross_slip.__name__, near_gross_slip.__name__, lifted_teeth.__name__, overloaded_teeth.__name__})
@@ -276,26 +276,26 @@ def _sliding(run: Run, number: int) -> tuple[float, float]:
 
 def _firmness(near: Run | None, number: int) -> float:
     """Friction of the driver, over its own, next to an operating point."""
-    return _FIRMER if near is not None and min(_sliding(near, number)) > _ABOUT else 1.0
+    return _FRICTION_RATIO if near is not None and min(_sliding(near, number)) > _SLIDING_SHARE else 1.0
 
 
 def _past_gross_slip(slipping: Callable[[float, float], Drive], number: int, points: int) -> FloatArray:
     """Slips from zero to some way beyond where the whole arc of the pulley slides, or that of the driver."""
-    creeping, sliding, run = 0.0, _LAST, None
-    while sliding - creeping > _NEAR * sliding:
-        part = min(_TRIAL_RATIO * creeping or _FIRST, 0.5 * (creeping + sliding))
+    creeping, sliding, run = 0.0, _LARGEST_SLIP, None
+    while sliding - creeping > _SLIP_TOLERANCE * sliding:
+        part = min(_TRIAL_RATIO * creeping or _FIRST_SLIP, 0.5 * (creeping + sliding))
         try:
-            found = steady_state(slipping(part, _FIRMER), force_tolerance=_ROUGHLY, start=run)
+            found = steady_state(slipping(part, _FRICTION_RATIO), force_tolerance=_SEARCH_TOLERANCE, start=run)
         except BeltdynError as error:
-            if part < _LEAST:
+            if part < _MIN_SLIP:
                 raise ConvergenceError(f"no steady running found at any slip: {error}") from error
             sliding = part
             continue
-        if max(_sliding(found, number)) > _ALL:
+        if max(_sliding(found, number)) > _WHOLE_ARC_SHARE:
             sliding = part
         else:
             creeping, run = part, found
-    return np.linspace(0.0, _BEYOND * sliding, points)
+    return np.linspace(0.0, _CURVE_END * sliding, points)
 
 
 def _over_slip(arrays: Mapping[str, NDArray[Any]], number: int, sense: float) -> Axes:
@@ -318,12 +318,12 @@ def _jump_torque(loaded: Callable[[float], Drive], number: int, force_tolerance:
     run = steady_state(loaded(0.0), force_tolerance=force_tolerance)
     radius = float(run.prepared.radii[number])
     holding, torque, jumping = 0.0, float(run.dataset["span_tension"][-1].max()) * radius, np.inf
-    while holding < (1.0 - _NEAR) * jumping:
+    while holding < (1.0 - _SLIP_TOLERANCE) * jumping:
         try:
             run = steady_state(loaded(torque), force_tolerance=force_tolerance, start=run)
             holding = torque
         except ConvergenceError as error:
-            if torque < _LEAST * float(run.prepared.belt.axial_stiffness) * radius:
+            if torque < _MIN_SLIP * float(run.prepared.belt.axial_stiffness) * radius:
                 raise ConvergenceError(f"no steady running found under any torque: {error}") from error
             jumping = torque
         torque = min(_TRIAL_RATIO * holding or np.inf, 0.5 * (holding + jumping))

@@ -168,12 +168,12 @@ def _along(column: FloatArray, values: FloatArray) -> FloatArray:
 SHORTEST, LONGEST = 0.1, 0.5
 """Parts of the recorded time that the window of means is at least and at most."""
 
-_STANDS = 0.1
+_STANDSTILL_PART = 0.1
 """Part of its waves in a turn of the belt below which a shaft counts as standing still."""
 _TABLE_SAMPLES = 4096
 """Samples of a table over a run, for its autocorrelation: shorter periods than a thousandth of the run are not
 resolved."""
-_ALIKE = 0.02
+_PERIOD_TOLERANCE = 0.02
 """Mean square difference of what repeats from itself a period earlier, over its variance."""
 _FINEST = 64
 """Largest denominator of the order of a harmonic."""
@@ -254,7 +254,7 @@ def _without_rest(phase: FloatArray, turns: FloatArray) -> FloatArray:
     waves, passed = np.diff(phase), np.diff(turns)
     end = slice(-max(len(waves) // 10, 1), None)
     ratio = waves[end].sum() / passed[end].sum() if passed[end].sum() > 0.0 else 0.0
-    going = np.where(waves > _STANDS * ratio * passed, waves, ratio * passed)
+    going = np.where(waves > _STANDSTILL_PART * ratio * passed, waves, ratio * passed)
     return np.concatenate([phase[:1], phase[0] + np.cumsum(going)])
 
 
@@ -296,10 +296,10 @@ def _repeats(profile: Profile, time: FloatArray) -> float:
         return 0.0
     difference = (squares[0] + squares - 2.0 * np.correlate(values, values[half:], "valid")[::-1]) / squares[0]
     away = int(np.argmax(difference > 1.0))
-    again = away + int(np.argmax(difference[away:] < _ALIKE))
+    again = away + int(np.argmax(difference[away:] < _PERIOD_TOLERANCE))
     if not away < again <= half // 2:
         return 0.0
-    until = again + int(np.argmax(np.append(difference[again:], _ALIKE) >= _ALIKE))
+    until = again + int(np.argmax(np.append(difference[again:], _PERIOD_TOLERANCE) >= _PERIOD_TOLERANCE))
     lag, periods = again + int(np.argmin(difference[again:until])), 1
     while 2 * lag + 2 <= half:
         lag, periods = 2 * lag - 2 + int(np.argmin(difference[2 * lag - 2 : 2 * lag + 3])), 2 * periods

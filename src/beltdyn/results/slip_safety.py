@@ -140,13 +140,13 @@ STATE = ("belt_speed", "pulley_center", "pulley_torque")
 """What a slip safety follows from beside `SPAN_TENSIONS`, by the names of recorded variables."""
 _ACCURACY = 1e-8
 """Of the factors on loads."""
-_SLACK = 1e-3
+_SLACK_TENSION = 1e-3
 """Tension that presses, over the mean one, at which a span counts as slack."""
-_NEWTON_STEPS, _WIDEST_STEP = 16, 4.0
+_NEWTON_STEPS, _MAX_FACTOR_STEP = 16, 4.0
 """Steps of Newton's method for the edge of slip, and the largest change of the factor in a step."""
 _FIRST_STRIDE, _LARGEST_STRIDE, _GROWTH = 1.25, 2.0, 1.2
 """Factors between loads on the way to the edge of slip: the first, the largest, and the growth of their logarithms."""
-_MOST_STRIDES, _LARGEST_FACTOR = 120, 1e6
+_MAX_STRIDES, _LARGEST_FACTOR = 120, 1e6
 """Strides on the way to the edge of slip, and the factor on loads at which it ends, or by its reciprocal: below that
 the slip safety is zero. Twenty of the largest strides lead so far; the others allow for halved ones."""
 _MAX_REFINEMENTS = 40
@@ -274,7 +274,7 @@ def _directly(balance: TensionBalance, loads: Loads, pulley: IntArray) -> FloatA
             sense = np.sign(slope)
         moved = balance.limited(some, factor[open_], unknowns[open_], step[:, :-1])
         whole = np.isclose(moved, step[:, :-1], rtol=1e-12, atol=0.0).all(axis=1)
-        there = np.clip(factor[open_] + step[:, -1], factor[open_] / _WIDEST_STEP, factor[open_] * _WIDEST_STEP)
+        there = np.clip(factor[open_] + step[:, -1], factor[open_] / _MAX_FACTOR_STEP, factor[open_] * _MAX_FACTOR_STEP)
         settled = whole & (np.abs(there - factor[open_]) <= _ACCURACY * factor[open_])
         settled &= (np.abs(moved) <= _ACCURACY * balance.scales).all(axis=1) & (np.sign(slope) == sense[open_])
         unknowns[open_] += moved
@@ -289,7 +289,7 @@ def _directly(balance: TensionBalance, loads: Loads, pulley: IntArray) -> FloatA
 def _presses(balance: TensionBalance, loads: Loads, factor: FloatArray, unknowns: FloatArray) -> BoolArray:
     """Whether no span is slack under factors on loads, shape (n,)."""
     mean = balance.tension.mean[loads.state].mean(axis=1)
-    return np.asarray(balance.pressing(loads, factor, unknowns).min(axis=1) >= _SLACK * mean)
+    return np.asarray(balance.pressing(loads, factor, unknowns).min(axis=1) >= _SLACK_TENSION * mean)
 
 
 class _Way(NamedTuple):
@@ -317,7 +317,7 @@ def _followed(balance: TensionBalance, loads: Loads, pulley: IntArray) -> FloatA
     before, earlier = unknowns.copy(), factor.copy()
     stride, found = np.where(rising, 1.0, -1.0) * np.log(_FIRST_STRIDE), np.where(held > 0.0, factor, 0.0)
     open_ = np.flatnonzero(held > 0.0)
-    for _ in range(_MOST_STRIDES):
+    for _ in range(_MAX_STRIDES):
         if not open_.size:
             break
         some, at = loads.of(open_), pulley[open_]

@@ -23,7 +23,7 @@ _CONVERGED = 1e-9
 """Step of Newton's method, over the scale of each unknown."""
 _DIFFERENCE = 1e-6
 """Step of difference quotients, over the scale of each unknown."""
-_LONGEST = 0.2
+_MAX_STEP = 0.2
 """Step of Newton's method for the place of a tensioner, over the way on which it moves by the smallest radius."""
 _PRESSED = 0.1
 """Least tension that presses the belt on, over that before a step of Newton's method."""
@@ -248,7 +248,7 @@ class TensionBalance:
         part = np.ones(len(step))
         if len(self._carriers):
             moves = np.abs(step[:, 1 : self.scales.size] / self.scales[1:]).max(axis=1)
-            part = np.minimum(part, _LONGEST / np.maximum(moves, _LONGEST))
+            part = np.minimum(part, _MAX_STEP / np.maximum(moves, _MAX_STEP))
         before = self.pressing(loads, factor, unknowns).min(axis=1)
         most = (1.0 - _PRESSED) * before
         falls = -step[:, 0] * part

@@ -26,10 +26,10 @@ from beltdyn.system.first_order import FirstOrder
 
 POSITION_TIME = 1e-3
 """Positions may err by what the allowed error of velocities makes in this time, s."""
-_SHORTEST = 1e-12
-"""Steps below this length are none, s."""
-_SAFETY, _LEAST, _MOST = 0.9, 0.2, 5.0
-"""Of the step that the error allows; and how much shorter or longer the next step may be."""
+_MIN_STEP = 1e-12
+"""Time to a stop that counts as none, and length of a step at which the integrator fails, s."""
+_SAFETY, _MIN_REDUCTION, _MAX_GROWTH = 0.9, 0.2, 5.0
+"""Step over that which the error allows, and the least and largest factor from a step to the next."""
 
 
 class StepError(Exception):
@@ -146,8 +146,8 @@ class ErrorControl:
     def judge(self, length: float, error: float, order: int) -> Verdict:
         """Accept steps within the tolerance; see `StepControl.judge`."""
         ratio = error / self.rtol
-        factor = _SAFETY * ratio ** (-1.0 / (order + 1)) if ratio > 0.0 else _MOST
-        return Verdict(ratio <= 1.0, min(length * min(max(factor, _LEAST), _MOST), self.max_step))
+        factor = _SAFETY * ratio ** (-1.0 / (order + 1)) if ratio > 0.0 else _MAX_GROWTH
+        return Verdict(ratio <= 1.0, min(length * min(max(factor, _MIN_REDUCTION), _MAX_GROWTH), self.max_step))
 
 
 @dataclass(frozen=True)
@@ -179,7 +179,7 @@ class Stepwise:
                 farthest = bound.end(time, *equations.unpack(y)[:2]) if self.control.missed < np.inf else stop
                 longest = min(farthest, stop) - time
                 taken, y, length = self._step(task, equations, (max(time, after), y), min(length, longest))
-                end = stop if stop - time - taken < _SHORTEST else time + taken
+                end = stop if stop - time - taken < _MIN_STEP else time + taken
                 task.statistics.steps += 1
                 task.statistics.evaluations = equations.evaluations
                 yield first_order_chunk(equations, np.array([end]), y[None], end - time, end)
@@ -202,7 +202,7 @@ class Stepwise:
             if verdict.accepted:
                 return length, after, verdict.length
             task.statistics.rejected_steps += 1
-            if not _SHORTEST < verdict.length < length:
+            if not _MIN_STEP < verdict.length < length:
                 raise ConvergenceError(
                     f"the integrator {self.name} fails at t = {round(time, 12):.6g} s "
                     f"with a step of {length:.3g} s: {reason}. "
@@ -221,11 +221,11 @@ def first_order_chunk(equations: FirstOrder, time: FloatArray, y: FloatArray, st
 
 Name = Literal["cvode", "ida", "bdf", "radau"]
 
-_ROOM = 64
+_MAX_STATES = 64
 """States between steps that are handed out at once, at most."""
 _RELATIVE_TOLERANCE = 1e-9
 """Error of an unknown over its own magnitude: so small that the absolute tolerances decide, which are physical."""
-_PART = 0.02
+_STEP_ERROR = 0.02
 """Error that one step may make, over that of the run: the errors of steps add up."""
 _PROHIBITIVE_ERROR = 1e30
 """Error constant of BDF for the order above the highest A-stable one (dimensionless): with the error estimated from it,
@@ -257,8 +257,8 @@ class StandardIntegrator:
     def __call__(self, task: Task) -> Iterator[Chunk]:
         """Integrate; see `Integrator`."""
         equations = FirstOrder(task.system)
-        tolerances = equations.tolerances(_PART * self.rtol * task.velocity_scale, POSITION_TIME)
-        bound = StepBound(task.system, _PART * self.rtol * task.velocity_scale)
+        tolerances = equations.tolerances(_STEP_ERROR * self.rtol * task.velocity_scale, POSITION_TIME)
+        bound = StepBound(task.system, _STEP_ERROR * self.rtol * task.velocity_scale)
         y, time = equations.pack(task.start), task.instants.begin
         yield Chunk.start(task.system, task.start, time)
         written = 1
@@ -276,8 +276,8 @@ class StandardIntegrator:
                 task.statistics.steps += solver.time > before  # SUNDIALS returns once more where it has interpolated
                 task.statistics.evaluations = equations.evaluations
                 count = task.instants.until(solver.time)
-                for first in range(written, count, _ROOM):
-                    instants = task.instants[np.arange(first, min(first + _ROOM, count))]
+                for first in range(written, count, _MAX_STATES):
+                    instants = task.instants[np.arange(first, min(first + _MAX_STATES, count))]
                     yield _chunk(equations, solver, instants[instants < solver.time - SAME], before)
                 if solver.time > before:
                     yield _chunk(equations, solver, np.array([solver.time]), before)

@@ -44,7 +44,7 @@ from beltdyn.system.state import State
 from beltdyn.system.steady_assembly import anchor_at
 from beltdyn.system.web import content, rebased, set_content, with_part_of_tensions
 
-_MOST = 25
+_MAX_NEWTON_STEPS = 25
 """Iterations of a step."""
 _ON_THE_WAY = 1e-6
 """Tolerance of solutions that only lead to others, over the smallest radius.  With 1e-5 Newton's method stops short of
@@ -589,7 +589,9 @@ class SteadySearch:
         drive_shafts(system, state.velocity)
         mesh_speeds(system, state.velocity)
         anchor = anchor_at(state, False)
-        status, iterations = find_steady(system, state.at(0.0), anchor, allowed, _MOST, factorised, self.work)
+        status, iterations = find_steady(
+            system, state.at(0.0), anchor, allowed, _MAX_NEWTON_STEPS, factorised, self.work
+        )
         self.iterations += iterations
         return status == FOUND and not self._runs_away()
 

@@ -26,7 +26,7 @@ _FULL = 0.9
 """Use of friction of a pulley that slips as a whole, at least."""
 _ALIKE = 0.98
 """Of pulleys that use so much of the friction that the worst one does, the one that takes most power is named."""
-_MOST = 0.99
+_MAX_EXTRAPOLATED_SLIP = 0.99
 """Largest slip from which the speed without slip is extrapolated."""
 GROSS = 0.01
 """Slip beyond elastic creep that is gross.  With 0.05 a belt that lags behind its driver has regained what its inertia
@@ -294,7 +294,7 @@ def _idles(asked: System, here: Passed, pulley: int) -> bool:
 def _asked_of(prepared: Prepared, asked: System, last: Passed, slips: FloatArray, pulley: int) -> float:
     """Torque of the loads of a pulley without slip, or else what those of the others need of it, N m."""
     shafts = asked.pulleys.shaft
-    speeds = last.state.velocity[asked.first_body + shafts] / (1.0 - np.minimum(slips, _MOST))
+    speeds = last.state.velocity[asked.first_body + shafts] / (1.0 - np.minimum(slips, _MAX_EXTRAPOLATED_SLIP))
     torques = np.array([own_torque(asked, last.state, p, float(speed)) for p, speed in enumerate(speeds)])
     if asked.bodies.unknown[shafts[pulley]] >= 0:
         return float(torques[pulley])

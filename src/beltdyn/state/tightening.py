@@ -23,9 +23,9 @@ _TIGHTER = 0.05, -0.05, 0.1, -0.1, 0.2, -0.2, 0.4
 """How much tighter a search may begin, by the estimate, over the tension that is asked for."""
 _JUMP = 0.005
 """Largest relative error of the installed tension if it jumps over the length of the belt, or a spring sets it."""
-_TURNED = 0.005
+_TURNED_CHANGE = 0.005
 """Change of the tension away from the one that is wanted, over that one, after which it has turned."""
-_MOST_TRIALS = 60
+_MAX_TRIALS = 60
 """Trial lengths of the belt; beyond, a tension that a spring nearly holds is accepted, and any other is out of
 reach."""
 _LONGEST_CHANGE = 0.02
@@ -33,7 +33,7 @@ _LONGEST_CHANGE = 0.02
 _LEAST_CHANGE = 1e-7
 """Least change of a belt's length from one trial to the next, over its length: where shorter ones would be needed, the
 tension jumps, or there is no equilibrium beyond."""
-_SCAN, _MOST_SCANNED = 0.005, 80
+_SCAN_STEP, _MAX_SCAN_STEPS = 0.005, 80
 """Change of the length on the way along all lengths, over the length, and how often it is made to each side."""
 _LEAST_WRAP = np.radians(0.5)
 """Wrap angle of a pulley that the belt is about to leave, rad."""
@@ -131,7 +131,7 @@ class Tightening(Generic[At]):
             done += change
         sides: dict[bool, tuple[float, At]] = {}  # the nearest trials with too much and too little tension
         longest = _LONGEST_CHANGE * self._length
-        for trial in range(_MOST_TRIALS):
+        for trial in range(_MAX_TRIALS):
             missing = self._wanted - rest.tension
             if abs(missing) <= _ACCURACY * self._wanted:
                 return rest
@@ -154,9 +154,9 @@ class Tightening(Generic[At]):
 
     def _brackets(self) -> Iterator[_Start]:
         """Starts between lengths of which one has too much and the other too little tension, to both sides."""
-        for step in (-_SCAN * self._length, _SCAN * self._length):
+        for step in (-_SCAN_STEP * self._length, _SCAN_STEP * self._length):
             here, done = self._first, self._tighter
-            for _ in range(_MOST_SCANNED):
+            for _ in range(_MAX_SCAN_STEPS):
                 try:
                     ahead = self._at_rest(self._given.tightened(done + step), here)
                 except (ConvergenceError, ModelError):
@@ -240,7 +240,10 @@ class Tightening(Generic[At]):
     def _turned(self, rest: At) -> str:
         """That the tension turns before it is the one that is wanted, if springs let it."""
         nearest, excess = self._nearest, self._nearest.tension - self._wanted
-        if not self._given.carriers or (rest.tension - nearest.tension) * np.sign(excess) <= _TURNED * self._wanted:
+        if (
+            not self._given.carriers
+            or (rest.tension - nearest.tension) * np.sign(excess) <= _TURNED_CHANGE * self._wanted
+        ):
             return ""
         return (
             f"the tensioner force gives {nearest.tension:.5g} N with a belt length of "

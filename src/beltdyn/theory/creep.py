@@ -268,9 +268,9 @@ def creeping_arc(
     return found, friction_force(found, law.stretch(found))
 
 
-_SHORTEST = 20.0
+_LARGEST_WAVE_NUMBER = 20.0
 """Largest wave number considered, over that of the tuned waves."""
-_WAVES = 4000
+_WAVE_NUMBERS = 4000
 """Number of wave numbers at which growth is evaluated: a spacing of 1/200 of that of the tuned waves."""
 
 
@@ -321,5 +321,5 @@ def fastest_flutter(belt: SlidingBelt) -> Flutter:
     """The fastest growing wave on an infinite arc, a bound for partly sliding arcs."""
     require_above(stiffness=belt.stiffness, axial_stiffness=belt.axial_stiffness)
     in_tune = np.sqrt(belt.stiffness / belt.axial_stiffness)
-    waves = in_tune * np.linspace(0.0, _SHORTEST, _WAVES + 1)[1:]
+    waves = in_tune * np.linspace(0.0, _LARGEST_WAVE_NUMBER, _WAVE_NUMBERS + 1)[1:]
     return max((flutter_at(belt, float(wave)) for wave in waves), key=lambda flutter: flutter.rate)

@@ -22,9 +22,9 @@ _MAX_ITERATIONS = 8
 """Iterations for an eigenvalue in the changed problem; beyond, the mode is not followed, and its damping is NaN."""
 _EIGENVALUE_TOLERANCE = 1e-6
 """Relative change of an eigenvalue at which the iteration has converged."""
-_OFF = 1e-6
+_SHIFT_DISTANCE = 1e-6
 """Distance of a shift from an eigenvalue, relative: on it the matrix is singular."""
-_FARTHEST = 0.5
+_MAX_CHANGE = 0.5
 """Change of an eigenvalue, relative, beyond which it may be that of another mode."""
 
 
@@ -75,18 +75,18 @@ def _followed(before: _Problem, after: _Problem, value: complex, vector: Complex
     right = vector / before.scale
     begin, nan = value, complex(np.nan)
     try:
-        factors: Any = splu(before.at(value * (1.0 + _OFF)))
+        factors: Any = splu(before.at(value * (1.0 + _SHIFT_DISTANCE)))
         left = np.random.default_rng(0).standard_normal(right.size).astype(complex)
         for _ in range(2):
             left = _unit(factors.solve(np.asarray(before.slope(value).conj().T @ left), trans="H"))
         for _ in range(_MAX_ITERATIONS):
-            factors, slope = splu(after.at(value * (1.0 + _OFF))), after.slope(value)
+            factors, slope = splu(after.at(value * (1.0 + _SHIFT_DISTANCE))), after.slope(value)
             right = _unit(factors.solve(np.asarray(slope @ right)))
             left = _unit(factors.solve(np.asarray(slope.conj().T @ left), trans="H"))
             missing, rate = np.asarray(after.at(value) @ right), np.asarray(slope @ right)
             step = complex(np.vdot(left, missing) / np.vdot(left, rate))
             value -= step
-            if not abs(value - begin) < _FARTHEST * abs(begin):
+            if not abs(value - begin) < _MAX_CHANGE * abs(begin):
                 return nan
             if abs(step) < _EIGENVALUE_TOLERANCE * abs(value):
                 return value

@@ -21,7 +21,7 @@ _MIN_SAMPLES = 16
 _STEPS_PER_PIECE = 4
 """Steps between pieces in the length of a piece: they overlap by three quarters, so that every output has about the
 same weight despite the Hann window."""
-_SAME = 0.01
+_MIN_SPEED_CHANGE = 0.01
 """Part of a speed by which it changes at least in a run-up."""
 
 _NOISE_BANDWIDTH = 1.5
@@ -352,7 +352,7 @@ def _records(speed: FloatArray) -> IntArray:
     sign = 1.0 if speed[-1] >= speed[0] else -1.0
     highest = np.maximum.accumulate(sign * speed)
     (kept,) = np.nonzero(np.append(True, np.diff(highest) > 0.0))
-    if np.ptp(speed) < _SAME * speed.max() or len(kept) < 2:
+    if np.ptp(speed) < _MIN_SPEED_CHANGE * speed.max() or len(kept) < 2:
         raise ModelError(f"the speed is constant at {speed.mean():.4g} rad/s: there is no run-up. Use `beltdyn sweep`.")
     return kept if sign > 0.0 else kept[::-1]
 
@@ -366,7 +366,7 @@ def _name_of(values: xr.DataArray) -> str:
     return str(values.attrs.get("long_name") or values.name or "the variable")
 
 
-_FEWEST_TURNS = 2
+_MIN_TURNS = 2
 """Least number of turns for an order spectrum: with n of them lines are 1 / n of an order apart, with one the first
 order is next to the mean value."""
 
@@ -459,10 +459,10 @@ def order_spectrum(values: xr.DataArray, angle: xr.DataArray, window: str = "han
     angles = np.interp(instants, angle["time"].values, angle.values)
     turns = np.abs(angles - angles[0]) / (2.0 * np.pi)
     whole = int(turns[-1] + 1e-9)
-    if whole < _FEWEST_TURNS or np.any(np.diff(turns) <= 0.0):
+    if whole < _MIN_TURNS or np.any(np.diff(turns) <= 0.0):
         raise ModelError(
             f"the pulley makes {turns[-1]:.3g} turns without turning back; an order spectrum needs "
-            f"{_FEWEST_TURNS} or more. Make the run longer, or select a part of it."
+            f"{_MIN_TURNS} or more. Make the run longer, or select a part of it."
         )
     each = int(np.ceil((len(instants) - 1) / turns[-1]))
     steps = np.arange(whole * each) / each
