@@ -29,10 +29,10 @@ _BY_SUPPLY = ("induction_motor",)
 """Loads whose speeds follow from the frequency of the supply."""
 _SHARES = {"cut_in_speed": 0.3, "synchronous_speed": 1.05}
 """Speeds of loads over that of their pulley."""
-_OF_LOAD = 4
-"""Steps of the location of a load: "pulley", its number, "load", its number."""
-_ANGLES = 73
-"""Angles of two turns over which the torque of a load is averaged."""
+_LOAD_PATH_LENGTH = 4
+"""Length of the location of a load: "pulley", its number, "load", its number."""
+_ANGLE_COUNT = 73
+"""Number of angles of two turns over which the torque of a load is averaged: one every 10°."""
 
 
 def beginning(
@@ -54,7 +54,7 @@ def beginning(
             if value is not None:
                 found[one.key] = value
     begun = given | {key: _at_once(value) for key, value in found.items()}
-    if drive is None or location[2:3] != ("load",) or len(location) != _OF_LOAD:
+    if drive is None or location[2:3] != ("load",) or len(location) != _LOAD_PATH_LENGTH:
         return begun
     speed = _speed(drive, data, location)
     return _in_sense(_at_speed(begun, listed, speed), speed, drive.positive_sense)
@@ -119,7 +119,7 @@ def _in_sense(begun: dict[str, Any], speed: float, positive_sense: int) -> dict[
 def _is_against_its_kind(load: Load, speed: float) -> bool:
     """Whether a load on a pulley of some speed (rad/s) drives it though it is none that drives, or the opposite."""
     drives = bool(load.driven_speed)
-    torque = load.torque_over(np.linspace(0.0, 4.0 * np.pi, _ANGLES), 0.0 if drives else speed).mean()
+    torque = load.torque_over(np.linspace(0.0, 4.0 * np.pi, _ANGLE_COUNT), 0.0 if drives else speed).mean()
     return float(torque) * speed < 0.0 if drives else float(torque) * speed >= 0.0
 
 

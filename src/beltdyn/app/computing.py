@@ -74,7 +74,7 @@ class Counter:
 _MODE_COUNT = 6
 """Number of the lowest modes that are computed of a draft: as many as the page draws at most."""
 _MAX_TABS = 8
-"""Number of tabs with a cached steady running."""
+"""Number of tabs whose last steady running is kept: those longest unused are dropped, to limit memory."""
 
 
 class Asked(NamedTuple):

@@ -25,13 +25,13 @@ _WIDTH, _HEIGHT = 400.0, 165.0
 _LEFT, _RIGHT, _TOP, _BASE = 40.0, 394.0, 28.0, 143.0
 """Edges of the area of the curve, in units of the chart: names stand above it, numbers to its left, and words below."""
 _NAME_LINES = (11.0, 22.0)
-"""Where names of pulleys stand, on two lines lest they lie on each other."""
+"""Heights of the two lines of pulley names, in units of the chart: names close together alternate between them."""
 _MAX_NAME_LENGTH = 14
-"""Letters of a name."""
+"""Letters of the name of a pulley at most: longer names are shortened, as the chart is narrow."""
 _TICK_INTERVALS = 4
 """Intervals between the rules of the tension axis, at most before it is extended to whole steps."""
 _LETTER_WIDTH = 5.6
-"""Width of a letter."""
+"""Mean width of a letter, in units of the chart, by which the room for a name is estimated."""
 _MAX_PLAIN_THOUSANDS = 1e4
 """Size of a number from which on it is written as a power of ten, in thousands: below, it has at most seven digits."""
 

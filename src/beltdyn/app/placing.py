@@ -18,13 +18,13 @@ _FIRST_RADIUS = 0.05
 _MIN_RADIUS = 0.005
 """Least radius of a new pulley that has little room, m; a tenth of it limits pulleys that are made smaller by hand."""
 _MAX_DISTANCE_SHARE = 0.45
-"""Largest radius of a new pulley, over the distance of its center from other pulleys' surfaces."""
+"""Largest radius of a new pulley, over twice the distance of its center from others' surfaces: a gap remains."""
 _SURFACE_DENSITY = 0.02 * 2700.0
 """Mass per area of an aluminum disk 20 mm thick, kg/m², assumed for a new pulley."""
 _ARM_RATIO = 2.5
-"""Length of the arm of a new tensioner, over the radius of its pulley."""
+"""Length of the arm of a new tensioner, over the radius of its pulley: the pivot lies outside the pulley."""
 _DEFAULT_TENSION = 300.0
-"""Default tension for the spring of a new tensioner, N."""
+"""Tension for the spring of a new tensioner, N, where the belt has no installed tension."""
 DRIVER = {"kind": "cosine_ramp", "start": 0.02, "end": 0.2, "value": "1500 rpm"}
 
 

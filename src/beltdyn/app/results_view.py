@@ -44,7 +44,7 @@ _RARE = ("at", "force_tolerance", "elements", "sobol", "settling", "friction", "
 """Options shown on request."""
 _QUOTED = re.compile(r'"([^"]+)"')
 _MIN_SPEED_RATIO, _MAX_SPEED_RATIO = 0.3, 1.2
-"""The range of speeds that is proposed, over that of the drive."""
+"""Limits of the range of speeds that is proposed, over the speed of the drive."""
 
 
 class Option(NamedTuple):
@@ -383,7 +383,7 @@ class AnalysisView:
 
 _MARKS = {"pass": "✓", "fail": "✗", "open": "·"}
 _MAX_FACTS = 8
-"""Numbers in a mail; all are in the report."""
+"""Number of key numbers in a mail at most: all are in the report."""
 
 
 def mail_address(subject: str, body: str) -> str:

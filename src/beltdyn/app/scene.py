@@ -17,11 +17,11 @@ from beltdyn.show.notebook import outline
 MILLIMETERS = 1e3
 """Millimeters in a meter: the canvas is drawn in mm, and drives are in m."""
 _EMPTY_EXTENT = (-250.0, -150.0, 250.0, 150.0)
-"""Extent of an empty canvas, mm."""
+"""Extent of an empty canvas, mm: left, top, right and bottom."""
 _MIN_PULLEYS = 2
 """Number of pulleys from which on they alone set the extent: the first one stands on an empty canvas."""
 _MIN_EXTENT = 60.0
-"""Least shorter side of the extent, mm."""
+"""Least width and height of the extent, mm: small drives are not magnified without limit."""
 _VISIBLE_TRAVEL = 0.004
 """Travel of a tensioner over the size of the drive above which its rest position is drawn separately."""
 

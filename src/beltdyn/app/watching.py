@@ -20,9 +20,9 @@ from beltdyn.show.report.replay import along_belt
 from beltdyn.show.tables import Table
 
 _MIN_INTERVAL = 0.4
-"""Least interval of snapshots, s."""
+"""Least interval of snapshots, s, however little they cost."""
 _INTERVAL_OVER_COST = 10.0
-"""Least interval of snapshots over the cost of one."""
+"""Interval of snapshots over the time that the last one took: between the limits, they take a tenth of the time."""
 _MAX_INTERVAL = 3.0
 """Interval of snapshots after which one is taken, whatever it costs: the first one loads libraries, s."""
 _SEEN = (
@@ -31,7 +31,7 @@ _SEEN = (
 )
 """What is read."""
 _PIECE_COUNT = 60
-"""Number of separately colored pieces of the belt."""
+"""Number of pieces of the belt in a picture, each of one color."""
 
 
 class Glimpse(NamedTuple):

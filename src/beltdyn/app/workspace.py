@@ -20,7 +20,7 @@ from beltdyn.show.notebook import picture
 
 _SUFFIX = ".toml"
 _MAX_DEPTH = 3
-"""Largest depth of subfolders."""
+"""Depth to which subfolders are searched: a deep tree must not delay the page."""
 _MAX_FILES = 200
 """Number of files in a list at most: the search ends there, so that the page need not wait for it."""
 _MAX_FOLDERS = 500

@@ -25,7 +25,7 @@ _DEGREES = 180.0 / np.pi
 _TONNES_PER_HOUR = 3.6
 """Tonnes per hour in 1 kg/s: conveyed mass flows are shown in t/h."""
 _ROUNDING = 1e-9
-"""Of the largest power, or m and rad of a position, below which it is rounding."""
+"""Share of the largest power, or a position in m or rad, below which a value is rounding."""
 
 
 def line_sheet(result: Result) -> Sheet:

@@ -27,7 +27,7 @@ _MARGIN = 0.06
 _LETTER_WIDTH, _NAME_GAP = 6.0, 5.0
 """Width of a letter of names, and their distance from a pulley, pixels."""
 _ARC_DISTANCE = 2.0
-"""Least distance of a name from the arc around it, pixels."""
+"""Least distance of a name inside a pulley from its rim, pixels; a name with less room stands outside."""
 _MAX_GAP = 15.0
 """Longest gap between pulleys that is drawn in its length, in diameters of the largest pulley: 20 pixels for that."""
 _BESIDE_COSINE = 0.7

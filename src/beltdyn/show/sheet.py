@@ -35,7 +35,7 @@ if TYPE_CHECKING:
 _DIGITS = 5
 """Significant digits of numbers in the sheet of a study: changes of 0.01 % are seen, and columns stay narrow."""
 _MAX_RESULTS = 40
-"""Results in the table."""
+"""Number of results in the table at most: the facts say how many there are."""
 
 
 def _study_pieces(dataset: "xr.Dataset") -> Iterator[Callable[[], Pieces]]:
@@ -106,7 +106,7 @@ _OF_PARTS = ("rad/s", "N", "N/m")
 _LARGEST_SAFETY = 20.0
 """Factor on loads up to which it is within 2 %, and is shown: beyond, guides resist more than in proportion."""
 _LARGEST_MARGIN = 100.0
-"""Margin to a jump that is shown."""
+"""Margin to a jump, 1, up to which it is shown as a number."""
 _LEAST_SHARE = 0.01
 """Share of the power input from which a shaft is named."""
 _ROUNDING_POWER = 1e-9

@@ -12,7 +12,7 @@ from beltdyn.results.result import Result
 from beltdyn.results.run import Run
 
 _MIN_PLAIN, _MAX_PLAIN = 1e4, 1e9
-"""Between these a number is written without an exponent."""
+"""Sizes between which a number is written in full: four significant digits would give it an exponent."""
 
 
 class SideBySide(NamedTuple):

@@ -132,7 +132,7 @@ def _tornado(result: Result, of: str | None, variable: str, words: str, ax: Axes
 
 
 _LIMIT_TOLERANCE = 1e-4
-"""Permitted violation of a limit, relative."""
+"""Violation of a limit, relative, up to which a design keeps it: the best one often lies on a limit."""
 
 
 def _goal_and_numbers(draw: Callable[..., Axes], result: Result, choice: Choice) -> Figure:

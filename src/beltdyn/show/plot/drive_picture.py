@@ -48,7 +48,7 @@ LINE: dict[str, Any] = {"color": TENSIONER, "linewidth": 2.0, "zorder": 4}
 _WAY_POINTS = 20
 """Number of points of the way between stops: those of an arm lie on an arc, which must look smooth."""
 _MAX_SCALE_TICKS = 4
-"""Most ticks of the scale of tension."""
+"""Intervals of the scale of tension at most: its numbers must not overlap."""
 
 
 class TensionerPicture:
@@ -340,7 +340,7 @@ def configuration(run: Run | StaticResult, time: float | None = None, ax: Axes |
 
 
 _STRAIN_RANGE_RATIO = 1.1
-"""Largest strain that is drawn, over the last one that was measured."""
+"""Largest strain that is drawn, over the last one that was measured: the curve is seen to continue."""
 _DEFAULT_MAX_STRAIN = 0.01
 """Largest strain that is drawn of a belt without a curve."""
 

@@ -28,7 +28,7 @@ from beltdyn.show.plot.style import one_panel, show_enough, styled
 
 P = ParamSpec("P")
 _MIN_SPEED = 0.01
-"""Speed from which on a pulley turns, rad/s."""
+"""Speed above which the driver turns, rad/s: at rest such figures would be empty."""
 Together = Callable[[Sequence[Any], Axes | None], Axes]
 """What draws several results into one pair of axes."""
 

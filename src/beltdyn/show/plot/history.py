@@ -31,7 +31,7 @@ from beltdyn.show.plot.style import (
 )
 
 _MIN_ENERGY_SHARE = 0.01
-"""Part of the largest energy from which on one is drawn."""
+"""Share of the largest energy above which another one is drawn: smaller ones lie on the axis."""
 _ENERGIES = (
     "driver_work",
     "torque_work",

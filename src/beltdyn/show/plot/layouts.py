@@ -35,8 +35,8 @@ from beltdyn.show.plot.figures import save
 from beltdyn.show.plot.style import COLORS, INK, PALE, axes_or_new, color, new_figure, styled
 
 _BELT = COLORS[0]
-_WAY, _POINTS = 1.4, 20
-"""Length of a way that is drawn, over the radius of the pulley, and its points."""
+_WAY_LENGTH, _WAY_POINTS = 1.4, 20
+"""Length of a way that is drawn, over the radius of the pulley, and its number of points."""
 _MIN_LABEL_SHARE = 0.06
 """Share of the extent of a drive from which on a span has room for its length."""
 _ARROW = "-|>,head_length=5,head_width=2.4"
@@ -178,7 +178,7 @@ def _draw_belt(ax: Axes, path: Path) -> None:
 
 def _ways(drive: Drive, installation: Installation) -> Iterator[tuple[Tensioner, FloatArray]]:
     """Tensioners, each with the way on which the center of its pulley tensions the belt, shape (n, 2), m."""
-    path, parts = installation.path, np.linspace(0.0, _WAY, _POINTS)
+    path, parts = installation.path, np.linspace(0.0, _WAY_LENGTH, _WAY_POINTS)
     radii = np.abs(path.radii)
     for tensioner in drive.tensioners:
         if isinstance(tensioner, FixedTensioner):

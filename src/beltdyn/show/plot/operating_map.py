@@ -128,9 +128,9 @@ _PERCENT = ("pulley_slip", "efficiency", _FRICTION_USED)
 _OF_GRIP = ("pulley_slip", _FRICTION_USED, "slip_safety")
 """What is drawn of belts without teeth."""
 _FULL_SLIDING_SHARE = 0.99
-"""Part of an arc that slides as a whole."""
+"""Share of an arc that slides, from which on the arc counts as sliding as a whole."""
 _MAX_SAFETY = 10.0
-"""Slip safety, or margin to a jump, up to which it is drawn: more is enough."""
+"""Slip safety, or margin to a jump, 1, up to which it is drawn: larger ones are far from slip."""
 _WARNED = {"slip_safety": 1.5, "jump_margin": LIFTS}
 """Values below which warnings begin."""
 

@@ -34,17 +34,17 @@ from beltdyn.show.plot.study_values import (
 from beltdyn.show.plot.style import INK, axes_or_new, color, dash, note
 
 _MAX_FAMILY_LINES = 7
-"""Lines of one panel."""
+"""Number of lines of one panel at most: for more values of a parameter, points are drawn."""
 _MAX_LINES = 1500
 """Lines along parallel axes at most, of points at equal intervals of the study: more would cover each other."""
 _MAX_RESULT_AXES = 4
-"""Results along parallel axes."""
+"""Number of results among parallel axes at most: each axis widens the figure."""
 _CONTOUR_LEVELS = 12
 """Number of contour levels, about: their limits are round numbers, so that there may be a few more or fewer."""
 _ROOM = 0.05
 """Room above and below the points of contours, over their range."""
 _TICK_LINE_LENGTH = 11
-"""Letters in a line below one of them."""
+"""Letters of a line of the name below a parallel axis at most: axes are 1.6 inches apart."""
 _UNKNOWN = "0.6"
 """Color of points without a value of the result that colors them."""
 _BACK = {"facecolor": "w", "edgecolor": "none", "pad": 0.8}

@@ -28,7 +28,7 @@ from beltdyn.show.plot.style import INK, axes_or_new, color, name_lines, note
 # Sobol indices: what part of the variance of a result is due to each number that varies (Saltelli et al. 2010)
 
 _RESAMPLE_COUNT = 200
-"""Of the bootstrap."""
+"""Number of bootstrap samples, from which 95 % confidence intervals follow."""
 _ROUNDING = 1e-12
 """Change of a result, over its largest value, that is rounding."""
 
@@ -69,7 +69,7 @@ def _indices(known: FloatArray) -> FloatArray:
 _MAX_BARS = 12
 """Bars of a tornado at most, those of the widest ranges: each needs a line for its name."""
 _LABEL_LENGTH = 22
-"""Letters in a line beside a bar."""
+"""Letters of a line of the name beside a bar at most."""
 _MAX_TICK_INTERVALS = 5
 """Numbers below a panel at most, less one: they may have many digits."""
 _NEUTRAL = "0.6"

@@ -106,7 +106,7 @@ SIZE = (7.0, 3.8)
 """Width and height of a figure, inches."""
 
 POLAR_SIZE = (6.2, 4.6)
-"""Those of a polar one."""
+"""Width and height of a polar figure, inches."""
 
 NOTE = "note"
 """Name of what is written below axes."""

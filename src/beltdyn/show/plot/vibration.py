@@ -43,7 +43,7 @@ from beltdyn.show.plot.style import (
 _DISPLACEMENT_SHARE = 0.06
 """Size at which the largest displacement is drawn, over that of the drive."""
 _MAX_MODES = 12
-"""Modes on a page."""
+"""Number of modes on a page at most: four rows of three."""
 KINDS = ("span", "rotational", "tensioner", "coupled")
 """Kinds of modes, in the order of their colors."""
 _FRAMES_PER_PERIOD = 24
@@ -248,7 +248,7 @@ _MIN_DAMPING = 1e-5
 _RESONANT_DAMPING = 0.1
 """Damping ratio below which a critical speed is marked by a filled circle."""
 _CROSSING_POINTS = 200
-"""Speeds at which it is looked where a line leaves the axes."""
+"""Number of speeds at which lines are evaluated to find where they leave the axes."""
 _EXCITED = "0.6"
 """Color of excitations."""
 

@@ -64,7 +64,7 @@ def series(run: Run, variable: str, of: str | int) -> xr.DataArray:
 
 
 _LEVEL_RANGE = 60.0
-"""Range of levels below the highest, dB."""
+"""Range of levels in color, dB: those more than 60 dB below the highest are one color."""
 _MAP = "viridis"
 _MAX_ORDERS = 5
 """Number of orders that are named or drawn if none are chosen: those with the largest peaks."""

@@ -27,7 +27,7 @@ from beltdyn.show.plot.style import LIMIT, NOTE, RESERVATION, styled
 # What is drawn on the axes of a figure, drawn again on a chart: lines, marks, areas, words and names
 
 _BIN_COUNT = 700
-"""Parts of a line, of each of which least and largest values are kept."""
+"""Number of intervals of a long line, of each of which the least and largest values are kept: a chart shows no more."""
 _SMALL = "11px"
 _MARKS = {"o": "circle", "x": "x", "s": "square", "^": "triangle", "D": "diamond"}
 _MAX_MARK_SIZE = 6

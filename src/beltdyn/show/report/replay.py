@@ -14,15 +14,15 @@ from beltdyn.show.plot.drive_picture import extent_of
 from beltdyn.show.plot.vibration import mode_name, shown_modes, swing, tint_of
 
 _POINTS = 480
-"""Points along the belt in a picture."""
+"""Number of points along the belt in a picture."""
 _MAX_FRAMES = 120
-"""Pictures of all runs of a page, at most."""
+"""Number of pictures of all runs of a page at most, to limit its size."""
 _MIN_FRAMES = 30
 """Pictures of a run at least, however many runs share a page: the page interpolates between them."""
 _ALONG = ("nodal_coordinates", "body_position", "belt_tension", "belt_coordinate", "normal_force")
 """What pictures are made of."""
 _ELEMENT_POINTS = 8
-"""Points drawn on an element."""
+"""Number of points of an element at which its curve is evaluated."""
 
 
 def motion(run: Run, runs: int = 1) -> dict[str, Any]:
