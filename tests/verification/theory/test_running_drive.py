@@ -147,7 +147,7 @@ def test_rigid_pulley_in_closed_form(
     inner = numbers.radii[0] - depth
     arc = (np.pi * inner + 2.0 * np.sqrt(depth * inner)) / mean
     contact = float(np.mean(theory.normal_force[0] > 0.0)) * numbers.length
-    x = arc * (0.5 + angle / np.ptp(angle))
+    x = arc * (angle - angle.min()) / np.ptp(angle)
     rigid = friction_along_arc(x, tight, slack, arc, layer)
     middle = np.abs(angle) < np.pi / 4
     growth = np.polyfit(theory.coordinate[points[middle]], np.log(theory.friction_force[0, points[middle]]), 1)[0]
