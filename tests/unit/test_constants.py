@@ -10,8 +10,7 @@ import pytest
 import beltdyn
 
 SOURCES = Path(beltdyn.__file__).parent
-PACKAGES = ("app", "show")
-"""Folders whose constants all have docstrings."""
+PACKAGES = sorted(folder.name for folder in SOURCES.iterdir() if (folder / "__init__.py").is_file())
 
 
 def is_numeric(value: ast.expr | None) -> bool:

@@ -10,7 +10,7 @@ from nicegui.element import Element
 from nicegui.events import GenericEventArguments, KeyEventArguments
 
 from beltdyn.app.form_view import FormView
-from beltdyn.app.forms import SYSTEMS, Unit, in_units, unit_in
+from beltdyn.app.forms import SYSTEMS, Unit, in_units, in_words, unit_in
 from beltdyn.app.pulley_table import TableDialog
 from beltdyn.app.results_view import ResultsView
 from beltdyn.app.scene import MILLIMETERS, groups, scene
@@ -124,7 +124,7 @@ class FileMenu:
             self._begin(lambda: self._session.start(one.text))
 
         with ui.item(on_click=begin).props("clickable").mark(f"example:{one.name}"), ui.item_section():
-            ui.item_label(one.name.replace("_", " "))
+            ui.item_label(in_words(one.name))
             ui.item_label(one.about).props("caption")
 
     def show_files(self) -> None:

@@ -16,7 +16,7 @@ from nicegui import app, ui
 
 from beltdyn.analyses import ANALYSES, SIMULATE
 from beltdyn.app.computing import COMPILING
-from beltdyn.app.forms import in_units
+from beltdyn.app.forms import in_units, in_words
 from beltdyn.app.jobs import Job, Outcome
 from beltdyn.app.numbers_view import TITLES, NumbersView, show_findings, show_parts
 from beltdyn.app.scene import groups
@@ -239,7 +239,7 @@ class AnalysisView:
 
     def _input(self, one: Option) -> ui.input | ui.select:
         """A field of an option; for a file a list of files in the folder, for a pulley one of pulleys."""
-        name, drive = one.name.strip("_").replace("_", " "), self._session.draft.drive
+        name, drive = in_words(one.name.strip("_")), self._session.draft.drive
         box: ui.input | ui.select
         if one.suffixes:
             there = self._session.workspace.folder.files(*one.suffixes)

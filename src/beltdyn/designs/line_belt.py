@@ -7,6 +7,7 @@ import numpy as np
 
 from beltdyn.arrays import FloatArray
 from beltdyn.designs.line_motions import MOTIONS, Motions
+from beltdyn.machines import Tensioner
 from beltdyn.model import Drive, Prepared
 from beltdyn.results import Variable
 from beltdyn.theory.conveyor import smallest_pulley
@@ -115,7 +116,8 @@ def take_up(prepared: Prepared, variables: Values, wear: float | None) -> tuple[
     travel, label = sum(parts) / ratio, "Travel of the take-up over the life of the belt"
     values["take_up_travel"] = Variable((), "m", label), travel
     values["temperature_difference"] = Variable((), "K", "Range of the temperature of the belt"), high - low
-    room = _room(prepared)
+    tensioner = take_up_tensioner(prepared)
+    room = None if tensioner is None else tensioner.frame_travel
     if room is None:
         return values, []
     values["take_up_room"] = Variable((), "m", "Travel that the frame leaves to the take-up"), room
@@ -125,6 +127,6 @@ def take_up(prepared: Prepared, variables: Values, wear: float | None) -> tuple[
     return values, [short] if travel > room else []
 
 
-def _room(prepared: Prepared) -> float | None:
-    """Travel that the frame leaves to the first tensioner along a line, m; None where it is not stated."""
-    return next((one.frame_travel for one in prepared.drive.tensioners if not one.turns), None)
+def take_up_tensioner(prepared: Prepared) -> Tensioner | None:
+    """The first tensioner along a line; None without one."""
+    return next((one for one in prepared.drive.tensioners if not one.turns), None)

@@ -12,13 +12,14 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from beltdyn.arrays import FloatArray, row
-from beltdyn.designs.line_belt import STRETCHES, safety_values, safety_warnings, take_up
+from beltdyn.designs.line_belt import STRETCHES, safety_values, safety_warnings, take_up, take_up_tensioner
 from beltdyn.designs.line_motions import MOTIONS, Launch, Motions
 from beltdyn.kernel import interpreted
 from beltdyn.machines import Idlers
 from beltdyn.machines.carrying.support import Support
 from beltdyn.model import Drive, Prepared, prepare
 from beltdyn.model.carrying import stretch_of, upper_side
+from beltdyn.model.layout import leverage
 from beltdyn.points.duty import Column, at_row, durations_of
 from beltdyn.results import Run, Variable
 from beltdyn.results.derived import nips
@@ -410,12 +411,10 @@ class _Row:
 
 def take_up_ratio(prepared: Prepared) -> float:
     """Change of the path's length over the travel of the first tensioner along a line; not a number without one."""
-    path = prepared.installation.path
-    for one in prepared.drive.tensioners:
-        if not one.turns:
-            pulley = prepared.drive.carried(one)
-            return abs(one.leverage(path.centers[pulley], path.gradient(pulley)))
-    return np.nan
+    tensioner = take_up_tensioner(prepared)
+    if tensioner is None:
+        return np.nan
+    return abs(leverage(prepared.installation.path, prepared.drive.carried(tensioner), tensioner))
 
 
 def _row_warnings(name: str, point: _Row, factors: FloatArray) -> Iterator[str]:

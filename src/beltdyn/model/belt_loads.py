@@ -18,8 +18,6 @@ OF_TEETH = "Siegling, with a tenth of the pull in the slack span"
 """The rule of toothed belts."""
 _ANGLES = 64
 """Angles over which the torque of a load is averaged."""
-_INSTANTS = 1001
-"""At which the speed of a driver is looked at."""
 
 
 class RequiredTension(NamedTuple):
@@ -51,12 +49,7 @@ class BeltLoads(NamedTuple):
 
     def powers_drawn(self, path: Path) -> tuple[FloatArray, float]:
         """Power drawn from the belt by each pulley, W, and belt speed, m/s, at the highest speed of the driver."""
-        pulley, radii = self.pulleys[self.driver], path.radii
-        if pulley.speed is None:
-            speed = pulley.motor_speed
-        else:
-            values = pulley.speed.at(np.linspace(self.begin, self.end, _INSTANTS))
-            speed = float(values[np.argmax(np.abs(values))])
+        radii, speed = path.radii, self.pulleys[self.driver].extreme_speed(self.begin, self.end)
         taken = np.zeros(len(self.pulleys))
         for number, one in enumerate(self.pulleys):
             if number == self.driver:

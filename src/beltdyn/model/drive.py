@@ -394,11 +394,7 @@ class Drive(Part):
         driver = None if self.driver is None else self.pulleys[self.driver]
         if driver is None:
             return 1
-        if driver.speed is None:
-            fastest = driver.motor_speed
-        else:
-            values = driver.speed.at(np.linspace(self.simulation.begin, self.simulation.end, 1001))
-            fastest = float(values[np.argmax(np.abs(values))])
+        fastest = driver.extreme_speed(self.simulation.begin, self.simulation.end)
         return self.positive_sense * (-driver.turning if fastest < 0.0 else driver.turning)
 
     @property

@@ -205,8 +205,8 @@ def fixed_tensioner(tensioners: tuple[Tensioner, ...]) -> FixedTensioner:
     return next(tensioner for tensioner in tensioners if isinstance(tensioner, FixedTensioner))
 
 
-def leverage(path: Path, pulley: int, tensioner: FixedTensioner) -> float:
-    """Change of the path length per meter of take-up, m."""
+def leverage(path: Path, pulley: int, tensioner: Tensioner) -> float:
+    """Change of the path length per meter of travel of a tensioner, m."""
     return tensioner.leverage(path.centers[pulley], path.gradient(pulley))
 
 

@@ -371,6 +371,7 @@ reach_of: Callable[[Any, int, float, float], float] = by_type(
 
 
 _TURNS = 2.0 * np.pi
+"""Angle of a turn, rad: places in a groove, 0 to 1, are averaged as angles."""
 _BESIDE = 1.01
 """Distance from the shaft, over that of the nearest point, of points that stand for a belt that has left a pulley."""
 _STICKS = 0.7
