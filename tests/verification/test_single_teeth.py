@@ -203,6 +203,21 @@ def test_a_rising_torque_makes_the_belt_jump_where_its_traction_curve_ends() -> 
     assert 0.98 / 13.0 < first.time - 0.01 < 1.0 / 13.0 + late
 
 
+def with_elements(count: int | None) -> bd.Drive:
+    given = steep("spread", -1.0, 0.06)
+    return given.replace(belt=given.belt.merged({"elements": count}))
+
+
+def test_no_mesh_holds_the_belt_beyond_its_jump() -> None:
+    """States beyond it exist, with equal loads of teeth on both arcs; the least disturbance lifts the belt off one."""
+    limits = [float(bd.traction(with_elements(one), points=3).dataset.limit_torque) for one in (None, 60, 120)]
+    np.testing.assert_allclose(limits, limits[2], rtol=0.02 + 0.01)  # of the search, and of the meshes
+    for count in (None, 60):
+        torques = limits[2] * np.array([0.0, 0.6, 0.9, 1.05, 1.25, 1.6])
+        held = np.isfinite(bd.traction(with_elements(count), torque=torques).dataset.belt_speed.values)
+        np.testing.assert_array_equal(held, torques < limits[2])
+
+
 def test_a_belt_jumps_under_overload_and_runs_on(jumped: Run) -> None:
     events = bd.results.jumps(jumped)
     assert events

@@ -39,7 +39,7 @@ from beltdyn.system.constant_drive import (
 )
 from beltdyn.system.meshing import fit_phases, has_teeth, led_by, mesh_speeds, on_lengths, phases
 from beltdyn.system.nips import nip_loads, pressed_on, with_own_rollers
-from beltdyn.system.ring_matrix import clear, substitute
+from beltdyn.system.ring_matrix import clear, determinant_sign, substitute
 from beltdyn.system.state import State
 from beltdyn.system.steady_assembly import anchor_at
 from beltdyn.system.web import content, rebased, set_content, with_part_of_tensions
@@ -120,7 +120,7 @@ class SteadySearch:
         self.system = led_by(
             with_speeds_unknown(self.constant, () if pulley is None else (pulley,)), self._leader(pulley)
         )
-        self.work = steady_work(self.system)
+        self.work, self._sign = steady_work(self.system), 0
 
     def _leader(self, held: int | None) -> int:
         """The pulley whose known speed gives that of a belt with teeth, -1 without one."""
@@ -167,6 +167,7 @@ class SteadySearch:
             return self._resume_with_motor()
         if tangent is not None:
             self.work = tangent
+        self._require_stability(tangent)
         found = (tangent is not None and self._try(Setting(), factorised=True)) or self._try(Setting())
         found = found and self._press()
         if found:
@@ -180,6 +181,7 @@ class SteadySearch:
             return False
         self._held_speed, self._motor = self._speed_of(driver), driver
         self._hold(driver)
+        self._require_stability()
         return self._try(Setting()) and self._balance(driver)
 
     def _speed_of(self, pulley: int) -> float:
@@ -422,6 +424,7 @@ class SteadySearch:
     def _start(self, place: FloatArray, speed: float, setting: Setting) -> bool:
         """Begin at a setting, from a place at rest, with a belt of a speed (m/s) that sticks to all pulleys."""
         state, running, path = self.state, setting.speed * speed, self.prepared.path
+        self._sign = 0
         state.position[:] = place
         shifts_of(self.constant.frame)[:] = self._shifts_at_rest
         self.constant.frame.speed[0] = running * self.prepared.belt_length / path.length
@@ -593,7 +596,23 @@ class SteadySearch:
             system, state.at(0.0), anchor, allowed, _MAX_NEWTON_STEPS, factorised, self.work
         )
         self.iterations += iterations
-        return status == FOUND and not self._runs_away()
+        if status != FOUND or self._runs_away():
+            return False
+        if not has_teeth(self.constant):
+            return True
+        find_steady(system, state.at(0.0), anchor, 0.0, 0, False, self.work)
+        sign = determinant_sign(self.work.equations.matrix, True)
+        self._sign = self._sign or sign
+        return sign == self._sign
+
+    def _require_stability(self, tangent: SteadyWork | None = None) -> None:
+        """Let a belt with teeth be found only where it is as stable as now; the tangent here may be known.
+
+        Beyond a jump there are states without stability: a real eigenvalue has passed zero, so that the determinant of
+        the tangent has another sign.
+        """
+        if has_teeth(self.constant):
+            self._sign = determinant_sign((tangent or self.factorised()).equations.matrix, True)
 
     def _runs_away(self) -> bool:
         """Whether a web runs backwards, or faster than all rims that drive it, lifted off by its own inertia."""

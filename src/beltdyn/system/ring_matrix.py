@@ -230,6 +230,22 @@ def factorise_ring(matrix: RingMatrix, closed: bool) -> bool:
     return eliminate(dense, dense_pivots, no_columns, cut + extra)
 
 
+def determinant_sign(matrix: RingMatrix, closed: bool) -> int:
+    """Sign of the determinant of a matrix that `factorise_ring` has factorized."""
+    dof, inner, factors = len(matrix.unknowns), len(matrix.diagonal) - closed, matrix.factors
+    size = dof * closed + len(matrix.corner)
+    blocks = (
+        (factors.squares[:inner], factors.pivots[:inner]),
+        (factors.dense[:size, :size], factors.dense_pivots[:size]),
+    )
+    sign = 1
+    for square, pivots in blocks:
+        negative = np.count_nonzero(np.diagonal(square, axis1=-2, axis2=-1) < 0.0)
+        exchanged = np.count_nonzero(pivots != np.arange(pivots.shape[-1]))
+        sign *= -1 if (negative + exchanged) % 2 else 1
+    return sign
+
+
 @kernel
 def substitute(matrix: RingMatrix, closed: bool, node_part: FloatArray, border_part: FloatArray) -> None:
     """Solve for the right-hand side with the factors that are there.

@@ -9,7 +9,16 @@ from hypothesis import strategies as st
 
 from beltdyn.arrays import FloatArray
 from beltdyn.system.arrays import RingMatrix
-from beltdyn.system.ring_matrix import clear, entries, hold_at_end, places, ring_matrix, solve_ring, substitute
+from beltdyn.system.ring_matrix import (
+    clear,
+    determinant_sign,
+    entries,
+    hold_at_end,
+    places,
+    ring_matrix,
+    solve_ring,
+    substitute,
+)
 
 Dense = Callable[[RingMatrix, bool], tuple[FloatArray, FloatArray]]
 PARTS = ("diagonal", "upper", "lower", "column", "row", "corner", "node_side", "border_side")
@@ -38,6 +47,14 @@ def test_solves_what_lapack_solves(dense: Dense, dof: int, nodes: int, border: i
     ring = random_ring(nodes, border, seed, dof)
     expected = np.linalg.solve(*dense(ring, closed))
     np.testing.assert_allclose(solution(ring, closed), expected, atol=1e-12)  # rounding times the condition number
+
+
+@given(st.integers(3, 8), st.integers(0, 6), st.booleans(), st.integers(0, 2**32 - 1))
+def test_the_sign_of_the_determinant(dense: Dense, nodes: int, border: int, closed: bool, seed: int) -> None:
+    ring = random_ring(nodes, border, seed)
+    ring.diagonal[:] -= 20.0 * np.eye(6)  # half of all signs are negative then
+    solution(ring, closed)
+    assert determinant_sign(ring, closed) == np.linalg.slogdet(dense(ring, closed)[0])[0]
 
 
 @pytest.mark.parametrize("closed", [True, False], ids=["closed", "open"])
