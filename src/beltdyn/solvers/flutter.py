@@ -187,9 +187,8 @@ class FlutterWatch:
         """The largest growth of vibrations while the belt slid; None where none grows."""
         if len(self._states) < 2:
             return None
-        vibrations = Vibrations(self._system)
-        found = np.array([vibrations.fastest_growing(*state, self._shift) for state in self._states])
-        instants, rates = np.array([state[0] for state in self._states]), growth_rates(found)
+        instants, found = self._fastest_growing()
+        rates = growth_rates(found)
         time, transit = np.concatenate(self._time), np.concatenate(self._transit)
         active = time - last_slid(time, transit) <= self._memory
         transit = transit[np.maximum.accumulate(np.where(transit > 0.0, np.arange(transit.size), 0))]
@@ -201,6 +200,19 @@ class FlutterWatch:
         fastest = int(np.argmax(rates))
         frequency = abs(float(found[fastest].imag)) / (2.0 * np.pi)
         return Flutter(growth, float(rates[fastest]), frequency, start, end) if growth > 0.0 else None
+
+    def _fastest_growing(self) -> tuple[FloatArray, ComplexArray]:
+        """Instants (s) and eigenvalues (1/s): of every second state, and of those beside one where vibrations grow."""
+        vibrations, found = Vibrations(self._system), np.full(len(self._states), np.nan + 0j)
+        known = np.zeros(found.size, bool)
+
+        def look(wanted: BoolArray) -> None:
+            for number in np.flatnonzero(wanted & ~known):
+                found[number], known[number] = vibrations.fastest_growing(*self._states[number], self._shift), True
+
+        look((np.arange(found.size) % 2 == 0) | (np.arange(found.size) == found.size - 1))
+        look(np.convolve(growth_rates(found) > 0.0, [1, 1, 1], mode="same") > 0)
+        return np.array([state[0] for state in self._states])[known], found[known]
 
     def _transit_time(self, velocity: FloatArray, seen: Mapping[str, NDArray[Any]]) -> FloatArray:
         """Time in which the belt moves by the length of its longest piece that slides, s; zero where none does."""

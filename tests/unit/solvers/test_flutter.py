@@ -119,8 +119,20 @@ def test_decaying_vibrations_are_no_flutter(watch: Callable[..., FlutterWatch]) 
 def test_few_states_are_kept_evenly(watch: Callable[..., FlutterWatch], count: int) -> None:
     watch([20] * count, 1.0).find()
     assert 8 < len(Vibrations.asked) <= 16
-    np.testing.assert_allclose(np.diff(Vibrations.asked, 2), 0.0, atol=1e-9)
-    assert Vibrations.asked[-1] >= 0.9 * (count - 1) * INTERVAL
+    kept = sorted(Vibrations.asked)
+    np.testing.assert_allclose(np.diff(kept, 2), 0.0, atol=1e-9)
+    assert kept[-1] >= 0.9 * (count - 1) * INTERVAL
+
+
+def test_between_states_without_growth_none_is_looked_for(watch: Callable[..., FlutterWatch]) -> None:
+    times = INTERVAL * np.arange(16)
+    assert watch([20] * 16, -1.0).find() is None
+    np.testing.assert_allclose(Vibrations.asked, np.append(times[::2], times[-1]))
+    grows = np.where(np.arange(16) == 6, 5000.0, -500.0)
+    found = watch([20] * 16, grows).find()
+    assert found is not None
+    assert found.rate == 5000.0
+    np.testing.assert_allclose(sorted(Vibrations.asked), np.sort(np.append(times[::2], times[[5, 7, 15]])))
 
 
 def test_chunks_do_not_matter(watch: Callable[..., FlutterWatch]) -> None:
