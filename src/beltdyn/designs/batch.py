@@ -30,7 +30,7 @@ from beltdyn.points.duty import Column, at_row, durations_of, duty_of, require_d
 from beltdyn.points.operating_points import at_point, load_factors
 from beltdyn.results import Run
 from beltdyn.solvers.run_progress import BatchProgress
-from beltdyn.transient.beginning import compile_ahead
+from beltdyn.transient.beginning import compile_ahead, kind_of_kernels
 from beltdyn.transient.sweep import without_schedules
 
 # The operating points of a study: rows of a duty table, or places of a map
@@ -222,13 +222,18 @@ def _drive_of(given: Drive | Run) -> Drive:
 
 
 def _longest_first(drives: Mapping[Path, Drive | Run]) -> list[tuple[Path, Drive | Run]]:
-    """Order drives so that no long run is left to the end: by number of contact points and simulated time."""
+    """Order drives so that no long run is left to the end: by number of contact points and simulated time.
+
+    Before them comes one of each kind of kernels: processes compile several kinds then, and do not wait for one.
+    """
 
     def size(item: tuple[Path, Drive | Run]) -> float:
         drive = _drive_of(item[1])
         return drive.elements * drive.contact.quadrature_points * drive.simulation.duration
 
-    return sorted(drives.items(), key=size, reverse=True)
+    ordered = sorted(drives.items(), key=size, reverse=True)
+    first = set({kind_of_kernels(_drive_of(drive)): file for file, drive in reversed(ordered)}.values())
+    return sorted(ordered, key=lambda item: item[0] not in first)
 
 
 def _compiled(drive: Drive) -> bool:

@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 
 from beltdyn.arrays import FloatArray
-from beltdyn.errors import ModelError
+from beltdyn.errors import BeltdynError, ModelError
 from beltdyn.machines.profiles.functions import go_on
 from beltdyn.model import Drive, Prepared, loads, prepare
 from beltdyn.model.nip import refuse_set
@@ -288,6 +288,14 @@ def settled(drive: Drive, integrator: Integrator) -> tuple[Drive, Frame]:
 def compile_ahead(drive: Drive) -> None:
     """Compile the kernels of a run once, before several processes need them."""
     compile_kernels(*_before_run(prepare(drive)))
+
+
+def kind_of_kernels(drive: Drive) -> tuple[type, ...]:
+    """What the kernels of a run depend on; empty where the drive cannot be prepared."""
+    try:
+        return tuple(map(type, _before_run(prepare(drive))[0]))
+    except BeltdynError:
+        return ()
 
 
 def compile_solving_ahead(prepared: Prepared) -> AbstractContextManager[None]:

@@ -128,6 +128,27 @@ def test_what_had_not_begun_when_a_process_was_killed_is_begun_again(
     assert all(progress.total == 3 for progress in told)
 
 
+def test_one_of_each_kind_of_kernels_comes_before_longer_runs(change: Change, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Processes wait for each other where one compiles what the others need."""
+    order = list[str]()
+
+    def pool(drives: Any, *_: Any) -> tuple[dict[Path, Ending], bool]:
+        order.extend(file.name for file, _ in drives)
+        return {file: Ending("completed") for file, _ in drives}, True
+
+    monkeypatch.setattr(batch, "_run_pool", pool)
+    monkeypatch.setattr(batch, "compile_ahead", lambda drive: None)
+    lengths = {"long": 0.03, "longest": 0.04, "short": 0.01}
+    drives = {Path(name): change(simulation={"duration": time}) for name, time in lengths.items()}
+    trusses = {"truss": 0.02, "short truss": 5e-3}
+    drives |= {
+        Path(name): change(belt={"discretization": "truss"}, simulation={"duration": time})
+        for name, time in trusses.items()
+    }
+    simulate_all(drives)
+    assert order == ["longest", "truss", "long", "short", "short truss"]
+
+
 @pytest.mark.slow
 def test_side_by_side_as_one_by_one(change: Change, failing: Drive, tmp_path: Path) -> None:
     """The same numbers as alone; a failure and a file that cannot be written leave the others alone."""
