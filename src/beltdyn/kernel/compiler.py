@@ -8,10 +8,14 @@ from typing import Any
 
 import numba
 from numba.core import event
+from numba.core.errors import NumbaExperimentalFeatureWarning
 from numba.extending import overload
 
 from beltdyn.kernel.dispatch import CompilationCount, Dispatch
 from beltdyn.kernel.fingerprint import SealedFolder, compiles_quickly, holds_kernels, kernel_cache, own_classes, setting
+
+# where rows of a type begin as those of another one, Numba tells so at length, and takes the type that is exact
+warnings.filterwarnings("ignore", r"(?s).* has been considered a subtype of ", NumbaExperimentalFeatureWarning)
 
 OPTIONS = {"nogil": True, "error_model": "numpy", "fastmath": {"contract", "nsz"}}
 """Options of every kernel."""

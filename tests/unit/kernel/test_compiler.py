@@ -1,5 +1,8 @@
 """What becomes machine code, and what runs as Python."""
 
+import os
+import subprocess
+import sys
 from collections.abc import Iterator
 from pathlib import Path
 
@@ -34,6 +37,38 @@ def test_only_kernels_that_python_calls_become_machine_code(tmp_path: Path) -> N
     assert outer(6.0) == 12.0
     assert [path.name.split("-")[0].split(".")[-1] for path in tmp_path.rglob("*.kernel")] == ["outer"]
     assert inner(6.0, 2) == 9.0
+
+
+_ROWS = """
+import numpy as np
+from beltdyn.kernel import kernel
+
+@kernel
+def second(row):
+    return row.last
+
+@kernel
+def total(rows):
+    found = 0.0
+    for k in range(len(rows)):
+        found += second(rows[k])
+    return found
+
+short = [("first", "f8"), ("last", "f8")]
+print(total(np.ones(3, short)), total(np.full(3, 2.0, [*short, ("more", "f8")])))
+"""
+
+
+def test_rows_that_begin_as_others_are_compiled_for_their_own_type_without_a_word(tmp_path: Path) -> None:
+    (tmp_path / "rows.py").write_text(_ROWS, encoding="utf-8")
+    done = subprocess.run(
+        [sys.executable, "-W", "error", "-W", "ignore:Numba .* compiles", "rows.py"],
+        cwd=tmp_path,
+        env=os.environ | {CACHE_VARIABLE: str(tmp_path)},
+        capture_output=True,
+        text=True,
+    )
+    assert (done.stdout, done.stderr) == ("3.0 6.0\n", "")
 
 
 def test_without_compilation_kernels_run_as_python(monkeypatch: pytest.MonkeyPatch) -> None:
