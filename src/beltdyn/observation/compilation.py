@@ -126,13 +126,19 @@ def ahead(function: Callable[..., object], system: System, *others: object) -> I
 
     Kernels depend on the classes of elements, laws and surfaces, so that the other process needs the system.
     """
-    kind = function, tuple(map(type, system))
+    kind = function, classes_in(system)
     if _helps or kind in _compiled:
         yield
         return
     _compiled.add(kind)
     with nullcontext() if _is_compiled(function, system, *others) else beside(function, system, *others):
         yield
+
+
+def classes_in(given: object) -> tuple[object, ...]:
+    """Classes of a tuple and of the tuples in it, by which kernels differ."""
+    parts = given if isinstance(given, tuple) else ()
+    return type(given), *(classes_in(part) for part in parts if isinstance(part, tuple))
 
 
 _compiled = set[tuple[object, ...]]()

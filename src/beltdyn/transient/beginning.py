@@ -14,7 +14,7 @@ from beltdyn.machines.profiles.functions import go_on
 from beltdyn.model import Drive, Prepared, loads, prepare
 from beltdyn.model.nip import refuse_set
 from beltdyn.model.simulation import EarlierRun, Frame, Instants
-from beltdyn.observation.compilation import ahead, compile_kernels, compile_run, compile_solving
+from beltdyn.observation.compilation import ahead, classes_in, compile_kernels, compile_run, compile_solving
 from beltdyn.parts.quantity import number_in
 from beltdyn.parts.text_file import entry_name, shorten
 from beltdyn.results import Run, open_run
@@ -290,10 +290,10 @@ def compile_ahead(drive: Drive) -> None:
     compile_kernels(*_before_run(prepare(drive)))
 
 
-def kind_of_kernels(drive: Drive) -> tuple[type, ...]:
+def kind_of_kernels(drive: Drive) -> tuple[object, ...]:
     """What the kernels of a run depend on; empty where the drive cannot be prepared."""
     try:
-        return tuple(map(type, _before_run(prepare(drive))[0]))
+        return drive.simulation.integrator, *classes_in(_before_run(prepare(drive))[0])
     except BeltdynError:
         return ()
 
