@@ -89,7 +89,8 @@ def slip_parts(
     Where slip is taken at the cord, a pulley turns faster by w/R, the sinking w = (T - m v^2) / kR over its radius.
     Friction that holds the belt while it still sinks takes a part of that off again.
 
-    The tension T is that where the belt reaches the pulley.
+    The tension T is that where the belt reaches the pulley. Where the whole arc of the driver slides, the parts of
+    the others count from the speed of the belt there: 1 - v_i / v_d = g_d / v_d + (1 - g_d / v_d) (elastic + ...).
     """
     law = prepared.belt.stretch_parameters
     stretched = (law.stretch(np.max(tension.mean, axis=-1)) - 1.0) * prepared.belt_length
@@ -100,7 +101,9 @@ def slip_parts(
     reaching = np.where(rim[..., driver, None] > 0.0, before, after)
     reached, lost = law.stretch(reaching), _entry_loss(reaching, prepared)
     total, sliding = relative_loss(-rim, rim, driver), relative_loss(gross, rim, driver)
-    creeps = ~(prepared.toothed & prepared.toothed[driver])
+    led = rim[..., driver, None] != 0.0
+    carried = 1.0 + np.divide(gross, rim[..., driver, None], out=np.zeros_like(rim), where=led)[..., driver, None]
+    creeps = carried * ~(prepared.toothed & prepared.toothed[driver])
     elastic = np.where(runs[..., None], creeps * (1.0 - reached / reached[..., driver, None]), np.nan)
     bending = np.where(runs[..., None], creeps * (lost - lost[..., driver, None]), np.nan)
     sinking = _sinking(reaching, rim, prepared)

@@ -57,6 +57,25 @@ def test_slip_is_what_the_rims_lose_and_its_parts_make_it_up() -> None:
     assert not radial.any()
 
 
+@pytest.mark.parametrize("way", [1.0, -1.0])
+def test_behind_a_driver_that_slides_slip_is_elastic_creep_from_the_belt_on(way: float) -> None:
+    """Rims that hold a belt whose bending takes no stretch; the driver turns faster than it by up to half."""
+    element = SimpleNamespace(bent_strain=0.0)
+    limp: Any = SimpleNamespace(**vars(DRIVE) | {"belt": SimpleNamespace(**vars(BELT) | {"element_kind": element})})
+    limp.belt.bent_strain = np.zeros_like
+    reached = np.array([Green(STIFFNESS).stretch(one) for one in (90.0, 30.0, 50.0)])
+    for part in (0.0, 0.1, 0.5):
+        belt = (1.0 - part) * 10.0 * reached / reached[0]
+        rim = way * np.array([10.0, *belt[1:]])
+        gross = way * np.array([belt[0] - 10.0, 0.0, 0.0])
+        tension = TENSION if way > 0.0 else np.roll(TENSION, 1)
+        total, elastic, _, _, added, sliding = slip_parts(rim, tension, gross, 1.0, limp)
+        np.testing.assert_allclose(added, 0.0, atol=1e-15)
+        np.testing.assert_allclose(sliding[1:], part)
+        np.testing.assert_allclose(elastic, (1.0 - part) * (1.0 - reached / reached[0]), atol=1e-15)
+        np.testing.assert_allclose(total, elastic + sliding)
+
+
 def test_slip_is_told_against_the_driver_wherever_it_is_listed() -> None:
     """The same drive from another pulley on: the same slip, creep and sliding of each pulley."""
     gross = np.array([-0.02, 0.01, 0.0])

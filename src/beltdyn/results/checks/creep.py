@@ -88,8 +88,8 @@ def impossible_slip(evidence: Evidence) -> Iterator[Finding]:
             faults.append(
                 f"{pulley.name} runs {-slip:.3%} faster than its driver {driver.name}"
                 if slip < 0.0
-                else f"the slip of {pulley.name} behind {driver.name} is {slip:.3%}, less than its elastic creep of "
-                f"{elastic:.3%}"
+                else f"the slip of {pulley.name} behind {driver.name} is {slip:.3%}, less than its elastic creep"
+                f"{' and sliding' if slid else ''} of {elastic + slid:.3%}"
             )
     if faults:
         yield Finding(
