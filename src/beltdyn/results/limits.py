@@ -10,7 +10,6 @@ import numpy as np
 from beltdyn.analyses import EQUILIBRIUM, RUN
 from beltdyn.arrays import FloatArray
 from beltdyn.model import Limits
-from beltdyn.results.means import pulley_means
 from beltdyn.results.result import Result
 from beltdyn.results.run import Run
 from beltdyn.results.schema import (
@@ -125,7 +124,7 @@ def _of_run(run: Result) -> Iterator[Found]:
     run.require_output()
     carriage = run.drive.carriage
     with run.recorded() as recorded:
-        means = pulley_means(recorded, run.prepared)
+        means = run.pulley_means
         hub_load = np.linalg.norm(np.asarray(recorded["hub_force"]), axis=2)
         largest, least = (np.asarray(recorded[name]) for name in ("largest_span_tension", "least_span_tension"))
         pulleys, spans = names(recorded, "pulley"), names(recorded, "span")

@@ -17,6 +17,7 @@ from beltdyn.model import ERROR_LIMITS, Drive, layer_lengths
 from beltdyn.results.atomic import stamp, unreadable
 from beltdyn.results.checks import Finding, find
 from beltdyn.results.dataset import complete_dataset, kind_of, open_dataset, read_dataset
+from beltdyn.results.means import PulleySummary, pulley_means
 from beltdyn.results.provenance import (
     MESH,
     Resolution,
@@ -233,12 +234,25 @@ class Run(Result):
         """The findings: faults, the values they affect, and remedies; empty for a sound run."""
         resolution = self.resolution if self.outputs else None
         with self.recorded() as recorded:
-            return find(recorded, self.prepared, resolution)
+            return find(recorded, self.prepared, resolution, lambda: self.pulley_means)
 
     @cached_property
     def warnings(self) -> list[str]:
         """The findings as texts."""
         return [str(finding) for finding in self.findings]
+
+    @cached_property
+    def pulley_means(self) -> tuple[PulleySummary, ...]:
+        """Means of the pulleys over the averaging window.
+
+        Raises
+        ------
+        ModelError
+            If the run holds no output.
+        """
+        self.require_output()
+        with self.recorded() as recorded:
+            return pulley_means(recorded, self.prepared)
 
     @cached_property
     def resolution(self) -> Resolution:

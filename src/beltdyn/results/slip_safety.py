@@ -152,6 +152,8 @@ _FIRST_STRIDE, _LARGEST_STRIDE, _GROWTH = 1.25, 2.0, 1.2
 _MAX_STRIDES, _LARGEST_FACTOR = 120, 1e6
 """Strides on the way to the edge of slip, and the factor on loads at which it ends, or by its reciprocal: below that
 the slip safety is zero. Twenty of the largest strides lead so far; the others allow for halved ones."""
+_LOST_ACCURACY = 1e-4
+"""Relative accuracy of the factor at which the balance is lost, of which no sign tells."""
 _MAX_REFINEMENTS = 40
 """Steps of the regula falsi for the edge of slip; a safeguard, after which the last factor is taken."""
 
@@ -256,19 +258,77 @@ def grip_of(value_of: Callable[[str], FloatArray], prepared: Prepared) -> Grip:
 # The edge of slip: a factor on loads at which friction carries all that it can
 
 
+class _Place(NamedTuple):
+    """States on the way of loads, a row for each."""
+
+    factor: FloatArray
+    """On the load."""
+    unknowns: FloatArray
+    """Of the balance."""
+    spare: FloatArray
+    """What is left to the end of the way, N: friction to be used, or released where the pulley slides at first, or
+    tension that presses, if that is less; NaN where there is no balance."""
+
+    def of(self, rows: IntArray | BoolArray) -> "_Place":
+        """Some of them."""
+        return _Place(*(values[rows] for values in self))
+
+
+class _Way(NamedTuple):
+    """The ways on which loads change, a row for each."""
+
+    balance: TensionBalance
+    loads: Loads
+    pulley: IntArray
+    """That is to slide."""
+    sense: FloatArray
+    """1 where its friction carries more than the load, -1 otherwise."""
+
+    @classmethod
+    def of_loads(cls, balance: TensionBalance, loads: Loads, pulley: IntArray) -> tuple["_Way", _Place, FloatArray]:
+        """Ways from the known states, these, and what friction carries there at most, N."""
+        unknowns, factor = np.zeros((pulley.size, balance.scales.size)), np.ones(pulley.size)
+        carried, held = (values[np.arange(pulley.size), pulley] for values in balance.edge(loads, factor, unknowns))
+        way = cls(balance, loads, pulley, np.where(held >= carried, 1.0, -1.0))
+        return way, way.place(factor, unknowns), held
+
+    def of(self, rows: IntArray | BoolArray) -> "_Way":
+        """Some of them."""
+        return _Way(self.balance, self.loads.of(rows), self.pulley[rows], self.sense[rows])
+
+    def place(self, factor: FloatArray, unknowns: FloatArray) -> _Place:
+        """States of known unknowns."""
+        carried, held = (
+            values[np.arange(self.pulley.size), self.pulley]
+            for values in self.balance.edge(self.loads, factor, unknowns)
+        )
+        return _Place(factor, unknowns, np.minimum(self.sense * (held - carried), self.pressing(factor, unknowns)))
+
+    def pressing(self, factor: FloatArray, unknowns: FloatArray) -> FloatArray:
+        """Least tension that presses, beyond that of a span that counts as slack, N, shape (n,)."""
+        mean = self.balance.tension.mean[self.loads.state].mean(axis=1)
+        return np.asarray(self.balance.pressing(self.loads, factor, unknowns).min(axis=1) - _SLACK_TENSION * mean)
+
+    def at(self, factor: FloatArray, guess: FloatArray) -> _Place:
+        """The states under factors on loads, from guesses."""
+        return self.place(factor, self.balance.solve(self.loads, factor, guess))
+
+
 def _edges(balance: TensionBalance, loads: Loads, pulley: IntArray) -> FloatArray:
     """Factors at which pulleys slide: by Newton's method from the known states, or else by following the balance."""
-    found = _directly(balance, loads, pulley)
-    left = np.flatnonzero(np.isnan(found))
-    if left.size:
-        found[left] = _followed(balance, loads.of(left), pulley[left])
-    return found
+    way, start, held = _Way.of_loads(balance, loads, pulley)
+    edges = _directly(way, start)
+    rest = np.flatnonzero(np.isnan(edges))
+    if rest.size:
+        edges[rest] = _followed(way.of(rest), start.of(rest), held[rest])
+    return edges
 
 
-def _directly(balance: TensionBalance, loads: Loads, pulley: IntArray) -> FloatArray:
+def _directly(way: _Way, start: _Place) -> FloatArray:
     """Newton's method for the unknowns of the balance and the factor; NaN where it leads to no state on that branch."""
+    balance, loads, pulley = way.balance, way.loads, way.pulley
     every = np.arange(pulley.size)
-    unknowns, factor = np.zeros((pulley.size, balance.scales.size)), np.ones(pulley.size)
+    unknowns, factor = start.unknowns.copy(), start.factor.copy()
     sense, done, open_ = np.zeros(pulley.size), np.zeros(pulley.size, dtype=bool), every
     for number in range(_NEWTON_STEPS):
         some = loads.of(open_)
@@ -286,82 +346,56 @@ def _directly(balance: TensionBalance, loads: Loads, pulley: IntArray) -> FloatA
         open_ = open_[~settled & np.isfinite(step).all(axis=1)]
         if not open_.size:
             break
-    return np.where(done & _presses(balance, loads, factor, unknowns), factor, np.nan)
+    return np.where(done & (way.pressing(factor, unknowns) >= 0.0), factor, np.nan)
 
 
-def _presses(balance: TensionBalance, loads: Loads, factor: FloatArray, unknowns: FloatArray) -> BoolArray:
-    """Whether no span is slack under factors on loads, shape (n,)."""
-    mean = balance.tension.mean[loads.state].mean(axis=1)
-    return np.asarray(balance.pressing(loads, factor, unknowns).min(axis=1) >= _SLACK_TENSION * mean)
-
-
-class _Way(NamedTuple):
-    """States on the way of a load, a row for each."""
-
-    factor: FloatArray
-    unknowns: FloatArray
-    missing: FloatArray
-    """What friction could carry more at the pulley, N; NaN where there is no balance, or a span is slack."""
-
-
-def _at(balance: TensionBalance, loads: Loads, pulley: IntArray, factor: FloatArray, guess: FloatArray) -> _Way:
-    """The state under a factor on the load, from a guess."""
-    unknowns = balance.solve(loads, factor, guess)
-    carried, held = (values[np.arange(pulley.size), pulley] for values in balance.edge(loads, factor, unknowns))
-    return _Way(factor, unknowns, np.where(_presses(balance, loads, factor, unknowns), held - carried, np.nan))
-
-
-def _followed(balance: TensionBalance, loads: Loads, pulley: IntArray) -> FloatArray:
+def _followed(way: _Way, start: _Place, held: FloatArray) -> FloatArray:
     """The same by steps, to where the pulley slides, or else a span is slack or the balance is lost."""
-    count = pulley.size
-    unknowns, factor = np.zeros((count, balance.scales.size)), np.ones(count)
-    carried, held = (values[np.arange(count), pulley] for values in balance.edge(loads, factor, unknowns))
-    missing, rising = held - carried, held >= carried
+    factor, unknowns, spare = (values.copy() for values in start)
     before, earlier = unknowns.copy(), factor.copy()
-    stride, found = np.where(rising, 1.0, -1.0) * np.log(_FIRST_STRIDE), np.where(held > 0.0, factor, 0.0)
-    open_ = np.flatnonzero(held > 0.0)
+    stride, edge = way.sense * np.log(_FIRST_STRIDE), np.where(held > 0.0, factor, 0.0)
+    open_ = np.flatnonzero((held > 0.0) & (spare >= 0.0))
     for _ in range(_MAX_STRIDES):
         if not open_.size:
             break
-        some, at = loads.of(open_), pulley[open_]
         ahead = factor[open_] * np.exp(stride[open_])
         gone = factor[open_] - earlier[open_]
         slope = (unknowns[open_] - before[open_]) / np.where(gone == 0.0, np.inf, gone)[:, None]
-        there = _at(balance, some, at, ahead, unknowns[open_] + (ahead - factor[open_])[:, None] * slope)
-        good = np.isfinite(there.missing)
-        crossed = good & ((there.missing < 0.0) == rising[open_])
+        there = way.of(open_).at(ahead, unknowns[open_] + (ahead - factor[open_])[:, None] * slope)
+        crossed, good = there.spare < 0.0, there.spare >= 0.0
         if crossed.any():
             rows = open_[crossed]
-            near = _Way(factor[rows], unknowns[rows], missing[rows])
-            far = _Way(*(values[crossed] for values in there))
-            found[rows] = _between(balance, loads.of(rows), pulley[rows], near, far)
-        good &= ~crossed
+            edge[rows] = _between(way.of(rows), _Place(factor[rows], unknowns[rows], spare[rows]), there.of(crossed))
         rows = open_[good]
         before[rows], earlier[rows] = unknowns[rows], factor[rows]
-        factor[rows], unknowns[rows], missing[rows] = (values[good] for values in there)
-        found[rows] = factor[rows]
+        factor[rows], unknowns[rows], spare[rows] = there.of(good)
+        edge[rows] = factor[rows]
         longer = np.minimum(_GROWTH * np.abs(stride[open_]), np.log(_LARGEST_STRIDE)) * np.sign(stride[open_])
         stride[open_] = np.where(good, longer, 0.5 * stride[open_])
-        ended = crossed | (np.abs(stride[open_]) < _ACCURACY)
+        ended = crossed | (np.abs(stride[open_]) < _LOST_ACCURACY)
         ended |= (factor[open_] > _LARGEST_FACTOR) | (factor[open_] < 1.0 / _LARGEST_FACTOR)
         open_ = open_[~ended]
-    return np.where(found < 1.0 / _LARGEST_FACTOR, 0.0, found)
+    return np.where(edge < 1.0 / _LARGEST_FACTOR, 0.0, edge)
 
 
-def _between(balance: TensionBalance, loads: Loads, pulley: IntArray, near: _Way, far: _Way) -> FloatArray:
-    """Factors at which pulleys slide, between two states, by the regula falsi (Illinois)."""
-    low, high, a, b = near.factor.copy(), far.factor.copy(), near.missing.copy(), far.missing.copy()
-    guess, root, open_ = near.unknowns.copy(), far.factor.copy(), np.arange(pulley.size)
+def _between(way: _Way, near: _Place, far: _Place) -> FloatArray:
+    """Factors at the ends of ways between two states, by the regula falsi (Illinois)."""
+    low, high, a, b = near.factor.copy(), far.factor.copy(), near.spare.copy(), far.spare.copy()
+    guess, root, open_ = near.unknowns.copy(), far.factor.copy(), np.arange(far.factor.size)
+    side = np.zeros(root.size)
     for _ in range(_MAX_REFINEMENTS):
         if not open_.size:
             break
         root[open_] = (low - a * (high - low) / np.where(a == b, 1.0, b - a))[open_]
-        here = _at(balance, loads.of(open_), pulley[open_], root[open_], guess[open_])
-        now = np.where(np.isnan(here.missing), b[open_], here.missing)
-        same = np.sign(now) == np.sign(a[open_])
+        here = way.of(open_).at(root[open_], guess[open_])
+        now = np.where(np.isnan(here.spare), b[open_], here.spare)
+        same = now >= 0.0
+        again = side[open_] == np.where(same, 1.0, -1.0)
+        side[open_] = np.where(same, 1.0, -1.0)
         low[open_], high[open_] = np.where(same, root[open_], low[open_]), np.where(same, high[open_], root[open_])
-        a[open_], b[open_] = np.where(same, now, 0.5 * a[open_]), np.where(same, 0.5 * b[open_], now)
-        guess[open_] = np.where((same & np.isfinite(here.missing))[:, None], here.unknowns, guess[open_])
-        near_edge = np.abs(now) <= _ACCURACY * balance.scales[0]
+        other = np.where(again, 0.5, 1.0)
+        a[open_], b[open_] = np.where(same, now, other * a[open_]), np.where(same, other * b[open_], now)
+        guess[open_] = np.where((same & np.isfinite(here.spare))[:, None], here.unknowns, guess[open_])
+        near_edge = np.abs(now) <= _ACCURACY * way.balance.scales[0]
         open_ = open_[~near_edge & (np.abs(high - low)[open_] > _ACCURACY * root[open_])]
     return root

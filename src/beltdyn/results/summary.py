@@ -15,7 +15,6 @@ from beltdyn.results.means import (
     PulleySummary,
     SpanSummary,
     TensionerSummary,
-    pulley_means,
     span_means,
     tensioner_means,
 )
@@ -128,7 +127,7 @@ def means_of(run: Run) -> Means:
 
 def _means(run: Run, recorded: Recorded, window: Window) -> Means:
     return Means(
-        pulleys=pulley_means(recorded, run.prepared, window),
+        pulleys=run.pulley_means,
         spans=span_means(recorded, run.prepared, window),
         tensioners=tensioner_means(recorded, run.prepared, window),
         balance=power_balance(recorded, window, lifting_power(recorded, run.prepared, window)),

@@ -260,30 +260,29 @@ class TensionBalance:
     ) -> tuple[FloatArray, FloatArray]:
         """Step of Newton's method for the unknowns, and the determinant of their balance.
 
-        With `pulley`, shape (n,), the factor is the last unknown: the belt is to slide there. Difference quotients; the
-        path changes with tensioners alone.
+        With `pulley`, shape (n,), the factor is the last unknown: the belt is to slide there. By difference quotients.
         """
-        rows, moved = loads.state, unknowns.copy()
-
-        def off(factor: FloatArray, shape: _Geometry) -> FloatArray:
-            tension = self._tension(loads, factor, moved)
-            missing = self._off(tension, rows, shape, moved) - self._held[rows]
-            if pulley is None:
-                return missing
-            carried, held = self._edge(tension, loads, shape)
-            return np.column_stack([missing, (carried - held)[np.arange(rows.size), pulley] / self.scales[0]])
-
-        shape = self._geometry(rows, unknowns)
-        here, slopes = off(factor, shape), list[FloatArray]()
-        for number, scale in enumerate(self.scales.tolist()):
-            moved[:, number] += _DIFFERENCE * scale
-            there = off(factor, shape if number == 0 else self._geometry(rows, moved))
-            slopes.append((there - here) / (_DIFFERENCE * scale))
-            moved[:, number] = unknowns[:, number]
-        size = self.scales.size
+        count, size = unknowns.shape
+        steps = _DIFFERENCE * np.vstack([np.zeros(size), np.diag(self.scales)])
+        changes = np.ones(size + 1)
         if pulley is not None:
-            slopes.append((off(factor * (1.0 + _DIFFERENCE), shape) - here) / (_DIFFERENCE * factor[:, None]))
-        matrix = np.stack(slopes, axis=2)
+            steps, changes = np.vstack([steps, steps[0]]), np.append(changes, 1.0 + _DIFFERENCE)
+        # all differences at once: each costs little beside the calls
+        every = loads.of(np.tile(np.arange(count), len(steps)))
+        moved = (unknowns + steps[:, None]).reshape(-1, size)
+        shape = self._geometry(every.state, moved)
+        tension = self._tension(every, (changes[:, None] * factor).ravel(), moved)
+        missing = self._off(tension, every.state, shape, moved) - self._held[every.state]
+        if pulley is not None:
+            carried, held = self._edge(tension, every, shape)
+            lacking = (carried - held)[np.arange(len(moved)), np.tile(pulley, len(steps))]
+            missing = np.column_stack([missing, lacking / self.scales[0]])
+        here, *there = missing.reshape(len(steps), count, missing.shape[1])
+        widths = [np.full(count, _DIFFERENCE * scale) for scale in self.scales.tolist()]
+        widths += [_DIFFERENCE * factor] * (pulley is not None)
+        matrix = np.stack(
+            [(values - here) / width[:, None] for values, width in zip(there, widths, strict=True)], axis=2
+        )
         return -_solved(matrix, here), np.linalg.det(matrix[:, :size, :size])
 
     # Parts

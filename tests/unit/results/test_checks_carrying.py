@@ -32,7 +32,7 @@ def said(tension: FloatArray) -> list[str]:
     """What is said of tensions at 0 and 1 s along the belt."""
     place = np.linspace(0.0, PREPARED.belt_length, tension.shape[1], endpoint=False)
     recorded: Any = {"field_time": np.array([0.0, 1.0]), "belt_tension": tension, "element_coordinate": place}
-    evidence: Any = Evidence(recorded, PREPARED, None)  # type: ignore[arg-type]
+    evidence: Any = Evidence(recorded, PREPARED, None, tuple)  # type: ignore[arg-type]
     return [str(one) for one in sagging_belt(evidence)]
 
 
@@ -66,7 +66,7 @@ def test_a_batch_sags_where_it_is() -> None:
     place = np.linspace(0.0, prepared.belt_length, 400, endpoint=False)
     speeds = np.ones((2, 2))
     recorded: Any = {"field_time": np.array([0.0, 1.0]), "element_coordinate": place, "belt_speed": speeds}
-    evidence: Any = Evidence(recorded | {"time": np.array([0.0, 1.0])}, prepared, None)  # type: ignore[arg-type]
+    evidence: Any = Evidence(recorded | {"time": np.array([0.0, 1.0])}, prepared, None, tuple)  # type: ignore[arg-type]
     on, weight = _on_support(evidence, prepared.supports[0], np.array([0.0, 1.0]))
     laid = prepared.laid
     along = (laid.start + laid.stretch * place[on] - laid.path.span_start(1)) % laid.path.length

@@ -14,7 +14,9 @@ from beltdyn.results import FileRecorder, Layout, Run, open_run, summarize
 from beltdyn.results.checks import Evidence
 from beltdyn.results.checks.ending import NOTHING_RECORDED
 from beltdyn.results.checks.machines import stopped_tensioners
+from beltdyn.results.cycles import Window
 from beltdyn.results.energy_balance import energy_put_in
+from beltdyn.results.means import pulley_means
 
 MakeRun = Callable[..., Run]
 
@@ -225,9 +227,25 @@ def test_tensioner_on_its_stop_is_said(run: Run, position: np.ndarray, said: lis
     ]
     places, tensions = np.stack([position, 9.0 + position], axis=1), np.full((11, 2), 25.0)
     dataset = {"time": np.linspace(0.0, 1.0, 11), "tensioner_position": places, "span_tension": tensions}
-    evidence = Evidence(dataset, SimpleNamespace(moving_tensioners=tensioners), None)  # type: ignore[arg-type]
+    evidence = Evidence(dataset, SimpleNamespace(moving_tensioners=tensioners), None, tuple)  # type: ignore[arg-type]
     found = list(stopped_tensioners(evidence))
     assert [finding.fault.removesuffix(".").split(" on its ")[1] for finding in found] == said
     assert all("(25 N on average)" in finding.spoils for finding in found)
     lengths = ["Shorten" if "upper" in text else "Lengthen" for text in said]
     assert [finding.remedy.split(" the belt")[0] for finding in found] == lengths
+
+
+def test_summary_and_findings_share_the_means_of_pulleys(run: Run, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Slip safety takes most of the time of both."""
+    counted = list[Window | None]()
+
+    def counting(recorded: Any, prepared: Any, window: Window | None = None) -> Any:
+        counted.append(window)
+        return pulley_means(recorded, prepared, window)
+
+    known = run.warnings
+    monkeypatch.setattr("beltdyn.results.run.pulley_means", counting)
+    again = Run(run.dataset, run.drive)
+    assert summarize(again).pulleys is again.pulley_means
+    assert again.warnings == known
+    assert len(counted) == 1

@@ -114,7 +114,7 @@ def test_teeth_whose_lands_carry_nothing_lift(run: Run, monkeypatch: pytest.Monk
     lifted = replace(loads[0], jump_margin=1.0), *loads[1:]
     module = import_module("beltdyn.results.tooth_loads")
     monkeypatch.setattr(module, "loads_over_time", lambda *_: iter([(0.0, loads), (0.1, lifted)]))
-    evidence = Evidence(run.dataset, run.prepared, run.resolution)
+    evidence = Evidence(run.dataset, run.prepared, run.resolution, tuple)
     assert [str(one) for one in lifted_teeth(evidence)] == [
         "teeth lift off driver at 100% of the load. The belt rides up there, and jumps under a little more load. "
         "Raise the tension, reduce the load, or increase the wrap angle."

@@ -4,6 +4,7 @@ A check takes the `Evidence` of a run and gives `Finding` objects, none when all
 them; to add one, write it there and enter it in `CHECKS`.
 """
 
+from collections.abc import Callable
 from dataclasses import replace
 
 from beltdyn.errors import cause_of
@@ -51,6 +52,7 @@ from beltdyn.results.checks.power import (
     open_account,
     unbalanced_powers,
 )
+from beltdyn.results.means import PulleySummary
 from beltdyn.results.provenance import Resolution
 from beltdyn.results.schema import Recorded
 
@@ -98,11 +100,16 @@ CHECKS: tuple[Check, ...] = (
 """All checks, in the order in which their findings are shown."""
 
 
-def find(recorded: Recorded, prepared: Prepared, resolution: Resolution | None) -> list[Finding]:
-    """Check a result."""
+def find(
+    recorded: Recorded,
+    prepared: Prepared,
+    resolution: Resolution | None,
+    pulleys: Callable[[], tuple[PulleySummary, ...]],
+) -> list[Finding]:
+    """Check a result, of which a function gives the means of the pulleys."""
     if resolution is None:
         return [NOTHING_RECORDED]
-    evidence = Evidence(recorded, prepared, resolution)
+    evidence = Evidence(recorded, prepared, resolution, pulleys)
     if "slips_through" in recorded.attrs:
         return list(ended_by_slip(evidence))  # the other checks would repeat this
     return [replace(finding, kind=check.__name__) for check in CHECKS for finding in _findings(check, evidence)]

@@ -11,7 +11,7 @@ from beltdyn.model import Prepared
 from beltdyn.parts.messages import Finding
 from beltdyn.results.cycles import Window, mean_window
 from beltdyn.results.energy_balance import Balance, lifting_power, power_balance
-from beltdyn.results.means import PulleySummary, SpanSummary, pulley_means, span_means
+from beltdyn.results.means import PulleySummary, SpanSummary, span_means
 from beltdyn.results.provenance import Resolution
 from beltdyn.results.schema import Recorded
 from beltdyn.results.tooth_loads import ToothLoads, extreme_loads
@@ -30,6 +30,8 @@ class Evidence:
     """The drive."""
     resolution: Resolution
     """How well its mesh resolves tension and contact."""
+    find_pulleys: Callable[[], tuple[PulleySummary, ...]]
+    """Gives the means of the pulleys over the end of the run."""
 
     @cached_property
     def time(self) -> FloatArray:
@@ -44,7 +46,7 @@ class Evidence:
     @cached_property
     def pulleys(self) -> tuple[PulleySummary, ...]:
         """Means of the pulleys over the end of the run."""
-        return pulley_means(self.recorded, self.prepared, self.window)
+        return self.find_pulleys()
 
     @cached_property
     def spans(self) -> tuple[SpanSummary, ...]:
