@@ -201,6 +201,7 @@ def test_the_house_asks_no_more_of_a_kind_than_its_page_says(extended: Path, tmp
     shutil.copytree(extended / "src", house / "src")
     surroundings = {"PYTHONPATH": f"{house / 'src'}{os.pathsep}{house}", "BELTDYN_CACHE_DIR": str(extended / "kernels")}
     run(["-m", "mypy"], house, **surroundings)
+    run(["docs/scripts/key_tables.py"], house, **surroundings)
     run(["-m", "pytest", "--quiet", "-m", "not slow", *OF_ALL_KINDS], house, **surroundings)
 
 

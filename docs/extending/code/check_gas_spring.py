@@ -2,11 +2,11 @@ import numpy as np
 
 import beltdyn as bd
 from beltdyn.arrays import row
-from beltdyn.machines.tensioners.gas_spring import GAS_SPRING, gas_spring_force
+from beltdyn.machines.tensioners.gas_spring import EXPONENT, GAS_SPRING, gas_spring_force
 from beltdyn.model import advise, install
 
-FORCE, COLUMN, EXPONENT = 120.0, 0.08, 1.2
-gas = {"force": FORCE, "column": COLUMN, "exponent": EXPONENT}
+FORCE, COLUMN = 120.0, 0.08
+gas = {"force": FORCE, "column": COLUMN}
 free = {"creep_speed": 1.0, "lower": -np.inf, "upper": np.inf}
 constants, step = row(GAS_SPRING, **gas, spring=free), 1e-6
 for q in (-0.02, 0.0, 0.03):

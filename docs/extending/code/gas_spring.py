@@ -20,6 +20,8 @@ from beltdyn.extend import (
     spring_force,
 )
 
+EXPONENT = 1.2
+"""Polytropic exponent n: between slow motion, 1, and fast motion of nitrogen, 1.4."""
 LEAST_LENGTH = 0.01
 """Length of the gas column over the nominal one, below which the force stays."""
 
@@ -28,7 +30,6 @@ GAS_SPRING = record(
     direction="2f8",  # u, unit vector
     force="f8",  # F, N
     column="f8",  # l, volume of the gas over the area of the rod, at the nominal center, m
-    exponent="f8",  # n
     spring=SPRING,  # dry friction and stops
 )
 
@@ -44,12 +45,16 @@ def gas_spring_center(constants: np.record, q: float) -> Center:
 @kernel
 def gas_spring_force(constants: np.record, q: float, velocity: float) -> TensionerForce:
     """Force of the gas, and of damper, dry friction and stops; constants are a row of `GAS_SPRING`."""
-    column, n, rest = constants.column, constants.exponent, spring_force(constants, q, velocity)
+    column, rest = constants.column, spring_force(constants, q, velocity)
     length = max(column + q, LEAST_LENGTH * column)  # searches may look farther
-    gas = constants.force * (column / length) ** n
-    full, left = constants.force * column / (n - 1.0), gas * length / (n - 1.0)
+    gas = constants.force * (column / length) ** EXPONENT
+    full, left = constants.force * column / (EXPONENT - 1.0), gas * length / (EXPONENT - 1.0)
     return TensionerForce(
-        gas + rest.force, rest.by_position - n * gas / length, rest.by_velocity, left - full + rest.energy, rest.loss
+        gas + rest.force,
+        rest.by_position - EXPONENT * gas / length,
+        rest.by_velocity,
+        left - full + rest.energy,
+        rest.loss,
     )
 
 
@@ -68,7 +73,6 @@ class GasSpring(MovingTensioner):
     column: Annotated[float, quantity("m")] = Field(
         gt=0, description="the volume of the gas over the area of the rod at the given pulley center, in m"
     )
-    exponent: float = Field(1.2, gt=1, description="the polytropic exponent")
     tensioning_friction: Annotated[float, quantity("N")] = Field(
         0.0, ge=0, description="the dry friction while the path lengthens, in N"
     )
@@ -86,7 +90,7 @@ class GasSpring(MovingTensioner):
     def values(self, center: FloatArray, gradient: FloatArray) -> Mapping[str, Any]:
         """As in the base."""
         self.leverage(center, gradient)
-        gas = {"force": self.force, "column": self.column, "exponent": self.exponent}
+        gas = {"force": self.force, "column": self.column}
         return gas | {"center": center, "direction": self.direction, "spring": self.spring}
 
     def moved_inertia(self, center: FloatArray, mass: float) -> float:

@@ -1,10 +1,15 @@
 """Natural frequencies of a drive about its equilibrium at rest: (K + s C + s^2 M) x = 0."""
 
+from typing import Annotated
+
 import numpy as np
 from numpy.typing import ArrayLike
+from pydantic import Field
 
 from beltdyn.errors import ConvergenceError
 from beltdyn.model import Drive
+from beltdyn.parts.options import takes_options
+from beltdyn.parts.quantity import Count
 from beltdyn.results import Result, Variable, build_result
 from beltdyn.solvers.flutter import Vibrations
 from beltdyn.state.installation import bring_to_rest
@@ -25,7 +30,8 @@ _COORDINATES = {
 }
 
 
-def natural_frequencies(drive: Drive, *, count: int = 10) -> Result:
+@takes_options
+def natural_frequencies(drive: Drive, *, count: Annotated[Count, Field(ge=1)] = 10) -> Result:
     """Find the natural frequencies of a drive at rest, and its mode shapes.
 
     Parameters
