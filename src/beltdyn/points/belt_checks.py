@@ -51,12 +51,13 @@ def checks_of(
     required: RequiredTension | None,
     running: "Loads",
 ) -> Iterator[BeltCheck]:
-    """All checks of a drive with its rated belt."""
-    yield BeltCheck("utilization of the rated power", float(np.nanmax(running.utilization)), 1.0, "1", at_most=True)
+    """All checks of a drive with its rated belt, by the limits of the drive where it has its own."""
+    used, most = float(np.nanmax(running.utilization)), drive.limits.largest_utilization or 1.0
+    yield BeltCheck("utilization of the rated power", used, most, "1", at_most=True)
     for number, (name, tension) in enumerate(() if required is None else required.by_formula.items()):
         yield BeltCheck(f"tension at rest, {name}", rest.tension, tension, "N", decides=number == 0)
     if not isnan(running.slip_safety):
-        yield BeltCheck(SLIP_SAFETY, running.slip_safety, 1.0, "1")
+        yield BeltCheck(SLIP_SAFETY, running.slip_safety, drive.limits.least_slip_safety or 1.0, "1")
     yield BeltCheck("belt speed", running.speed, belt.rating.largest_speed, "m/s", at_most=True)
     smallest = drive.belt.smallest_diameter
     if smallest is not None:

@@ -191,7 +191,10 @@ def _loads(drive: Drive, progress: Report | None) -> _Loads:
     speeds, powers, hub, safety = (
         np.array([getattr(one, name) for one in means]) for name in ("speed", "power", "hub_load", "least_safety")
     )
-    values: Values = {"hub_load": (Variable(_PULLEY, "N", "Hub load"), hub)}
+    values: Values = {
+        "hub_load": (Variable(_PULLEY, "N", "Hub load"), hub),
+        "slip_safety": (Variable(_PULLEY, "1", "Slip safety"), safety),
+    }
     fatigue = fatigue_by_name(run)
     for name, label in (("cord_life", "Life of the cords"), ("rib_life", "Life of the ribs")):
         if name in fatigue:

@@ -204,8 +204,9 @@ def _of_life(result: Result) -> Iterator[Found]:
     dataset = result.dataset
     for what in ("cord", "rib"):
         if f"{what}_life" in dataset:
-            share = dataset[f"{what}_share"]
-            most = str(share["pulley"].values[int(share.values.argmax())]) if share.notnull().any() else ""
+            share, most = dataset.get(f"{what}_share"), ""
+            if share is not None and share.notnull().any():
+                most = str(share["pulley"].values[int(share.values.argmax())])
             yield f"least_{what}_life", float(dataset[f"{what}_life"]), "h", f"{most}, largest share" if most else ""
 
 
@@ -246,7 +247,7 @@ def _worst(key: str, values: FloatArray, unit: str, places: Sequence[str], of: S
 _FINDERS: dict[str, Callable[[Result], Iterator[Found]]] = {
     RUN: _of_run,
     **dict.fromkeys((EQUILIBRIUM, "operating_map", "duty"), _of_table),
-    "life": _of_life,
+    **dict.fromkeys(("life", "rating"), _of_life),
     "sheet": _of_sheet,
 }
 """Kind of result -> what finds its key numbers."""

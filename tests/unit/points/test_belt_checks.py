@@ -84,6 +84,22 @@ def test_too_few_belts_and_a_slipping_drive_fail() -> None:
     np.testing.assert_allclose(loose.dataset.power.values, [power, -power], rtol=1e-9)
 
 
+def test_limits_of_the_drive_replace_those_of_the_rating(accepted: Result) -> None:
+    """What the verdict judges and the table of limits are one and the same."""
+    used, safety = float(accepted.dataset.utilization.max()), float(accepted.dataset.slip_safety.min())
+    drive = quoted(8, "")
+    for key, limit, met in (
+        ("largest_utilization", 1.01 * used, True),
+        ("largest_utilization", 0.99 * used, False),
+        ("least_slip_safety", 0.99 * safety, True),
+        ("least_slip_safety", 1.01 * safety, False),
+    ):
+        found = bd.rating(drive.replace(limits=drive.limits.replace(**{key: limit})))
+        assert str(found.dataset.attrs["verdict"]).startswith("passes" if met else "fails")
+        (number,) = [one for one in bd.results.key_numbers(found) if one.key == key]
+        assert number.passes is met
+
+
 @pytest.mark.parametrize(
     ("value", "limit", "at_most", "met"),
     [(1.0, 1.0, True, True), (1.01, 1.0, True, False), (1.0, 1.0, False, True), (0.99, 1.0, False, False)],
