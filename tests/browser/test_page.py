@@ -291,7 +291,7 @@ def test_a_result_is_printed_mailed_and_marked_after_an_edit(shoot: Shoot, open_
 def test_another_profile_makes_another_valid_drive(shoot: Shoot, open_page: Open) -> None:
     expect, page = playwright.expect, open_page()
     page.get_by_role("tab", name="belt").click()
-    for profile, key in (("HTD 8M", "teeth"), ("SPZ", "ribs"), ("flat-aramid", "width"), ("PK", "ribs")):
+    for profile, key in (("HTD 8M", "teeth"), ("SPZ", "belts"), ("flat-aramid", "width"), ("PK", "ribs")):
         page.get_by_label("profile").first.fill(profile)
         page.get_by_role("option", name=profile, exact=True).click()
         expect(page.get_by_label(key, exact=True)).not_to_have_value("")
