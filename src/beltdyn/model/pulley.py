@@ -105,8 +105,6 @@ AnySurface = Annotated[Surface, OneOf(KINDS, surface_part)]
 
 _SPATIAL = 3
 """Coordinates of a point in space."""
-_INSTANTS = 1001
-"""Instants at which the largest speed of a shaft is looked for: peaks of a thousandth of the time are met."""
 
 
 class Diameter(Part):
@@ -316,10 +314,7 @@ class Pulley(Part):
 
     def extreme_speed(self, begin: float, end: float) -> float:
         """Speed of largest magnitude at which the shaft is driven between two instants (s), with its sign, rad/s."""
-        if self.speed is None:
-            return self.motor_speed
-        values = self.speed.at(np.linspace(begin, end, _INSTANTS))
-        return float(values[np.argmax(np.abs(values))])
+        return self.motor_speed if self.speed is None else self.speed.extreme(end, begin)
 
     @property
     def motor_speed(self) -> float:

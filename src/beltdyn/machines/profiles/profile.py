@@ -110,16 +110,18 @@ class Profile(Part, Generic[Value]):
         """Largest absolute value from time zero to a time, s."""
         return abs(self.extreme(duration))
 
-    def extreme(self, duration: float = np.inf) -> float:
-        """Value of largest magnitude from time zero to a time, s; of equal ones the first.
+    def extreme(self, duration: float = np.inf, begin: float = 0.0) -> float:
+        """Value of largest magnitude from a time, s, by default zero, to another one; of equal ones the first.
 
         It is at an end, or at the start of a piece, before or after a jump: within a piece all kinds are monotonic,
         and the last piece is constant.
         """
         starts = self.segments().start
         end = min(duration, max(2.0 * starts[-1], 1.0))
-        ends = np.concatenate([[0.0, *starts[(starts > 0.0) & (starts < end)], end], self._bends(end)])
-        values = self.around(np.sort(ends), end)
+        inside = np.concatenate([starts, self._bends(end)])
+        begin = min(begin, end)
+        ends = [begin, *np.sort(inside[(inside > begin) & (inside < end)]), end]
+        values = self.around(np.array(ends), end)
         sizes = np.abs(values)
         return float(values[np.argmax(sizes >= (1.0 - _ROUNDING) * sizes.max())])
 

@@ -135,5 +135,7 @@ def test_largest_value_sees_pulses_jumps_and_ends() -> None:
     assert Step(time=0.5, before=1.0, value=-2.0).extreme(1.0) == -2.0
     assert Step(time=0.5, before=1.0, value=-2.0).largest(1.0) == 2.0
     assert Step(time=0.5, before=1.0, value=-2.0).largest(0.5) == 1.0
+    assert Step(time=0.5, before=9.0, value=-2.0).extreme(1.0, 0.6) == -2.0
+    assert Step(time=0.5, before=9.0, value=-2.0).extreme(1.0, 0.5) == 9.0
     assert CosineRampPublished(start=0.2, end=0.4, value=-3.0).largest(2.0) == pytest.approx(3.0)
     assert Ramp(start=0.0, end=2.0, value=3.0).largest(1.0) == pytest.approx(1.5)
