@@ -258,77 +258,30 @@ def grip_of(value_of: Callable[[str], FloatArray], prepared: Prepared) -> Grip:
 # The edge of slip: a factor on loads at which friction carries all that it can
 
 
-class _Place(NamedTuple):
-    """States on the way of loads, a row for each."""
-
-    factor: FloatArray
-    """On the load."""
-    unknowns: FloatArray
-    """Of the balance."""
-    spare: FloatArray
-    """What is left to the end of the way, N: friction to be used, or released where the pulley slides at first, or
-    tension that presses, if that is less; NaN where there is no balance."""
-
-    def of(self, rows: IntArray | BoolArray) -> "_Place":
-        """Some of them."""
-        return _Place(*(values[rows] for values in self))
-
-
-class _Way(NamedTuple):
-    """The ways on which loads change, a row for each."""
-
-    balance: TensionBalance
-    loads: Loads
-    pulley: IntArray
-    """That is to slide."""
-    sense: FloatArray
-    """1 where its friction carries more than the load, -1 otherwise."""
-
-    @classmethod
-    def of_loads(cls, balance: TensionBalance, loads: Loads, pulley: IntArray) -> tuple["_Way", _Place, FloatArray]:
-        """Ways from the known states, these, and what friction carries there at most, N."""
-        unknowns, factor = np.zeros((pulley.size, balance.scales.size)), np.ones(pulley.size)
-        carried, held = (values[np.arange(pulley.size), pulley] for values in balance.edge(loads, factor, unknowns))
-        way = cls(balance, loads, pulley, np.where(held >= carried, 1.0, -1.0))
-        return way, way.place(factor, unknowns), held
-
-    def of(self, rows: IntArray | BoolArray) -> "_Way":
-        """Some of them."""
-        return _Way(self.balance, self.loads.of(rows), self.pulley[rows], self.sense[rows])
-
-    def place(self, factor: FloatArray, unknowns: FloatArray) -> _Place:
-        """States of known unknowns."""
-        carried, held = (
-            values[np.arange(self.pulley.size), self.pulley]
-            for values in self.balance.edge(self.loads, factor, unknowns)
-        )
-        return _Place(factor, unknowns, np.minimum(self.sense * (held - carried), self.pressing(factor, unknowns)))
-
-    def pressing(self, factor: FloatArray, unknowns: FloatArray) -> FloatArray:
-        """Least tension that presses, beyond that of a span that counts as slack, N, shape (n,)."""
-        mean = self.balance.tension.mean[self.loads.state].mean(axis=1)
-        return np.asarray(self.balance.pressing(self.loads, factor, unknowns).min(axis=1) - _SLACK_TENSION * mean)
-
-    def at(self, factor: FloatArray, guess: FloatArray) -> _Place:
-        """The states under factors on loads, from guesses."""
-        return self.place(factor, self.balance.solve(self.loads, factor, guess))
-
-
 def _edges(balance: TensionBalance, loads: Loads, pulley: IntArray) -> FloatArray:
     """Factors at which pulleys slide: by Newton's method from the known states, or else by following the balance."""
-    way, start, held = _Way.of_loads(balance, loads, pulley)
-    edges = _directly(way, start)
+    edges = _directly(balance, loads, pulley)
     rest = np.flatnonzero(np.isnan(edges))
     if rest.size:
-        edges[rest] = _followed(way.of(rest), start.of(rest), held[rest])
+        edges[rest] = _followed(balance, loads.of(rest), pulley[rest])
     return edges
 
 
-def _directly(way: _Way, start: _Place) -> FloatArray:
+def _known(balance: TensionBalance, count: int) -> tuple[FloatArray, FloatArray]:
+    """Factors and unknowns of known states."""
+    return np.ones(count), np.zeros((count, balance.scales.size))
+
+
+def _pressing(balance: TensionBalance, loads: Loads, factor: FloatArray, unknowns: FloatArray) -> FloatArray:
+    """Least tension that presses, beyond that of a span that counts as slack, N, shape (n,)."""
+    mean = balance.tension.mean[loads.state].mean(axis=1)
+    return np.asarray(balance.pressing(loads, factor, unknowns).min(axis=1) - _SLACK_TENSION * mean)
+
+
+def _directly(balance: TensionBalance, loads: Loads, pulley: IntArray) -> FloatArray:
     """Newton's method for the unknowns of the balance and the factor; NaN where it leads to no state on that branch."""
-    balance, loads, pulley = way.balance, way.loads, way.pulley
     every = np.arange(pulley.size)
-    unknowns, factor = start.unknowns.copy(), start.factor.copy()
+    factor, unknowns = _known(balance, pulley.size)
     sense, done, open_ = np.zeros(pulley.size), np.zeros(pulley.size, dtype=bool), every
     for number in range(_NEWTON_STEPS):
         some = loads.of(open_)
@@ -346,12 +299,62 @@ def _directly(way: _Way, start: _Place) -> FloatArray:
         open_ = open_[~settled & np.isfinite(step).all(axis=1)]
         if not open_.size:
             break
-    return np.where(done & (way.pressing(factor, unknowns) >= 0.0), factor, np.nan)
+    return np.where(done & (_pressing(balance, loads, factor, unknowns) >= 0.0), factor, np.nan)
 
 
-def _followed(way: _Way, start: _Place, held: FloatArray) -> FloatArray:
+class _Place(NamedTuple):
+    """States on the way of loads, a row for each."""
+
+    factor: FloatArray
+    """On the load."""
+    unknowns: FloatArray
+    """Of the balance."""
+    spare: FloatArray
+    """What is left to the end of the way, N: friction to be used, or released where the pulley slides at first, or
+    tension that presses, if that is less; NaN where there is no balance."""
+
+    def of(self, rows: BoolArray) -> "_Place":
+        """Some of them."""
+        return _Place(*(values[rows] for values in self))
+
+
+class _Way(NamedTuple):
+    """The ways on which loads change, a row for each."""
+
+    balance: TensionBalance
+    loads: Loads
+    pulley: IntArray
+    """That is to slide."""
+    sense: FloatArray
+    """1 where its friction carries more than the load in the known state, -1 otherwise."""
+
+    def of(self, rows: IntArray) -> "_Way":
+        """Some of them."""
+        return _Way(self.balance, self.loads.of(rows), self.pulley[rows], self.sense[rows])
+
+    def at(self, factor: FloatArray, guess: FloatArray) -> _Place:
+        """The states under factors on loads, from guesses."""
+        unknowns = self.balance.solve(self.loads, factor, guess)
+        carried, held = _friction(self.balance, self.loads, self.pulley, factor, unknowns)
+        pressing = _pressing(self.balance, self.loads, factor, unknowns)
+        return _Place(factor, unknowns, np.minimum(self.sense * (held - carried), pressing))
+
+
+def _friction(
+    balance: TensionBalance, loads: Loads, pulley: IntArray, factor: FloatArray, unknowns: FloatArray
+) -> tuple[FloatArray, FloatArray]:
+    """What friction carries at pulleys, and the most that it can carry, N, shape (n,)."""
+    carried, held = balance.edge(loads, factor, unknowns)
+    rows = np.arange(pulley.size)
+    return carried[rows, pulley], held[rows, pulley]
+
+
+def _followed(balance: TensionBalance, loads: Loads, pulley: IntArray) -> FloatArray:
     """The same by steps, to where the pulley slides, or else a span is slack or the balance is lost."""
-    factor, unknowns, spare = (values.copy() for values in start)
+    factor, unknowns = _known(balance, pulley.size)
+    carried, held = _friction(balance, loads, pulley, factor, unknowns)
+    way = _Way(balance, loads, pulley, np.where(held >= carried, 1.0, -1.0))
+    spare = np.minimum(np.abs(held - carried), _pressing(balance, loads, factor, unknowns))
     before, earlier = unknowns.copy(), factor.copy()
     stride, edge = way.sense * np.log(_FIRST_STRIDE), np.where(held > 0.0, factor, 0.0)
     open_ = np.flatnonzero((held > 0.0) & (spare >= 0.0))
