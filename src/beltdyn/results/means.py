@@ -169,9 +169,9 @@ class SpanSummary:
     """Mean speed of the belt, m/s, positive in the sense in which the driver moves it."""
 
 
-def pulley_means(recorded: Recorded, prepared: Prepared, window: Window | None = None) -> tuple[PulleySummary, ...]:
-    """Average the pulleys over a window."""
-    window = mean_window(recorded, prepared) if window is None else window
+def pulley_means(recorded: Recorded, prepared: Prepared) -> tuple[PulleySummary, ...]:
+    """Average the pulleys over the averaging window."""
+    window = mean_window(recorded, prepared)
     means = partial(window.mean, recorded)
     belt_torque, shaft_torque, wrap_angle, hub_force, centers = map(
         means, ("pulley_torque", "shaft_torque", "wrap_angle", "hub_force", "pulley_center")

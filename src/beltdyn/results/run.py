@@ -1,11 +1,11 @@
 """A run: its dataset, the drive it belongs to and how it ended; its outputs in a time range."""
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from dataclasses import replace
 from functools import cached_property
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, TypeVar
 
 import h5py
 import numpy as np
@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 
 from beltdyn.analyses import EQUILIBRIUM, RUN
 from beltdyn.errors import ModelError
-from beltdyn.model import ERROR_LIMITS, Drive, layer_lengths
+from beltdyn.model import ERROR_LIMITS, Drive, Prepared, layer_lengths
 from beltdyn.results.atomic import stamp, unreadable
 from beltdyn.results.checks import Finding, find
 from beltdyn.results.dataset import complete_dataset, kind_of, open_dataset, read_dataset
@@ -41,6 +41,8 @@ from beltdyn.results.schema import (
 
 if TYPE_CHECKING:
     import xarray as xr
+
+T = TypeVar("T")
 
 # Results of static equilibrium: tensions, contact forces and hub loads
 
@@ -250,9 +252,7 @@ class Run(Result):
         ModelError
             If the run holds no output.
         """
-        self.require_output()
-        with self.recorded() as recorded:
-            return pulley_means(recorded, self.prepared)
+        return self._from_outputs(pulley_means)
 
     @cached_property
     def resolution(self) -> Resolution:
@@ -263,9 +263,13 @@ class Run(Result):
         ModelError
             If the run holds no output.
         """
+        return self._from_outputs(estimate_resolution)
+
+    def _from_outputs(self, function: Callable[[Recorded, Prepared], T]) -> T:
+        """What a function makes of the recorded outputs and the prepared drive."""
         self.require_output()
         with self.recorded() as recorded:
-            return estimate_resolution(recorded, self.prepared)
+            return function(recorded, self.prepared)
 
     def require(self, name: str) -> None:
         """Check that an optional variable was recorded.
