@@ -135,10 +135,9 @@ def ahead(function: Callable[..., object], system: System, *others: object) -> I
         yield
 
 
-def classes_in(given: object) -> tuple[object, ...]:
+def classes_in(group: tuple[object, ...]) -> tuple[object, ...]:
     """Classes of a tuple and of the tuples in it, by which kernels differ."""
-    parts = given if isinstance(given, tuple) else ()
-    return type(given), *(classes_in(part) for part in parts if isinstance(part, tuple))
+    return type(group), *(classes_in(part) for part in group if isinstance(part, tuple))
 
 
 _compiled = set[tuple[object, ...]]()

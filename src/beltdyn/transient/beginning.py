@@ -293,7 +293,7 @@ def compile_ahead(drive: Drive) -> None:
 def kind_of_kernels(drive: Drive) -> tuple[object, ...]:
     """What the kernels of a run depend on; empty where the drive cannot be prepared."""
     try:
-        return drive.simulation.integrator, *classes_in(_before_run(prepare(drive))[0])
+        return drive.simulation.integrator, *classes_in(_like_a_run(prepare(drive)))
     except BeltdynError:
         return ()
 
@@ -305,13 +305,17 @@ def compile_solving_ahead(prepared: Prepared) -> AbstractContextManager[None]:
 
 def _before_run(prepared: Prepared) -> tuple[System, State]:
     """Arrays of the types that a run will have, and a state."""
-    if prepared.frame.stays:
-        given = staying_system(prepared, prepared.equal_lengths(prepared.elements))
-        at_zero = at_rest(given, np.zeros((given.nodes, len(given.scale))))
-        system = flowing_system(turning(open_ended(prepared, given), at_zero), np.array([1.0, 0.0]))
-    else:
-        system = drive_system(prepared)
+    system = _like_a_run(prepared)
     return system, laid(system, prepared.path)
+
+
+def _like_a_run(prepared: Prepared) -> System:
+    """Arrays of the types that a run will have."""
+    if not prepared.frame.stays:
+        return drive_system(prepared)
+    still = staying_system(prepared, prepared.equal_lengths(prepared.elements))
+    at_zero = at_rest(still, np.zeros((still.nodes, len(still.scale))))
+    return flowing_system(turning(open_ended(prepared, still), at_zero), np.array([1.0, 0.0]))
 
 
 def mesh_of(prepared: Prepared, integrator: Integrator, progress: Report | None = None) -> Beginning:
