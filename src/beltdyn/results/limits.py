@@ -192,6 +192,7 @@ def _of_table(
             force = result.drive.belt.breaking_force
             if key == "largest_tension" and force is not None and result.kind != EQUILIBRIUM:
                 yield _worst(LEAST_BELT_SAFETY, _over(force, values), "1", places, list(map(str, dataset[of].values)))
+    yield from _lives(dataset)
 
 
 def _over(force: float, tensions: FloatArray) -> FloatArray:
@@ -199,9 +200,7 @@ def _over(force: float, tensions: FloatArray) -> FloatArray:
     return force / np.where(tensions > 0.0, tensions, np.nan)
 
 
-def _of_life(result: Result) -> Iterator[Found]:
-    yield from _of_table(result)
-    dataset = result.dataset
+def _lives(dataset: "xr.Dataset") -> Iterator[Found]:
     for what in ("cord", "rib"):
         if f"{what}_life" in dataset:
             share, most = dataset.get(f"{what}_share"), ""
@@ -246,8 +245,7 @@ def _worst(key: str, values: FloatArray, unit: str, places: Sequence[str], of: S
 
 _FINDERS: dict[str, Callable[[Result], Iterator[Found]]] = {
     RUN: _of_run,
-    **dict.fromkeys((EQUILIBRIUM, "operating_map", "duty"), _of_table),
-    **dict.fromkeys(("life", "rating"), _of_life),
+    **dict.fromkeys((EQUILIBRIUM, "operating_map", "duty", "life", "rating"), _of_table),
     "sheet": _of_sheet,
 }
 """Kind of result -> what finds its key numbers."""

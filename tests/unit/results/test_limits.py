@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 import xarray as xr
 
+from beltdyn.designs.drive_sheet import sheet
 from beltdyn.model import Drive
 from beltdyn.points.life import life
 from beltdyn.results import KeyNumber, Result, Run, key_numbers
@@ -107,3 +108,7 @@ def test_lives_are_judged_in_hours(drive: Drive) -> None:
     assert found.value == pytest.approx(float(result.dataset.cord_life))
     assert found.passes is (found.value >= 100.0)
     assert "largest share" in found.where
+    of_sheet = sheet(limited)
+    judged = by_key(of_sheet)["least_cord_life"]
+    assert judged.value == pytest.approx(float(of_sheet.dataset.cord_life))
+    assert judged.passes is (judged.value >= 100.0)
