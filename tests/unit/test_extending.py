@@ -51,6 +51,22 @@ OF_ALL_KINDS = [
 ]
 """Tests that ask something of every kind, analysis or figure."""
 
+OF_THE_PACKAGE = "tests/unit/test_public_names.py::test_completion_shows_what_a_user_needs"
+"""A test of how many names the package itself has, to which examples add theirs."""
+
+TEST_OF_EXAMPLE = '''"""An example of docs/extending, whose check is its test."""
+
+import runpy
+
+import pytest
+
+
+@pytest.mark.slow
+def test_the_check_passes() -> None:
+    runpy.run_path("docs/extending/code/{check}")
+'''
+"""What stands for the test of a module that an example adds; `test_the_example_works` runs the check."""
+
 BLOCK = re.compile(
     r"^```\{(?:code-block\} diff|literalinclude\} (?P<file>[\w/.]+))\n"
     r":caption: (?P<caption>[^\n]+)\n(?P<text>.*?)^```$",
@@ -202,7 +218,22 @@ def test_the_house_asks_no_more_of_a_kind_than_its_page_says(extended: Path, tmp
     surroundings = {"PYTHONPATH": f"{house / 'src'}{os.pathsep}{house}", "BELTDYN_CACHE_DIR": str(extended / "kernels")}
     run(["-m", "mypy"], house, **surroundings)
     run(["docs/scripts/key_tables.py"], house, **surroundings)
-    run(["-m", "pytest", "--quiet", "-m", "not slow", *OF_ALL_KINDS], house, **surroundings)
+    add_tests(house / "tests" / "unit")
+    run(
+        ["-m", "pytest", "--quiet", "-m", "not slow", "--deselect", OF_THE_PACKAGE, *OF_ALL_KINDS],
+        house,
+        **surroundings,
+    )
+
+
+def add_tests(folder: Path) -> None:
+    """Give every module of the examples its test."""
+    for example in EXAMPLES:
+        (check,) = example.checks.values()
+        for module in (Path(block.caption).relative_to("src/beltdyn") for block in example.blocks if block.is_file):
+            test = folder / module.parent / f"test_{module.stem}.py"
+            test.parent.mkdir(exist_ok=True)
+            test.write_text(TEST_OF_EXAMPLE.format(check=check.name), encoding="utf-8")
 
 
 def run(arguments: list[str], folder: Path, **surroundings: str) -> None:

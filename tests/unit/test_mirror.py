@@ -12,7 +12,6 @@ SOURCE = UNIT.parents[1] / "src" / "beltdyn"
 
 FAMILIES = {
     "elements/*.py": "unit/elements/test_kind.py",
-    "machines/tensioners/*.py": "unit/machines/tensioners/test_tensioner.py",
     "stretch/*.py": "unit/stretch/test_laws_common.py",
     "show/plot/*.py": "unit/show/plot/test_figures_all.py",
 }

@@ -25,8 +25,8 @@ def run(program: str) -> str:
     return subprocess.run([sys.executable, "-c", program], capture_output=True, text=True, check=True).stdout.strip()
 
 
-MOST = 64
-"""Names that a user looks through, with room for some analyses and parts of extensions."""
+MOST = 60
+"""Names that a user looks through."""
 
 
 def test_completion_shows_what_a_user_needs() -> None:
